@@ -21,8 +21,9 @@ static int colour = COLOUR_RADIUS, boundaries;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
 static struct overlay over;
-static const char *output, *range, *size, *camera = "30,15", *box, *background = "ffffff", *cut,
-                                          *only, *table, *wanted, *solid_names, *surface_range;
+static const char *output, *range, *size, *camera = "30,15", *upwards, *box, *background = "ffffff",
+                                          *cut, *only, *table, *wanted, *solid_names,
+                                          *surface_range;
 static int surface = SURFACE_NAME;
 static struct solid solid;
 
@@ -83,14 +84,16 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "plain", &plain, .help = "omit the marks that show rotations" },
     { CLI_TEXT, 0, "size", &size, "WxH", .help = "set the size in pixels [longer side 900]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
-      .help = "view from AZ degrees about z, EL above the horizon; 3D [30,15]" },
+      .help = "view from AZ degrees about the vertical, EL above the horizon; 3D [30,15]" },
+    { CLI_TEXT, 0, "up", &upwards, "X,Y[,Z]",
+      .help = "draw this direction upwards [against gravity; else z, in 2D y]" },
     { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
       .help = "use perspective with this angle of view; 3D [0, none]" },
     { CLI_TEXT, 0, "cut", &cut, "NX,NY,NZ,D",
       .help = "cut away bodies beyond NX x + NY y + NZ z = D, m [nothing]" },
     { CLI_INT, 0, "follow", &follow, "ID", .min = 0, .max = INT32_MAX,
       .help = "keep the body with this id in its place in a series [none]" },
-    { CLI_FLAG, 0, "strays", &strays, .help = "include outliers in the picture" },
+    { CLI_FLAG, 0, "strays", &strays, .help = "include outliers and far walls in the picture" },
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
       .help = "draw only bodies with their centre in this box, m [all]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
@@ -170,11 +173,24 @@ static void set_cut(struct view *v)
     v->cuts = true, v->cut = v3_scale(1 / length, n), v->cut_at = x[3] / length;
 }
 
+/* --up: two numbers or three, a direction. */
+static vec3 up_of_option(void)
+{
+    double x[3] = { 0 };
+    if (!upwards) return v3(0, 0, 0);
+    bool good = numbers(upwards, 3, x) || ((x[2] = 0), numbers(upwards, 2, x));
+    double length = v3_norm(v3(x[0], x[1], x[2]));
+    if (!good || !(length > 1e-150 && length < 1e150))
+        die_usage("--up: '%s' is not X,Y,Z, in 2D X,Y, a direction", upwards);
+    return v3(x[0], x[1], x[2]);
+}
+
 static struct view view_of_options(void)
 {
     struct view v = { .samples = (int)samples,
                       .threads = threads ? (int)threads : team_cores(),
                       .angle = perspective,
+                      .up = up_of_option(),
                       .strays = strays,
                       .glass = boundaries == GLASS,
                       .follows = follow >= 0,
@@ -339,6 +355,7 @@ static void extend(struct view *v, struct frame *f, const char *where)
     set_values(v, f, where);
     if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
         die_usage("--box: needs Z0,Z1 too, for balls");
+    if (f->packing.dim == 2 && v->up.z != 0) die_usage("--up: discs lie in the plane of x and y");
     if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
 }
 

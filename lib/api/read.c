@@ -88,9 +88,9 @@ static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
     for (int64_t i = 0; s->found && i < s->n; i++) {
         if (s->c[i].a >= 0) continue;
         int32_t w = -1 - s->c[i].a;
-        vec3 f = v3_scale(-1, branch_force(p, s, i)), x = wall_at(p, &p->wall[w], p->t);
-        vec3 add = torque ? v3_cross(v3_sub(s->c[i].x, x), f) : f;
-        put3(out, w, v3_add(v3(out[3 * w], out[3 * w + 1], out[3 * w + 2]), add));
+        vec3 on_b =
+            torque ? branch_torque(p, s, i, wall_at(p, &p->wall[w], p->t)) : branch_force(p, s, i);
+        put3(out, w, v3_sub(v3(out[3 * w], out[3 * w + 1], out[3 * w + 2]), on_b));
     }
 }
 

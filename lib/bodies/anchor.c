@@ -93,9 +93,8 @@ int anchors_place(struct contacts *s, const struct packing *p, const struct posi
     n = 0;
     for (int64_t i = 0; placed && i < p->bonds.n; i++) {
         const struct bond *b = &p->bonds.bond[i];
-        int32_t body[2];
         bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], at->t);
-        if (!there || !packing_movable(p, b->a, b->b, body)) continue;
+        if (!there || !packing_may_meet(p, b->a, b->b)) continue;
         if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = place(p, b, at);
     }
     if (!placed || !merge(&both, p, s, placed, n)) {

@@ -50,6 +50,10 @@ double face_of_area(const struct packing *p, int32_t wall, int32_t face)
         if (flat) return v3_norm(a);
         return 0.5 * v3_norm(v3_cross(a, v3_sub(p->mesh.vertex[e[2]], p->mesh.vertex[e[0]])));
     }
+    case BOUNDARY_PLANE: {
+        const double area = wall_face(p, w, p->t);
+        return area > 0 ? area : INFINITY;
+    }
     default:
         return INFINITY;
     }

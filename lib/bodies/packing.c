@@ -524,6 +524,7 @@ int packing_check(const struct packing *p, struct why *why)
         trouble = name " " range;
         EVERY_PAIR_COLUMN(CHECK)
 #undef CHECK
+        if (p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
     if (check_bodies(p, 0, why)) return why->status;

@@ -64,7 +64,7 @@ struct packing {
 
     int32_t kinds;
     char **kind_name;               /* [kinds] */
-    EVERY_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et, mu_s, v_s: [kinds * kinds], symmetric */
+    EVERY_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et, mu_s, v_s, inert: [kinds * kinds], symmetric */
     struct pair_law *law; /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds;   /* what lasts of pairs by these laws */
 
@@ -270,6 +270,12 @@ struct cell_flow packing_flow(const struct packing *p);
 static inline int32_t packing_pair(const struct packing *p, int32_t a, int32_t b)
 {
     return (a < 0 ? p->wall[-1 - a].kind : p->kind[a]) * p->kinds + p->kind[b];
+}
+
+/* May body a (< 0: boundary -1-a) and body b have contacts: does one of them move, and do their kinds act on each other? */
+static inline bool packing_may_meet(const struct packing *p, int32_t a, int32_t b)
+{
+    return (p->mass[b] > 0 || (a >= 0 && p->mass[a] > 0)) && p->inert[packing_pair(p, a, b)] == 0;
 }
 
 /* The contact's friction and restitution, of the kinds of its bodies */

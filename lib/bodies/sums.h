@@ -22,8 +22,9 @@ struct face_sums {
     double normal;     /* N s: r_n */
     double tangential; /* N s: |r_t| of each contact */
     double work;       /* J: that the bodies do on it, by its motion */
-    double friction;   /* J: that friction takes, - r_t . u_t */
-    double rub;        /* J: r_n |u_t|; Archard's volume of wear is this by a coefficient */
+    double
+        friction; /* J: that friction takes, - r_t . u_t, rolling and pivoting friction included */
+    double rub;   /* J: r_n |u_t|; Archard's volume of wear is this by a coefficient */
 };
 
 struct wall_sums {

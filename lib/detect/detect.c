@@ -107,7 +107,8 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
     vec3 at = wall_at(p, &p->wall[w], o->all.t), n = wall_normal(p, &p->wall[w], o->all.t);
     for (int64_t i = first; i < end; i++) {
         struct touch touch = { n, v3_dot(v3_sub(x[i], at), n), 0 };
-        if (!(touch.distance - p->radius[i] <= gap) || p->mass[i] == 0) continue;
+        if (!(touch.distance - p->radius[i] <= gap)) continue;
+        if (!packing_may_meet(p, -1 - w, (int32_t)i)) continue;
         if (o->all.shaped && packing_shape(p, i)) {
             if (!detect_shapes_wall(out, &o->all, w, i, gap, v3(0, 0, 0))) return false;
             continue;
@@ -147,7 +148,7 @@ static bool add_shape(struct contacts *out, const struct sought *o, int64_t firs
     const double most = swift_beside(p, o->wall);
     struct pose pose = wall_pose(p, &p->wall[o->wall], o->all.t);
     for (int64_t i = first; i < end; i++) {
-        if (p->mass[i] == 0) continue;
+        if (!packing_may_meet(p, -1 - o->wall, (int32_t)i)) continue;
         int64_t before = out->n;
         if (!add_body(out, o, &pose, i)) return false;
         if (swift_is(p, i, most) && !swift_meets_wall(out, before, &o->all, o->wall, i))

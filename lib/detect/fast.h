@@ -13,7 +13,8 @@
 
 /* A body, as a path is examined */
 struct fast {
-    int32_t id, shape; /* row of the packing's shapes */
+    int32_t id, kind;
+    int32_t shape; /* row of the packing's shapes */
     bool fast;
     double radius, thick;
     double mass;
@@ -42,7 +43,7 @@ bool fast_is_fixed_hull(const struct packing *p, const struct fast *b);
 /* b: one of the packing's bodies; a: one of the list, or its image */
 typedef void fast_visit(void *arg, const struct fast *a, const struct fast *b);
 /* Visits each pair of a fast body and one of the packing, as above, whose paths in the window may meet, once: of two
-   fast bodies b is the one with the lower number. Pairs that cannot move are left out. Returns 0 or EX_SOFTWARE. */
+   fast bodies b is the one with the lower number. Pairs that cannot move, or do not act on each other, are left out. Returns 0 or EX_SOFTWARE. */
 int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *list,
                struct window window, fast_visit *visit, void *arg, struct why *why);
 

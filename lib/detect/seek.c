@@ -73,7 +73,7 @@ static bool look_at(const struct seeker *s, const struct grid *g, int64_t first,
         if (f->cell[0] < l.i0 || f->cell[0] > l.i1 || f->cell[1] != l.j || f->cell[2] != l.k)
             continue;
         if (!near(s, f)) continue;
-        if (s->p->mass[s->e->body] == 0 && s->p->mass[f->body] == 0) continue;
+        if (!packing_may_meet(s->p, s->e->body, f->body)) continue;
         if (f->body == s->e->body) continue; // its image, and the wide reach of a list that is kept
         if (!pairs_add(s->out, s->e->body, f->body, s->shift)) return false;
     }

@@ -292,7 +292,7 @@ bool swift_meet_hulls(struct contacts *out, const struct situation *o)
     for (int64_t i = 0; first < p->n && i < p->n; i++) {
         if (!swift_is(p, i, most)) continue;
         for (int64_t f = first; f < p->n; f++) {
-            if (!is_fixed_hull(p, f)) continue;
+            if (!is_fixed_hull(p, f) || !packing_may_meet(p, (int32_t)f, (int32_t)i)) continue;
             const struct way y = way_of(p, i, p->v[f]);
             if (y.n < 1) continue;
             if (passes_by(&y, o->x[i], o->x[f], p->radius[i] + p->radius[f]) &&
@@ -386,14 +386,16 @@ void swift_passed(struct passed *s, const struct packing *p, const bool *of,
         if ((of && !of[i]) || !swift_is(p, i, dmax(speed, most))) continue;
         for (int32_t w = 0; w < p->walls; w++) {
             const struct wall *wall = &p->wall[w];
-            if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
+            if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t) ||
+                !packing_may_meet(p, -1 - w, (int32_t)i))
+                continue;
             vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));
             vec3 from = v3_axpy(p->x[i], -window.back, v);
             vec3 to = v3_axpy(from, window.length, v);
             if (through_wall(p, surface, w, from, to)) swift_note(s, p->id[i], -1 - w);
         }
         for (int64_t f = first; f < p->n; f++) {
-            if (!is_fixed_hull(p, f)) continue;
+            if (!is_fixed_hull(p, f) || !packing_may_meet(p, (int32_t)f, (int32_t)i)) continue;
             vec3 v = v3_sub(p->v[i], p->v[f]);
             vec3 from = v3_axpy(p->x[i], -window.back, v);
             vec3 to = v3_axpy(from, window.length, v);

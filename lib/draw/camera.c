@@ -1,16 +1,28 @@
 /* draw/camera.c: the camera turned, and fitted to a window. */
 #include "draw/camera.h"
 
-void camera_turn(struct camera *c, int dim, double azimuth, double elevation)
+/* The rotation that brings z to a unit vector the short way */
+static quat tilt_to(vec3 up)
+{
+    vec3 axis = v3(-up.y, up.x, 0); // z x up
+    double across = v3_norm(axis), angle = atan2(across, up.z);
+    return quat_rotation(across > 0 ? v3_scale(angle / across, axis) : v3(angle, 0, 0));
+}
+
+void camera_turn(struct camera *c, int dim, vec3 up, double azimuth, double elevation)
 {
     if (dim == 2) {
-        c->right = v3(1, 0, 0), c->up = v3(0, 1, 0), c->toward = v3(0, 0, 1);
+        c->right = v3(up.y, -up.x, 0), c->up = up, c->toward = v3(0, 0, 1);
         return;
     }
     double a = azimuth * M_PI / 180, e = elevation * M_PI / 180;
     c->right = v3(cos(a), sin(a), 0);
     c->toward = v3(sin(a) * cos(e), -cos(a) * cos(e), sin(e));
     c->up = v3_cross(c->toward, c->right);
+    if (up.z == 1) return;
+    const quat q = tilt_to(up);
+    c->right = quat_turn(q, c->right), c->up = quat_turn(q, c->up);
+    c->toward = quat_turn(q, c->toward);
 }
 
 void window_add(struct window *w, const struct camera *c, vec3 x, double r)

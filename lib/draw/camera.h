@@ -31,10 +31,11 @@ struct window {
 enum { CAMERA_SIDE = 900 }; /* pixels of the longer side, by default */
 
 /*
- * Turns the camera; azimuth and elevation in degrees. 0, 0 looks along y with z upwards; a positive
- * azimuth moves it to the right about z. In the plane (dim 2) it looks at x and y from the front.
+ * Turns the camera; azimuth and elevation in degrees. With `up` (a unit vector) along z, 0, 0 looks along y with z
+ * upwards, and a positive azimuth moves it to the right about z; for another `up` all of that is turned as z is brought
+ * to it the short way. In the plane (dim 2) it looks at x and y from the front, `up` upwards.
  */
-void camera_turn(struct camera *c, int dim, double azimuth, double elevation);
+void camera_turn(struct camera *c, int dim, vec3 up, double azimuth, double elevation);
 
 /* (right . x, up . x, toward . x) */
 static inline vec3 camera_sees(const struct camera *c, vec3 x)

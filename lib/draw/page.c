@@ -254,7 +254,7 @@ static struct page_moment *add_moment(struct page *p)
 /* The first frame's kinds and dimension are the page's. */
 static int adopt(struct page *p, const struct packing *k, struct why *why)
 {
-    p->dim = k->dim;
+    p->dim = k->dim, p->up = walls_up(k);
     p->radius[0] = INFINITY;
     p->kind_name = calloc((size_t)k->kinds + 1, sizeof *p->kind_name);
     for (; p->kind_name && p->kinds < k->kinds; p->kinds++)

@@ -39,6 +39,7 @@ struct page {
     FILE *out;
     const char *name; /* of its file, for messages */
     int dim;
+    vec3 up; /* against gravity, of the first frame */
     int64_t frames, room;
     struct page_moment *moment; /* [frames] */
     int curves;

@@ -67,6 +67,7 @@ static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p
     double scale;
     vec3 at = view_sees(v, p->x[i], &scale);
     double r = p->radius[i] * scale, angle = 2 * atan2(p->q[i].z, p->q[i].w);
+    angle -= atan2(v->camera.right.y, v->camera.right.x);
     if (at.x + r < 0 || at.x - r > v->camera.width || at.y + r < 0 || at.y - r > v->camera.height)
         return;
     struct rgb own = paint_body(&v->paint, p, i);

@@ -116,7 +116,7 @@ static int follow_first(struct view *v, const struct packing *p, struct why *why
 static int extend_window(struct view *v, const struct packing *p, struct why *why)
 {
     struct extent r;
-    if (!region_of(&r, p))
+    if (!(v->strays ? region_of : region_near)(&r, p))
         return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
     for (int64_t i = 0; i < p->n; i++)
@@ -140,7 +140,8 @@ int view_extend(struct view *v, const struct packing *p, struct why *why)
         return why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
     if (!v->started) {
         v->dim = p->dim, v->window = window_empty;
-        camera_turn(&v->camera, p->dim, v->azimuth, v->elevation);
+        vec3 up = v3_norm(v->up) > 0 ? v3_scale(1 / v3_norm(v->up), v->up) : walls_up(p);
+        camera_turn(&v->camera, p->dim, up, v->azimuth, v->elevation);
         if (v->boxed && p->dim == 2) v->region.lo.z = v->region.hi.z = 0;
         if (v->follows && follow_first(v, p, why)) return why->status;
     }
@@ -169,8 +170,10 @@ void view_fit(struct view *v, const struct packing *p)
             for (int k = 0; k < b->panel[i].corners; k++)
                 window_add(&v->window, &v->camera, b->panel[i].corner[k], 0);
         for (int i = 0; i < b->edges; i++) {
-            window_add(&v->window, &v->camera, b->edge[i].a, 0);
-            window_add(&v->window, &v->camera, b->edge[i].b, 0);
+            vec3 from = b->edge[i].a, to = b->edge[i].b;
+            if (!extent_clip(&v->region, &from, &to)) continue;
+            window_add(&v->window, &v->camera, from, 0);
+            window_add(&v->window, &v->camera, to, 0);
         }
     }
     free(b);

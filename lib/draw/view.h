@@ -18,14 +18,15 @@
 
 struct view {
     double azimuth, elevation; /* degrees */
+    vec3 up;                   /* what is upwards in the picture; 0: what is against gravity */
     double angle;              /* degrees, of perspective; 0: none */
     bool cuts;                 /* what lies beyond cut . x = cut_at (m) is cut away */
     vec3 cut;                  /* unit vector */
     double cut_at;
-    bool strays;               /* bodies far from all others count too in what the picture shows */
-    bool follows;              /* a body stays where it is in the picture: */
-    int32_t follow;            /* its id */
-    bool glass;                /* boundaries are half-transparent, not lines alone [draw/glass.h] */
+    bool strays;    /* bodies and walls far from all others count too in what the picture shows */
+    bool follows;   /* a body stays where it is in the picture: */
+    int32_t follow; /* its id */
+    bool glass;     /* boundaries are half-transparent, not lines alone [draw/glass.h] */
     const struct chosen *only; /* bodies that are drawn, and what joins them; NULL: all */
     const struct solid *solid; /* boundaries that are solid instead; NULL: none */
     float pale;                /* 0 to 1: how much bodies are mixed with the background */

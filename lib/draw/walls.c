@@ -89,23 +89,68 @@ static bool any_finite(const struct packing *p)
     return false;
 }
 
-/* Boundaries that end somewhere are shown whole; without memory for that they are not. */
-static void add_finite(struct extent *r, const struct packing *p)
+vec3 walls_up(const struct packing *p)
+{
+    double g = v3_norm(p->g);
+    if (g > 0) return v3_scale(-1 / g, p->g);
+    return p->dim == 2 ? v3(0, 1, 0) : v3(0, 0, 1);
+}
+
+bool extent_clip(const struct extent *r, vec3 *a, vec3 *b)
+{
+    vec3 from = *a, way = v3_sub(*b, *a), lo = r->lo, hi = r->hi;
+    double first = 0, last = 1, near = 1e-6 * v3_norm(v3_sub(hi, lo));
+    for (int k = 0; k < 3; k++) {
+        double x = *component(&from, k), d = *component(&way, k);
+        double l = *component(&lo, k) - near, h = *component(&hi, k) + near;
+        if (d == 0 && (x < l || x > h)) return false;
+        if (d == 0) continue;
+        first = fmax(first, d > 0 ? (l - x) / d : (h - x) / d);
+        last = fmin(last, d > 0 ? (h - x) / d : (l - x) / d);
+    }
+    if (!(first <= last)) return false;
+    if (first > 0) *a = v3_axpy(from, first, way);
+    if (last < 1) *b = v3_axpy(from, last, way);
+    return true;
+}
+
+/* How far beyond the bodies finite boundaries count: in sizes of all of them, or diameters of the largest */
+static const double NEAR_ALL = 4, NEAR_ONE = 40;
+
+/* Around the bodies, whose region is r; without any, all space */
+static struct extent near_bodies(const struct extent *r, const struct packing *p)
+{
+    double size = NEAR_ALL * fmax(r->hi.x - r->lo.x, fmax(r->hi.y - r->lo.y, r->hi.z - r->lo.z));
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->radius[i] < WALLS_FAR) size = fmax(size, NEAR_ONE * 2 * p->radius[i]);
+    if (r->lo.x > r->hi.x) size = 4 * WALLS_FAR;
+    const vec3 d = v3(size, size, size);
+    return r->lo.x > r->hi.x ? (struct extent){ v3_scale(-1, d), d }
+                             : (struct extent){ v3_sub(r->lo, d), v3_add(r->hi, d) };
+}
+
+/* Boundaries that end somewhere are shown as far as they lie in a box; NULL: whole; without memory for that they are
+   not. */
+static void add_finite(struct extent *r, const struct packing *p, const struct extent *in)
 {
     struct outline o;
     struct why why = { 0 };
     if (!any_finite(p) || outline_init(&o, p, 0, &why)) return;
-    for (int64_t i = 0; i < o.lines; i++)
+    for (int64_t i = 0; i < o.lines; i++) {
+        vec3 *end = o.line[i].end;
+        if (in && is_drawn(end[0]) && is_drawn(end[1]) && !extent_clip(in, &end[0], &end[1]))
+            continue;
         for (int k = 0; k < 2; k++) {
-            vec3 x = o.line[i].end[k];
+            vec3 x = end[k];
             if (!is_finite(p, o.line[i].boundary) || !is_drawn(x)) continue;
             r->lo = v3(fmin(r->lo.x, x.x), fmin(r->lo.y, x.y), fmin(r->lo.z, x.z));
             r->hi = v3(fmax(r->hi.x, x.x), fmax(r->hi.y, x.y), fmax(r->hi.z, x.z));
         }
+    }
     outline_free(&o);
 }
 
-bool region_of(struct extent *r, const struct packing *p)
+static bool find_region(struct extent *r, const struct packing *p, bool near)
 {
     const double far = 2 * WALLS_FAR;
     r->lo = v3(far, far, far), r->hi = v3(-far, -far, -far);
@@ -116,17 +161,32 @@ bool region_of(struct extent *r, const struct packing *p)
             *component(&r->hi, k) = fmax(*component(&r->hi, k), c + b);
         }
     if (r->lo.x > r->hi.x && !any_finite(p)) return region_of_walls(r, p);
-    add_finite(r, p);
+    const struct extent around = near_bodies(r, p);
+    add_finite(r, p, near ? &around : NULL);
     double size = fmax(r->hi.x - r->lo.x, fmax(r->hi.y - r->lo.y, r->hi.z - r->lo.z));
+    const vec3 up = walls_up(p);
+    int upright = p->dim - 1; // the axis that is nearest to gravity
+    for (int k = 0; k < p->dim; k++)
+        if (fabs(v3_dot(up, unit(k, 1))) > fabs(v3_dot(up, unit(upright, 1)))) upright = k;
     for (int k = 0; k < p->dim; k++) {
         // wide beside the bodies, where the floor is seen; narrow above them
-        double margin = size * (k == p->dim - 1 ? 0.04 : 0.25);
+        double margin = size * (k == upright ? 0.04 : 0.25);
         double *lo = component(&r->lo, k), *hi = component(&r->hi, k);
         double below = limit(p, k, 1), above = limit(p, k, -1);
         *lo = *lo - below <= size ? fmin(*lo, below) : *lo - margin;
         *hi = above - *hi <= size ? fmax(*hi, above) : *hi + margin;
     }
     return true;
+}
+
+bool region_of(struct extent *r, const struct packing *p)
+{
+    return find_region(r, p, false);
+}
+
+bool region_near(struct extent *r, const struct packing *p)
+{
+    return find_region(r, p, true);
 }
 
 struct extent region_join(struct extent a, struct extent b)
@@ -200,7 +260,7 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
         b->edge[b->edges++] =
             (struct edge){ v3_add(g->p[k], middle), v3_add(g->p[(k + 1) % g->count], middle) };
     }
-    if (stroke || g->count < 3 || normal_now(p, i).z < WALLS_FLAT) return;
+    if (stroke || g->count < 3 || v3_dot(normal_now(p, i), walls_up(p)) < WALLS_FLAT) return;
     struct panel *f = &b->panel[b->panels++];
     *f = (struct panel){ .n = normal_now(p, i), .origin = wall_now(p, i), .corners = g->count };
     for (int k = 0; k < g->count; k++) f->corner[k] = v3_add(g->p[k], middle);
@@ -247,7 +307,7 @@ void walls_build(struct walls *b, const struct packing *p, const struct extent *
 bool walls_floor(const struct packing *p, int i, vec3 toward)
 {
     vec3 n = normal_now(p, i);
-    return n.z >= WALLS_FLAT && v3_dot(n, toward) > WALLS_FACING;
+    return v3_dot(n, walls_up(p)) >= WALLS_FLAT && v3_dot(n, toward) > WALLS_FACING;
 }
 
 int walls_polygon(const struct packing *p, int i, const struct extent *r, vec3 *corner)

@@ -46,6 +46,12 @@ struct walls {
  * near, else by a margin; without bodies, the space between the walls. False if there are neither.
  */
 bool region_of(struct extent *r, const struct packing *p);
+/* The same, but for what of the finite boundaries is far from the bodies, which would make these small */
+bool region_near(struct extent *r, const struct packing *p);
+/* Cuts a line at the sides of a box, to rounding; false: nothing of it is inside. */
+bool extent_clip(const struct extent *r, vec3 *a, vec3 *b);
+/* The unit vector against gravity; without gravity z, in the plane y */
+vec3 walls_up(const struct packing *p);
 /* The smallest region that holds both */
 struct extent region_join(struct extent a, struct extent b);
 

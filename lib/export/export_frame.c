@@ -1,5 +1,6 @@
 #include "export/export_frame.h"
 
+#include <inttypes.h>
 #include <math.h>
 
 const char *const part_name[PART_COUNT] = { "grains", "contacts", "boundary", "cell", "surfaces" };
@@ -32,4 +33,9 @@ void export_frame_box(struct box *b, const struct packing *p)
         b->edge[k] = v3_scale(hi - lo, axis[k]);
         b->origin = v3_add(b->origin, v3_scale(lo, axis[k]));
     }
+}
+
+void export_put_image(FILE *out, const struct packing *p, int64_t i)
+{
+    for (int k = 0; p->image && k < 3; k++) fprintf(out, " %" PRId32, p->image[i][k]);
 }

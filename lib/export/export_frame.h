@@ -9,6 +9,8 @@
 #include "bodies/contact.h"
 #include "bodies/packing.h"
 
+#include <stdio.h>
+
 enum part { PART_GRAINS, PART_CONTACTS, PART_BOUNDARY, PART_CELL, PART_SURFACES, PART_COUNT };
 extern const char *const part_name[PART_COUNT];
 
@@ -43,5 +45,8 @@ struct box {
     vec3 origin, edge[3]; /* m */
 };
 void export_frame_box(struct box *box, const struct packing *packing);
+/* " I J K": the edges to add to the position of body i for the way that it has gone; nothing where the cell is not
+   periodic */
+void export_put_image(FILE *out, const struct packing *p, int64_t i);
 
 #endif

@@ -62,16 +62,20 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
     fprintf(out, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->step,
             p->n);
     put_box(out, p);
-    fprintf(out, "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
-                 "quati quatj quatk quatw\n");
+    fprintf(out,
+            "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
+            "quati quatj quatk quatw%s\n",
+            p->image ? " ix iy iz" : "");
     for (int64_t i = 0; i < p->n; i++) {
         moment_tell(m, i, p->n);
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "%" PRId32 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g %.17g ", p->id[i],
                 p->kind[i] + 1, x.x, x.y, x.z, v.x, v.y, v.z);
-        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", w.x, w.y, w.z,
+        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g", w.x, w.y, w.z,
                 p->radius[i], p->mass[i], q.x, q.y, q.z, q.w);
+        export_put_image(out, p, i);
+        putc('\n', out);
     }
     return 0;
 }

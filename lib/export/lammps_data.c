@@ -63,9 +63,11 @@ static int write_data(FILE *out, const struct export_frame *m, enum part part, b
         double mass, inertia;
         moment_tell(m, i, p->n);
         packing_solid(3, p->radius[i], 1, &mass, &inertia);
-        fprintf(out, "%" PRId64 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g\n", id_of(p, i),
+        fprintf(out, "%" PRId64 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g", id_of(p, i),
                 p->kind[i] + 1, 2 * p->radius[i], p->mass[i] / mass, p->x[i].x, p->x[i].y,
                 p->x[i].z);
+        export_put_image(out, p, i);
+        putc('\n', out);
     }
     fputs("\nVelocities\n\n", out);
     for (int64_t i = 0; i < p->n; i++)

@@ -39,7 +39,9 @@ int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why)
     double *q = sheet_real(s, "orientation", "wxyz", why);
     int32_t *shape = p->shape ? sheet_whole(s, "shape", "", why) : NULL;
     int32_t *group = p->group ? sheet_whole(s, "group", "", why) : NULL;
+    int32_t *image = p->image ? sheet_whole(s, "image", "xyz", why) : NULL;
     if (why->status) return why->status;
+    if (n && image) memcpy(image, p->image, n * sizeof *p->image);
     if (n && group) memcpy(group, p->group, n * sizeof *group);
     if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
     if (n) {

@@ -33,16 +33,18 @@ static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bo
     put_cell(out, p);
     fprintf(out,
             "Properties=species:S:1:pos:R:3:id:I:1:kind:I:1:radius:R:1:mass:R:1:velo:R:3:"
-            "angular_velocity:R:3:orientation:R:4 Step=%" PRId64 " Time=%.17g\n",
-            p->step, p->t);
+            "angular_velocity:R:3:orientation:R:4%s Step=%" PRId64 " Time=%.17g\n",
+            p->image ? ":image:I:3" : "", p->step, p->t);
     for (int64_t i = 0; i < p->n; i++) {
         moment_tell(m, i, p->n);
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "X %.17g %.17g %.17g %" PRId32 " %" PRId32 " %.17g %.17g ", x.x, x.y, x.z,
                 p->id[i], p->kind[i], p->radius[i], p->mass[i]);
-        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", v.x, v.y, v.z,
+        fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g", v.x, v.y, v.z,
                 w.x, w.y, w.z, q.x, q.y, q.z, q.w);
+        export_put_image(out, p, i);
+        putc('\n', out);
     }
     return 0;
 }

@@ -18,7 +18,8 @@ static const struct quantity quantities[] = {
     { "boundary", "1", 1, "number of the boundary; -1: all fixed bodies" },
     { "contacts", "1", 1, "number of contacts with non-zero normal force" },
     { "force", "N", 3, "force of the bodies on the boundary" },
-    { "torque", "N m", 3, "torque of the same about --point" },
+    { "torque", "N m", 3,
+      "torque of the same about --point, rolling and pivoting friction included" },
     { "normal", "N", 1, "sum of normal forces" },
     { "tangential", "N", 1, "sum of the magnitudes of tangential forces" },
     { "name", "name", 1, "name of the boundary" },
@@ -34,12 +35,10 @@ static double name_row(const struct packing *p, int32_t wall)
 
 static void add(struct push *to, const struct snapshot *s, int64_t i, double sign)
 {
-    const struct contact *c = &s->s->c[i];
     const double *r = s->s->found[i].r;
-    vec3 f = v3_scale(sign, branch_force(s->p, s->s, i));
     to->contacts += branch_counts(s->s, i);
-    to->force = v3_add(to->force, f);
-    to->torque = v3_add(to->torque, v3_cross(v3_sub(c->x, s->asked->point), f));
+    to->force = v3_axpy(to->force, sign, branch_force(s->p, s->s, i));
+    to->torque = v3_axpy(to->torque, sign, branch_torque(s->p, s->s, i, s->asked->point));
     to->normal += r[0] / s->p->dt;
     to->tangential += hypot(r[1], r[2]) / s->p->dt;
 }
@@ -89,7 +88,8 @@ static const struct quantity of_names[] = {
     { "name", "name", 1, "name of walls or of parts of walls" },
     { "contacts", "1", 1, "number of contacts with non-zero normal force" },
     { "force", "N", 3, "force of the bodies on everything with this name" },
-    { "torque", "N m", 3, "torque of the same about --point" },
+    { "torque", "N m", 3,
+      "torque of the same about --point, rolling and pivoting friction included" },
     { "normal", "N", 1, "sum of normal forces" },
     { "tangential", "N", 1, "sum of the magnitudes of tangential forces" },
     { 0 },

@@ -53,6 +53,15 @@ static inline vec3 branch_force(const struct packing *p, const struct contacts *
     return v3_scale(1 / p->dt, contact_in_space(&s->c[i], s->found[i].r));
 }
 
+/* N m, in space: on b of contact i about a point, that of rolling and pivoting friction included */
+static inline vec3 branch_torque(const struct packing *p, const struct contacts *s, int64_t i,
+                                 vec3 about)
+{
+    vec3 m = v3_cross(v3_sub(s->c[i].x, about), branch_force(p, s, i));
+    if (!s->moment) return m;
+    return v3_axpy(m, 1 / p->dt, contact_in_space(&s->c[i], s->moment[i]));
+}
+
 /* Does contact i count? Solved: it pushes or pulls; else the bodies touch. And what a tie holds does. */
 static inline bool branch_counts(const struct contacts *s, int64_t i)
 {

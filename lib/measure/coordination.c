@@ -5,11 +5,13 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 static const struct quantity quantities[] = {
     { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
     { "contacts", "1", 1, "number of contacts: of non-zero normal force; if unsolved, touching" },
     { "z", "1", 1, "mean number of contacts per body" },
+    { "neighbours", "1", 1, "mean number of grains and walls that a body touches, each once" },
     { "z_mechanical", "1", 1, "the same of bodies with more than one contact (Thornton 2000)" },
     { "z_without_rattlers", "1", 1,
       "the same of bodies that are not rattlers, without contacts of rattlers" },
@@ -41,6 +43,34 @@ static double mean(const struct snapshot *s, const int32_t *count, int least, in
     return *n ? (double)sum / (double)*n : NAN;
 }
 
+enum { SHIFTS = 64 }; /* images of one body that another touches: more count again */
+
+/* Is the shift of contact c none of shift[n]? */
+static bool is_new(const struct contact *c, int8_t (*shift)[3], int n)
+{
+    for (int k = 0; k < n; k++)
+        if (!memcmp(shift[k], c->shift, sizeof c->shift)) return false;
+    return true;
+}
+
+/* Mean over bodies of those that they touch: faces that lie on each other touch at several places */
+static double neighbours(const struct snapshot *s, int32_t *count)
+{
+    int8_t shift[SHIFTS][3];
+    int64_t bodies;
+    int n = 0;
+    memset(count, 0, (size_t)s->p->n * sizeof *count);
+    for (int64_t i = 0; i < s->s->n; i++) { // contacts of two bodies follow each other
+        const struct contact *c = &s->s->c[i];
+        if (i && (c[-1].a != c->a || c[-1].b != c->b)) n = 0;
+        if (!branch_counts(s->s, i) || !is_new(c, shift, n)) continue;
+        if (n < SHIFTS) memcpy(shift[n++], c->shift, sizeof c->shift);
+        if (c->a >= 0) count[c->a]++;
+        count[c->b]++;
+    }
+    return mean(s, count, 0, &bodies);
+}
+
 static int coordination_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     int64_t bodies, bearing, more, contacts = 0;
@@ -55,9 +85,10 @@ static int coordination_rows(struct table *t, const struct snapshot *s, struct w
     double z = mean(s, count, 0, &bodies), mechanical = mean(s, count, 2, &more);
     if (counts_without_rattlers(count, s, least_contacts(s)))
         why_set(why, EX_SOFTWARE, "no memory to count contacts");
-    double bears = mean(s, count, 1, &bearing);
+    double bears = mean(s, count, 1, &bearing), touched = neighbours(s, count);
     put(&at, (double)bodies), put(&at, (double)contacts);
-    put(&at, z), put(&at, mechanical), put(&at, bears), put(&at, (double)(bodies - bearing));
+    put(&at, z), put(&at, touched), put(&at, mechanical), put(&at, bears),
+        put(&at, (double)(bodies - bearing));
     if (!bodies) table_null(t, "no body that moves is in the region");
     if (!more) table_null(t, "no body has two contacts");
     if (!bearing) table_null(t, "every body is a rattler");

@@ -1,9 +1,8 @@
 /* measure/energies.c: energies, and what a step takes of them. */
 #include "bodies/contact_law.h"
 #include "bodies/top.h"
-#include "measure/branch.h"
 #include "measure/measures.h"
-#include "measure/step_motion.h"
+#include "measure/step_start.h"
 
 #include <math.h>
 
@@ -15,39 +14,38 @@ static const struct quantity quantities[] = {
     { "total", "J", 1, "sum of these four" },
     { "dissipated", "J", 1, "energy dissipated by contacts in their step, without stored energy" },
     { "impact", "J", 1, "part of dissipated by normal velocities" },
-    { "friction", "J", 1, "part of dissipated by tangential velocities" },
+    { "friction", "J", 1,
+      "part of dissipated by tangential velocities and by rolling and pivoting" },
     { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
     { 0 },
 };
 
-/* What contacts take in the step is minus their work on the relative velocity, - r . u, u the mean of
-   those before and after it. */
+/* What contacts take in the step, and what boundaries give, by the motion at each contact [motion/contact_motion.h] */
 static int add_step(double **at, const struct snapshot *s, double *stored, struct why *why)
 {
-    struct step_motion m;
+    struct step_start m;
     double impact = 0, friction = 0, boundaries = 0, kept = 0;
-    if (step_motion_init(&m, s, why)) {
-        step_motion_free(&m);
+    if (step_start_init(&m, s, why)) {
+        step_start_free(&m);
         return why->status;
     }
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
-        const double *r = s->s->found[i].r;
-        double u[3];
+        const double *r = s->s->found[i].r, *moment = s->s->moment ? s->s->moment[i] : NULL;
         int times = region_holds(&s->region, c->x);
-        if (s->s->law && times) {
-            const struct packing *start = s->moved ? &m.other : s->p;
-            struct contact_law_end end = contact_law_end(start, c, &s->s->law[i], &s->s->found[i]);
-            struct contact_law_account a = contact_law_account(start, c, &s->s->law[i], &end);
+        if (!times) continue;
+        if (s->s->law) {
+            struct contact_law_end end = contact_law_end(m.p, c, &s->s->law[i], &s->s->found[i]);
+            struct contact_law_account a = contact_law_account(m.p, c, &s->s->law[i], &end);
             *stored += times * a.stored, kept += times * (a.change + a.broken);
         }
-        step_motion_at(&m, c, u);
-        impact -= times * r[0] * u[0], friction -= times * (r[1] * u[1] + r[2] * u[2]);
-        if (c->a < 0)
-            boundaries += times * v3_dot(contact_in_space(c, r), step_motion_boundary(&m, c));
+        const struct contact_motion motion = contact_motion(m.p, &m.sum, c);
+        const struct contact_loss loss = contact_loss(&motion, c, r, moment);
+        impact += times * loss.impact, friction += times * loss.friction;
+        if (c->a < 0) boundaries -= times * contact_wall_work(&motion, c, r, moment);
     }
     put(at, impact + friction - kept), put(at, impact), put(at, friction), put(at, boundaries);
-    step_motion_free(&m);
+    step_start_free(&m);
     return 0;
 }
 

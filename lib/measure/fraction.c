@@ -1,5 +1,6 @@
 /* measure/fraction.c: how much of the volume is solid. */
 #include "measure/ball_part.h"
+#include "measure/inside.h"
 #include "measure/measures.h"
 
 static const struct quantity quantities[] = {
@@ -15,9 +16,11 @@ static const struct quantity quantities[] = {
 static int fraction_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
-    const struct region *r = &s->region;
+    struct region region = s->region;
+    const struct region *r = &region;
     double solid = 0, *at = table_row(t, why);
-    if (!at) return why->status;
+    if (!at || (!s->asked->boxed && region_inside(&region, p, why) && why->status))
+        return why->status;
     for (int64_t i = 0; i < p->n; i++)
         if (snapshot_body(s, i)) solid += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     if (!(r->volume > 0)) table_null(t, "the region has no volume");

@@ -9,13 +9,16 @@
 #define NUMBERS                                                                                    \
     { "span", "s", 1, "time since the previous frame, or since the sums began" },                  \
         { "force", "N", 3, "mean force of the bodies over the span" },                             \
-        { "torque", "N m", 3, "mean torque about --point over the span" },                         \
+        { "torque", "N m", 3,                                                                      \
+          "mean torque about --point over the span, rolling and pivoting friction included" },     \
         { "normal", "N", 1, "mean of the sum of normal forces" },                                  \
         { "tangential", "N", 1, "mean of the sum of magnitudes of tangential forces" },            \
-        { "area", "m2", 1, "area; null if it is infinite" },                                       \
+        { "area", "m2", 1,                                                                         \
+          "area, of a plane between planes upright to it or across the cell; null if infinite" },  \
         { "pressure", "Pa", 1, "normal over area" },                                               \
         { "power", "W", 1, "mean power of the bodies on the moving wall" },                        \
-        { "friction", "J", 1, "energy dissipated by friction in the span" },                       \
+        { "friction", "J", 1,                                                                      \
+          "energy dissipated by friction in the span, rolling and pivoting friction included" },   \
         { "rub", "J", 1, "sum of normal force times sliding distance in the span" },               \
         { "wear", "m3", 1, "volume worn in the span by Archard's law, coefficient times rub" },
 
@@ -115,7 +118,8 @@ static void explain(struct table *t, const struct look *l)
     }
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
     if (area || wear)
-        table_null(t, "%s%s%s", area ? "infinite walls have no area" : "",
+        table_null(t, "%s%s%s", area ? "a wall without ends has no area, unless it is a plane between "
+                          "others upright to it or across a periodic cell" : "",
                    area && wear ? ", and " : "",
                    wear ? "wear needs a coefficient: --wear, or the key wear of the wall" : "");
 }

@@ -160,7 +160,7 @@ struct scene_kind {
 };
 
 struct scene_law {
-    EVERY_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et, mu_s, v_s */
+    EVERY_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et, mu_s, v_s, inert */
     struct pair_law pair_law;
 };
 

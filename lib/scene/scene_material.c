@@ -10,7 +10,7 @@ int scene_read_law(const jnode *o, struct scene_law *l)
     if (json_node_number(json_node_key(o, key), (most) == 1 ? J_UNIT : J_NOT_NEGATIVE,             \
                          &l->member))                                                              \
         return 1;
-    EVERY_PAIR_COLUMN(READ)
+    EACH_PAIR_NUMBER(READ)
 #undef READ
     if ((l->mu_s > 0) != (l->v_s > 0))
         return json_node_fault(
@@ -68,12 +68,25 @@ int scene_read_kinds(jnode o, struct scene *s, double density)
     return 0;
 }
 
+/* A pair that does not act has no law. */
+static int read_acts(jnode o, struct scene_law *l)
+{
+    bool acts = true;
+    jnode key = json_node_key(&o, "acts");
+    if (json_node_bool(key, &acts)) return 1;
+    if (acts) return 0;
+    if (json_object_size(o.json) > 2 + (json_node_key(&o, "comment").json != NULL))
+        return json_node_fault(o, "a pair with \"acts\": false has no contacts, and no other key");
+    *l = (struct scene_law){ .inert = 1 };
+    return 0;
+}
+
 static int read_pair(jnode o, struct scene *s, bool *given)
 {
     size_t n;
     int32_t k[2] = { 0 };
-    if (json_node_only(
-            o, "pair" EVERY_PAIR_COLUMN(PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
+    if (json_node_only(o, "pair acts" EACH_PAIR_NUMBER(
+                              PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
         json_node_need(&o, "pair"))
         return 1;
     jnode pair = json_node_key(&o, "pair");
@@ -86,7 +99,8 @@ static int read_pair(jnode o, struct scene *s, bool *given)
     int32_t ab = k[0] * s->kinds + k[1], ba = k[1] * s->kinds + k[0];
     if (given[ab]) return json_node_fault(pair, "this pair was given before");
     given[ab] = given[ba] = true;
-    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].pair_law))
+    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].pair_law) ||
+        read_acts(o, &s->law[ab]))
         return 1;
     s->law[ba] = s->law[ab];
     return 0;

@@ -55,7 +55,7 @@ static int read_scene(jnode o, struct scene *s)
     const char *title;
     struct scene_law law = { 0 };
     struct scene_box box = { 0 };
-    if (json_node_only(o, "title dim dt theta gravity seed density" EVERY_PAIR_COLUMN(
+    if (json_node_only(o, "title dim dt theta gravity seed density" EACH_PAIR_NUMBER(
                               PAIR_KEY) " kinds pairs time "
                                         "overlap bodies walls room forces pour remove cell shapes "
                                         "cohesion capillary rolling "

@@ -590,7 +590,7 @@ for _name, _text in {
     "contact_velocity": "[c, 3] m/s: of b relative to a, as it enters the contact law", "contact_status": "[c] 0 free, 1 stick, 2 slide",
     "boundary_position": "[b, 3] m", "boundary_normal": "[b, 3] unit normals or axes", "boundary_velocity": "[b, 3] m/s",
     "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: force of the bodies on the boundary",
-    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position",
+    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position, rolling and pivoting included",
     "cell_origin": "[3] m: of the periodic cell, see cell; [0]: none", "cell_edges": "[3, 3] m: one per row; [0, 3]: none",
     "cell_rates": "[3, 3] m/s: velocities of the edges; [0, 3]: none", "cell_periodic": "[3] 1: periodic along this edge; [0]: none",
 }.items():

@@ -97,12 +97,15 @@ def same_as_numpy(document):
     close(s["coordination"]["z"], count.mean(), 1e-9)
 
 
-def balances(document):
-    """What a step dissipates is what its report says, in every frame."""
+def balances(document, of=""):
+    """What a step dissipates is what its report says, in every frame; of walls: so is what they give."""
     q = h5py.File(document)["nsd/solver"]
     for k, s in enumerate(stat("-m", "energy", document)):
+        if of == "walls":
+            close(s["energy"]["boundaries"], q["work_drives/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
         close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
-        close(s["energy"]["kinetic"] + s["energy"]["rotation"], q["kinetic_energy/value"][k], 1e-9)
+        if of != "edges":  # these have an energy of their own
+            close(s["energy"]["kinetic"] + s["energy"]["rotation"], q["kinetic_energy/value"][k], 1e-9)
         close(s["energy"]["impact"] + s["energy"]["friction"], s["energy"]["dissipated"], 1e-9)
 
 
@@ -169,13 +172,33 @@ def fields(document, made):
     assert left < 0.01, left
 
 
+def inside(document, floor, least, most):
+    """The fraction inside a bed by points at random: in the region that is reported, and in the lower half of the bed."""
+    s, d = stat("-l", "-m", "fraction", document)[-1]["fraction"], h5py.File(document)["particles/all"]
+    x, r = d["position/value"][-1], d["radius"][:]
+    rng = np.random.default_rng(1)
+
+    def solid(lo, hi, n=20000):
+        at = lo + (hi - lo) * rng.random((n, 3))
+        return np.mean([(((x - y) ** 2).sum(1) < r ** 2).any() for y in at])
+    lo, hi, mean = np.array(s["from"]), np.array(s["to"]), 2 * r.mean()
+    assert abs(solid(lo, hi) - s["fraction"]) < 0.012, (solid(lo, hi), s)
+    assert float(least) < s["fraction"] < float(most), s
+    middle = np.median(x, 0)
+    own = [middle - 3 * mean, middle + 3 * mean]
+    own[0][2], own[1][2] = float(floor) + 2 * mean, middle[2] + mean
+    assert abs(solid(*own) - s["fraction"]) < 0.05, (solid(*own), s)
+    assert lo[2] > float(floor) + 1.9 * mean and hi[2] < (x[:, 2] + r).max() - mean, s
+
+
 def tied(document):
     """Pairs in tension count, what ties store is stored and not dissipated, friction has its limit in the push."""
     q = h5py.File(document)["nsd/solver"]
     pulls, used = 0, 0
     for k, s in enumerate(stat("-m", "energy,coordination,friction,normal_forces", document)):
         close(s["energy"]["stored"], q["bond_energy/value"][k], 1e-9)
-        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["bond_change/value"][k]))
+        close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6,
+              abs(q["bond_change/value"][k]) + abs(q["dissipation/value"][k]))
         assert s["friction"]["contacts"] == s["coordination"]["contacts"]
         used = max(used, s["friction"]["mobilised"] or 0)
     d = last(document)

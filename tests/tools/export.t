@@ -63,6 +63,23 @@ nsd-export -o "$tmp/shear.lammpstrj" "$tmp/shear.h5"
 other "a contact's line goes to the image that it is with" vtk images "$tmp/shear.h5" "$tmp/shear"
 other "the cell's lines are its edges" vtk cell "$tmp/shear.h5" "$tmp/shear"
 other "forces are Newton's there, too" vtk newton "$tmp/shear.h5" "$tmp/shear"
+# a body that crosses the borders of an oblique cell several times, both ways: x + sum of image e is x_0 + v t
+jq -n '{ dt: 1e-2, gravity: [0, 0, 0], cell: { edges: [[1, 0, 0], [0.3, 1, 0], [0.2, 0.1, 1]] },
+    bodies: [{ x: [0.5, 0.5, 0.5], radius: 0.1, v: [3.7, -2.9, 1.3] }] }' | nsd-gen - | nsd-step -n 100 --every 25 2>/dev/null -o "$tmp/cross.h5"
+unwrapped() # of "x y z i j k time": how many; whether they are on the straight line; along how many edges the last has crossed a border
+{
+    awk '{ t = $7; x = $1 + $4 + 0.3 * $5 + 0.2 * $6; y = $2 + $5 + 0.1 * $6; z = $3 + $6
+        d = (x - 0.5 - 3.7 * t) ^ 2 + (y - 0.5 + 2.9 * t) ^ 2 + (z - 0.5 - 1.3 * t) ^ 2; if (d > m) m = d; n++; last = ($4 > 1) + ($5 < -1) + ($6 > 0) }
+        END { print n, (m < 1e-24 ? "straight" : m), last }'
+}
+is "tables: images unwrap a path across the borders" \
+    "$(nsd-export --to tsv "$tmp/cross.h5" | awk 'NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i; next } { print $c["x"], $c["y"], $c["z"], $c["image_x"], $c["image_y"], $c["image_z"], $c["time"] }' | unwrapped)" "4 straight 3"
+is "LAMMPS' dump: ix iy iz" "$(nsd-export --to lammps "$tmp/cross.h5" | awk '$2 == "TIMESTEP" { getline; t = $1 / 100 } $2 == "ATOMS" { for (i = 3; i <= NF; i++) c[$i] = i - 2; getline
+    print $c["x"], $c["y"], $c["z"], $c["ix"], $c["iy"], $c["iz"], t }' | unwrapped)" "4 straight 3"
+is "extended XYZ: image" "$(nsd-export --to xyz "$tmp/cross.h5" | awk '/orientation:R:4:image:I:3 / { sub(".*Time=", ""); t = $1; getline; print $2, $3, $4, $(NF - 2), $(NF - 1), $NF, t }' | unwrapped)" "4 straight 3"
+is "LAMMPS' data file: flags, and nsd-gen reads it" "$(nsd-export --last --to data "$tmp/cross.h5" | tee "$tmp/cross.data" | awk '$1 == "Atoms" { getline; getline; print $5, $6, $7, $8, $9, $10, 1 }' | unwrapped
+    nsd-gen --from "$tmp/cross.data" | nsd-info -p | jq -c .radius)" "1 straight 3
+0.1"
 other "ASE reads the cell" ase ase_cell "$tmp/shear.h5" "$tmp/shear.xyz" "$tmp/shear.lammpstrj"
 other "MDAnalysis reads it from the document" MDAnalysis box "$tmp/shear.h5"
 
@@ -83,6 +100,7 @@ ok "a directory has them" cmp "$tmp/shaped/surfaces-00000.vtp" "$tmp/shaped.vtp"
 nsd-export -o "$tmp/out.xyz" "$tmp/out.h5"
 nsd-export -o "$tmp/out.lammpstrj" "$tmp/out.h5"
 other "ASE reads extended XYZ" ase xyz "$tmp/out.xyz" "$tmp/out.h5"
+is "without a periodic cell there are no images" "$(grep -c 'ix iy' "$tmp/out.lammpstrj" || true)" 0
 other "ASE and MDAnalysis read LAMMPS' dump" MDAnalysis lammps "$tmp/out.lammpstrj" "$tmp/out.h5"
 for part in grains contacts; do
     nsd-export -o "$tmp/$part.csv" --part $part "$tmp/out.h5"

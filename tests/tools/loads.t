@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Static and kinetic friction, belts, surfaces of several materials, forces on single bodies in time: closed forms, the
+# Static and kinetic friction, belts, surfaces of several materials, pairs that do not act on each other, forces on single bodies in time: closed forms, the
 # same bytes however a run is made, and scenes that are refused with the cure.
 # shellcheck source=tests/support/tap.sh disable=SC2154,SC2016,SC2317 # tap.sh sets tmp; text for jq; functions called by name
 . tests/support/tap.sh
@@ -113,6 +113,45 @@ jq -n '{ dim: 2, dt: 1e-3, gravity: [0, -10], mu: 0.3, kinds: { ice: {} }, pairs
     walls: [{ polygon: { points: [[0, 0], [4, 0], [8, 0]], closed: false }, materials: [{ faces: [0, 0], kind: "ice" }] }],
     bodies: [{ x: [0.5, 0.1], radius: 0.1, v: [1, 0] }] }' | nsd-gen - | step -n 300 --every 300 >"$tmp/disc.h5"
 ok "in the plane, too: on ice a disc does not begin to roll" near "$(last "$tmp/disc.h5" '.[0].w[2]')" 0 1e-9
+
+# ---- inert pairs: a net that stops gravel and lets sand through ----
+
+net='{ dt: 1e-3, gravity: [0, 0, -10], kinds: { sand: {}, gravel: {}, net: {} }, pairs: [{ pair: ["sand", "net"], acts: false }],
+    walls: [{ rectangle: { center: [0, 0, 1], normal: [0, 0, 1], sides: [2, 2] }, kind: "net" }, { point: [0, 0, -9], normal: [0, 0, 1], kind: "net" }],
+    shapes: { cube: { box: [1, 1, 1] } },
+    bodies: [{ x: [0, 0, 1.2], radius: 0.1, kind: "sand" }, { x: [0.5, 0, 1.2], radius: 0.1, kind: "gravel" }, { x: [-0.5, 0, 1.2], radius: 0.1, kind: "sand", shape: "cube" },
+        { x: [-0.5, 0.5, 1.2], radius: 0.1, kind: "gravel", shape: "cube" }] }'
+jq -n "$net" >"$tmp/net.json"
+nsd-gen "$tmp/net.json" | step -n 1000 --every 1000 -o "$tmp/net.h5"
+is "sand falls through net as if nothing were there, h = g t^2/2; gravel stays" \
+    "$(last "$tmp/net.h5" '[.[] | .x[2] * 1000 | round] | [.[0], .[1], .[2], (.[3] < 1200 and .[3] > 1040)]' | jq -c .)" '[-3800,1100,-3800,true]'
+# two balls that meet, and an image across the border of a periodic cell; without the pair they would rebound or stop
+meet='{ dt: 1e-2, gravity: [0, 0, 0], e_n: 0.5, cell: { lengths: [4, 4, 4] }, kinds: { a: {}, b: {} }, pairs: [{ pair: ["a", "b"], acts: false }],
+    shapes: { cube: { box: [1, 1, 1] } },
+    bodies: [{ x: [1, 2, 2], radius: 0.2, kind: "a", v: [1, 0, 0] }, { x: [2, 2, 2], radius: 0.2, kind: "b", v: [-1, 0, 0] },
+        { x: [0.5, 1, 2], radius: 0.2, kind: "b", v: [-1, 0, 0], shape: "cube" }, { x: [3.5, 1, 2], radius: 0.2, kind: "a", v: [1, 0, 0] }] }'
+speeds() { nsd-gen <(jq -n "$meet | $1") | step "${@:2}" | nsd-info --last -p | jq -sc 'map(.v[0])'; }
+is "inert grains go through one another, across the border of a cell, too" "$(speeds . -n 100)" '[1,-1,-1,1]'
+is "without the key they rebound" "$(speeds 'del(.pairs)' -n 100 | jq -c 'map(. * 1000 | round) | .[:2]')" '[-500,500]'
+is "and fast ones are neither stopped on their ways nor said to go through" \
+    "$(nsd-gen <(jq -n "$meet | .bodies[].v[0] *= 90") | nsd-step -n 3 --log "$tmp/fast.log" 2>"$tmp/err" | nsd-info --last -p | jq -sc 'map(.v[0])') $(grep -c 'NOT\|[1-9][0-9]* went through' "$tmp/err" || true)" '[90,-90,-90,90] 0'
+is "a kind may be inert to itself" "$(speeds '.pairs = [{ pair: ["a", "a"], acts: false }] | .bodies[].kind = "a"' -n 100)" '[1,-1,-1,1]'
+is "bodies of an inert pair may overlap at the start" "$(nsd-gen <(jq -n "$meet | .bodies[1].x[0] = 1.1") | nsd-detect | nsd-info | jq -s 'map(.contacts | select(. != null))' | jq -c .)" '[0]'
+jq -n "$net"' | del(.shapes) | .seed = 4 | .walls += [{ box: { x: [-1, 1], y: [-1, 1], z: [-2, null] }, kind: "wall" }] |
+    .bodies = (["sand", "gravel"] | map({ count: 60, kind: ., radius: 0.1, box: { x: [-1, 1], y: [-1, 1], z: [(if . == "sand" then 1.2 else 2.2 end), null] }, v: [0, 0, -4] }))' >"$tmp/sieve.json"
+ok "inert pairs: the same bytes however the run is made" every_way "$tmp/sieve.json"
+cp "$tmp/net.json" "$tmp/refused.json"
+ok "an inert pair with a law" says '.pairs[0].mu = 0.3' 'no other key'
+if have_h5py; then
+    nsd-gen "$tmp/net.json" | tail -c +513 >"$tmp/net0.h5"
+    is "an inert pair is in the document, both ways" \
+        "$(/usr/bin/python3 -c 'import h5py, sys; print(*map(list, zip(*h5py.File(sys.argv[1])["nsd/material/inert"][:].nonzero())))' "$tmp/net0.h5")" '[2, 4] [4, 2]'
+    for value in 0.5 2 nan; do
+        cp "$tmp/net0.h5" "$tmp/inert.h5"
+        /usr/bin/python3 -c 'import h5py, sys; h5py.File(sys.argv[1], "r+")["nsd/material/inert"][...] = float(sys.argv[2])' "$tmp/inert.h5" "$value"
+        refuses 65 "inert is $value in a document" nsd-info "$tmp/inert.h5"
+    done
+fi
 
 # ---- forces on single bodies ----
 

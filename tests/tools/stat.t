@@ -33,6 +33,19 @@ is "pairs of a square lattice, two to a body in each shell, whatever is across t
 is "of a hexagonal one, three" "$(pairs hexagonal 1 3)" '[300]'
 is "of a cubic one, three to a body, then six" "$(pairs cubic 3 3.3)" '[0,375,750]'
 
+# bricks in a row that closes through the border of a cell: each touches two others by faces, at two places each; a ball in the
+# plane touches at one; two bodies that are each other's neighbours on both sides of a small cell are two neighbours
+row() # BODIES
+{
+    jq -n --argjson n "$1" '{ dim: 2, dt: 1, overlap: true, gravity: [0, 0], shapes: { brick: { polygon: [[-1, -1], [1, -1], [1, 1], [-1, 1]] } },
+        cell: { lengths: [2 * $n * (1 - 1e-9), 9] }, bodies: [range($n) | { x: [2 * . * (1 - 1e-9) + 1, 4.5], shape: "brick", radius: (2 | sqrt) }] }' |
+        nsd-gen - | nsd-detect | nsd-stat -m coordination,fabric,contact_numbers 2>/dev/null
+}
+for n in 2 3 7; do
+    is "$n bricks in a ring: places, and neighbours once" "$(row $n | jq -c '[.contacts, .coordination.z, .coordination.neighbours, .fabric.tensor[0][0]]')" "[$((2 * n)),4,2,1]"
+done
+is "of balls both are one" "$(nsd-stat -m coordination "$tmp/fcc.h5" 2>/dev/null | jq -c '.coordination | [.z, .neighbours]')" '[12,12]'
+
 # ---- forces ----
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
@@ -47,6 +60,25 @@ jq '.walls[0].drives = [{ along: [0, 0, 1], amplitude: 5e-4, frequency: 20 }] | 
 ok "also where boundaries move" truth balances "$tmp/shaken.h5"
 step -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
 ok "and where a cell's edges do" truth balances "$tmp/shear.h5"
+# belts, drives, rolling and pivoting friction, grains of all shapes, walls that a load moves or a room; a cell whose rates change
+jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes: { block: { box: [2, 1, 1] } },
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], belt: [0.4, 0, 0], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 3 }] },
+        { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.3 }, drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: -2 }] }],
+    bodies: [{ count: 20, radius: 0.005, box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.001, 0.02] } },
+        { count: 10, radius: 0.006, shape: "block", orientation: "random", box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.02, 0.05] } }] }' >"$tmp/works.json"
+nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap keep --eps 1e-8 -o "$tmp/works.h5"
+ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
+nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --eps 1e-8 -o "$tmp/works.h5"
+ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
+step -n 120 --sums --eps 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
+opposite() { jq -ne --argjson a "$1" --argjson b "$2" '(($a + $b) | fabs) < 1e-9 * ($b | fabs) and $b != 0'; }
+ok "the sums of the walls have the work of all steps" opposite \
+    "$(nsd-stat --last -m sums "$tmp/works.h5" 2>/dev/null | jq '.sums | (.power | add) * .span[0]')" \
+    "$(nsd-info "$tmp/works.h5" 2>/dev/null | jq -s 'map(.balance.drives // 0) | add')"
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, cell: { lengths: [1, 1], stress: { pressure: 1000, mass: 20 } },
+    bodies: [{ count: 60, radius: { uniform: [0.03, 0.05] }, box: { x: [0, 1], y: [0, 1] } }] }' | nsd-gen - |
+    step -n 150 --every 30 --contacts --overlap keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
+ok "and a cell that yields to a stress" truth balances "$tmp/servo.h5" edges
 if [ -z "${NSD_THIN-}" ]; then
     nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"
@@ -114,6 +146,19 @@ ok "three balls have crossed a plane" truth flow "$tmp/row.h5" 3
 jq -n '{ dt: 1, bodies: [range(20) | { x: [3 * ., 0, (if . < 10 then 1 else 5 end)], radius: (if . < 10 then 0.5 else 1 end) }] }' |
     nsd-gen - >"$tmp/sorted.h5"
 ok "large ones above small ones" truth sorted_by_size "$tmp/sorted.h5"
+
+# ---- the solid fraction inside a bed: no more than that of a block when the box around is empty above ----
+
+jq -n '{ dt: 1e-3, walls: [{ box: { x: [0, 20], y: [0, 20], z: [0, null] } }], overlap: true,
+    bodies: [(range(10) as $i | range(10) as $j | range(8) as $k | { x: ([$i, $j, $k] | map(2 * . + 1)), radius: 1 }), { x: [10, 10, 60], radius: 1 }] }' |
+    nsd-gen - | nsd-detect >"$tmp/block.h5"
+ok "the fraction inside a block of 800 balls with one far above is pi/6" truth inside "$tmp/block.h5" 0 0.50 0.55
+if [ -z "${NSD_THIN-}" ]; then
+    ok "and inside a bed at rest that of random points" truth inside "$tmp/pile.h5" 0 0.55 0.66
+fi
+status 65 "a name that is not in a document is refused before contacts are missed" nsd-stat -m names --only NOSUCH <(nsd-gen 5)
+like "with the names that are" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"
+is "--box is taken as it is" "$(nsd-stat -l -m fraction -b 0,20,0,20,0,16 "$tmp/block.h5" 2>/dev/null | jq '.fraction.fraction * 6 / 3.141592653589793 - 1 | fabs < 1e-9')" true
 
 # ---- pipes and tables ----
 

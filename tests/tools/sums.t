@@ -45,6 +45,37 @@ jq -n "$block | .bodies[0].v = [0, 0, 0] | .walls[0].velocity = [1, 0, 0]" | nsd
 ok "a belt: what friction takes" near "$(jq '.friction[0]' "$tmp/belt")" 8 1e-6
 ok "and its work, by which it is braked" near "$(jq '.power[0] * .span[0]' "$tmp/belt")" -16 1e-6
 
+jq -n "$block | .bodies[0].v = [0, 0, 0] | .walls[0].belt = [1, 0, 0]" | nsd-gen - | step -n 2500 --every 2500 --eps 1e-10 |
+    stat -m sums | jq -c .sums >"$tmp/running"
+is "the key belt in place of the wall's velocity: all numbers are the same" \
+    "$(jq -sc 'map([.friction, .rub, .wear, .power, .normal, .tangential] | map(.[0])) | transpose | all(.[]; ((.[0] - .[1]) | fabs) < 1e-9 * (.[0] | fabs))' "$tmp/belt" "$tmp/running")" true
+# a roller of belts: the belt along x turns with its wall; a block at rest on the axis feels both
+jq -n "$block | .bodies[0].v = [1, 0, 0] | .walls[0].belt = [1, 0, 0] | .walls[0].velocity = [0.5, 0, 0]" | nsd-gen - |
+    step -n 2500 --every 2500 --eps 1e-10 | stat -m sums | jq -c .sums >"$tmp/both"
+ok "a belt on a moving wall: their velocities add up, friction takes m (1.5 - 1)^2/2" near "$(jq '.friction[0]' "$tmp/both")" 2 1e-6
+
+# ---- moments: a ball on the axis of a turntable of 5 rad/s, spun up by pivoting friction, N mu_p = 4 pi/3 1e-9 N m ----
+
+jq -n '{ dt: 1e-3, gravity: [0, 0, -10], density: 1000, mu: 0.5, e_n: 0, rolling: { mu_p: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }],
+    walls: [{ name: "table", point: [0, 0, 0], normal: [0, 0, 1], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 5 }] }] }' >"$tmp/table.json"
+nsd-gen "$tmp/table.json" | step -n 100 --every 50 --contacts --eps 1e-12 -o "$tmp/table.h5"
+nsd-stat --last -m sums,boundaries,names,energy "$tmp/table.h5" 2>/dev/null >"$tmp/table"
+moment=$(jq -n '1e-4 * 10 * 1000 * 4 / 3 * 3.141592653589793 * 1e-6')
+for m in sums boundaries names; do
+    ok "pivoting friction: torque by $m" near "$(jq ".$m.torque[0][2]" "$tmp/table")" "-$moment" 1e-9
+done
+ok "power is torque times angular velocity" near "$(jq '.sums.power[0]' "$tmp/table")" "$(jq -n "-5 * $moment")" 1e-9
+# the spin of the ball is w = M t/I, so that friction takes M (5 t - w t/2) in the time t
+ok "friction takes the moment times the difference of the spins" near "$(jq '.sums.friction[0]' "$tmp/table")" \
+    "$(jq -n "$moment as \$M | (4e-6 / 3 * 3.141592653589793 * 1000 * 0.4 * 1e-4) as \$I | \$M * 0.1 * (5 - \$M * 0.05 / \$I)")" 1e-9
+ok "energy: boundaries give moment times spin times dt" near "$(jq '.energy.boundaries' "$tmp/table")" "$(jq -n "5e-3 * $moment")" 1e-9
+if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
+    ok "and the same torque in a program" env PYTHONPATH=python NSD_LIBRARY="$PWD/build/libnsd.so" /usr/bin/python3 -c 'import nsd, sys
+r = nsd.Run.from_scene(open(sys.argv[1]).read())
+r.step(20)
+assert abs(r.boundary_torque[0][2] / -float(sys.argv[2]) - 1) < 1e-6, r.boundary_torque' "$tmp/table.json" "$moment"
+fi
+
 # ---- a heap: the walls carry its weight; spans of one step are the forces of its contacts ----
 
 nsd-gen 50 | step -n 1500 --every 100 --contacts --eps 1e-8 -o "$tmp/heap.h5"
@@ -57,6 +88,17 @@ is "the sums of one step are the forces of its contacts" \
     "$(stat -m boundaries,sums "$tmp/each.h5" | jq -s 'all(.[1:][]; [.boundaries.force, .sums.force] | transpose | all(.[]; [.[0], .[1]] | transpose | all(.[]; (.[0] - .[1]) | fabs < 1e-9)))')" true
 is "and their normal forces" \
     "$(stat -m boundaries,sums "$tmp/each.h5" | jq -s 'all(.[1:][]; [.boundaries.normal, .sums.normal] | transpose | all(.[]; (.[0] - .[1]) | fabs < 1e-9))')" true
+
+# a plane between planes upright to it, or across a periodic cell, has a face; the sides of an open box have none
+jq -n '{ dt: 1e-3, walls: [{ box: { x: [0, 0.3], y: [0, 0.2], z: [0, null] } }], bodies: [{ x: [0.1, 0.1, 0.05], radius: 0.05 }] }' >"$tmp/box.json"
+nsd-gen "$tmp/box.json" | step -n 20 --every 20 --eps 1e-12 -o "$tmp/box.h5"
+stat --last -m sums "$tmp/box.h5" | jq -c '.sums + { why: (.why.sums // "") }' >"$tmp/box"
+is "the area of a floor is that between the sides, which end nowhere above" \
+    "$(jq -c '[.area | map(. != null)] | .[0] | sort' "$tmp/box") $(jq '.area | add * 1e9 | round' "$tmp/box")" "[false,false,false,false,true] 60000000"
+ok "its pressure the weight over it" near "$(jq '.pressure | add' "$tmp/box")" "$(nsd-info -p "$tmp/box.h5" | jq -s '.[0].mass * 9.81 / 0.06')" 1e-9
+like "and why the others have none" "$(jq -r .why "$tmp/box")" 'without ends has no area'
+nsd-gen <(jq '.walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }] | .cell = { lengths: [0.3, 0.2, 1], repeats: [true, true, false] }' "$tmp/box.json") | step -n 20 --every 20 --eps 1e-12 -o "$tmp/box.h5"
+ok "across a periodic cell" near "$(stat --last -m sums "$tmp/box.h5" | jq '.sums.area[0]')" 0.06 1e-12
 
 # ---- a drum: its power is torque by angular velocity; the balances have the same work ----
 

@@ -265,4 +265,41 @@ done
 status 0 "a box in the plane has four numbers" nsd-view --box 0,1,0,1 "$tmp/discs.h5"
 refuses 64 "in space it has six" nsd-view --box 0,1,0,1 "$tmp/ball.h5"
 
+# ---- gravity points down, and far walls leave the picture to the grains ----
+
+# a scene, and the same turned with its gravity
+stand() # GRAVITY POINT: what becomes of [x, y, z]
+{
+    jq -n "def at: $2; { dt: 1e-3, dim: ($1 | length), gravity: $1,
+        walls: [{ point: ([0, 0, 0] | at), normal: ([0, 0, 1] | at) }, { rectangle: { center: ([0, 0, 90] | at), normal: ([0, 0, 1] | at), sides: [9, 9] } }],
+        bodies: [{ x: ([0, 0, 0.1] | at), radius: 0.1 }, { x: ([0.5, 0.2, 0.2] | at), radius: 0.2 }, { x: ([0.1, 0, 0.5] | at), radius: 0.1 }] } |
+        if .dim == 2 then del(.walls[1]) else . end" | nsd-gen -
+}
+stand '[0, -9.81]' '[.[0], .[2]]' >"$tmp/down.h5"
+stand '[9.81, 0]' '[-.[2], .[0]]' >"$tmp/turned.h5"
+stand '[0, 9.81]' '[-.[0], -.[2]]' >"$tmp/over.h5"
+view --plain "$tmp/down.h5" >"$tmp/down.png"
+for other in turned over; do
+    ok "in the plane gravity points down in a picture: $other" cmp "$tmp/down.png" <(view --plain "$tmp/$other.h5")
+done
+ok "--up turns it to another picture" differs "$tmp/down.png" <(view --plain --up 0,1 "$tmp/turned.h5")
+ok "and back" cmp "$tmp/down.png" <(view --plain --up -3,0 "$tmp/turned.h5")
+ok "an SVG, too" cmp <(view --svg --plain "$tmp/down.h5") <(view --svg --plain "$tmp/over.h5")
+stand '[0, 0, -9.81]' . >"$tmp/down.h5"
+stand '[0, 0, 9.81]' '[.[0], -.[1], -.[2]]' >"$tmp/over.h5"
+stand '[9.81, 0, 0]' '[-.[2], .[1], .[0]]' >"$tmp/turned.h5"
+view --plain "$tmp/down.h5" >"$tmp/down.png"
+ok "in space gravity points down in a picture" cmp "$tmp/down.png" <(view --plain "$tmp/over.h5")
+# the rows and columns that coloured grains fill, above the legend
+grains='[[f(k) for f in (min, max) for k in [[(x, y)[j] for x in range(w) for y in range(h - 100) if max(at(x, y)) - min(at(x, y)) > 40]]] for j in (0, 1)]'
+/usr/bin/python3 -c '' 2>/dev/null && python "$tmp/down.png" "print($grains, file=open('$tmp/grains', 'w')) or 1"
+picture "also when it points along x" <(view --plain "$tmp/turned.h5") "all(abs(a - b) <= 2 for c, d in zip($grains, $(cat "$tmp/grains")) for a, b in zip(c, d))"
+picture "a wall that is far away does not make the grains small" "$tmp/down.png" "$(cat "$tmp/grains")[1][1] - $(cat "$tmp/grains")[1][0] > 60"
+picture "except with --strays" <(view --plain --strays "$tmp/down.h5") "(lambda g: g[1][1] - g[1][0] < 10)($grains)"
+for option in '--up 1' '--up 0,0' '--up 0,0,0' '--up x,y' '--up 1,2,3,4'; do
+    # shellcheck disable=SC2086 # words
+    refuses 64 "nsd-view $option" nsd-view $option "$tmp/down.h5"
+done
+refuses 64 "discs have no z" nsd-view --up 0,0,1 "$tmp/discs.h5"
+
 done_testing

@@ -606,6 +606,10 @@ function plot() {
 
 /* ---- the eye ---- */
 
+/* From y, in space z, to what is up: against gravity */
+const tilt = new T.Quaternion();
+if (meta.up) tilt.setFromUnitVectors(new T.Vector3(0, flat ? 1 : 0, flat ? 0 : 1), new T.Vector3(...meta.up));
+
 function camera() {
   const d = Math.PI / 180, ce = Math.cos(eye.elevation * d), se = Math.sin(eye.elevation * d);
   const toward = flat ? new T.Vector3(Math.sin(eye.azimuth * d) * ce, se, Math.cos(eye.azimuth * d) * ce)
@@ -613,7 +617,8 @@ function camera() {
   const cam = by_id('perspective').checked && !flat ? perspective : straight;
   const aspect = canvas.clientWidth / Math.max(canvas.clientHeight, 1), half = eye.away * Math.tan(17.5 * d);
   uniforms.ortho.value = cam === straight;
-  cam.up.set(0, flat ? 1 : 0, flat ? 0 : 1);
+  toward.applyQuaternion(tilt);
+  cam.up.set(0, flat ? 1 : 0, flat ? 0 : 1).applyQuaternion(tilt);
   cam.position.copy(eye.to).addScaledVector(toward, eye.away);
   cam.lookAt(eye.to);
   if (cam === perspective) {
