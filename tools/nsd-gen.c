@@ -6,6 +6,7 @@
 #include "import/scene_file.h"
 #include "io/writer.h"
 #include "scene/scene_build.h"
+#include "scene/scene_carry.h"
 #include "scene/scene_height.h"
 #include "scene/time_step.h"
 
@@ -147,6 +148,37 @@ static void say_fit(const struct scene_fit *f)
     warn("%s", why.text);
 }
 
+/* As a reason, for the name is out of a scene */
+static void say_one_lost(const char *file, const char *what)
+{
+    struct why why = { 0 };
+    why_set(&why, EX_DATAERR, "warning: %s: %s", file, what);
+    warn("%s", why.text);
+}
+
+static void say_lost(const struct scene_lost *lost)
+{
+    char text[160];
+    snprintf(text, sizeof text,
+             "%lld bonds or liquid bridges are lost: the scene has no law for these pairs, or "
+             "other walls",
+             (long long)lost->bonds);
+    if (lost->bonds > 0) say_one_lost(lost->file, text);
+    if (lost->sums) say_one_lost(lost->file, "the sums of its walls begin anew");
+    if (lost->forces)
+        say_one_lost(lost->file,
+                     "the lasting forces of a program are lost: it has to set them again");
+    if (lost->poured)
+        say_one_lost(lost->file, "the pours begin anew: \"poured\" continues them, as nsd-info "
+                                 "--scene prints it");
+    if (lost->steered)
+        say_one_lost(lost->file,
+                     "a program changed gravity, friction or the motion of walls there: "
+                     "here they are the scene's");
+    snprintf(text, sizeof text, "dt, \"auto\", is chosen anew: it was %g s", lost->dt);
+    if (lost->dt > 0) say_one_lost(lost->file, text);
+}
+
 /* ---- what suits a scene ---- */
 
 static json_t *limits_json(const struct time_step *t)
@@ -274,6 +306,8 @@ int tool_main(int argc, char **argv)
     for (int32_t k = 0; k < scene.meshes; k++) say_left_out(&scene.mesh_file[k]);
     for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    const struct scene_lost lost = scene_lost(&frame.packing, &scene);
+    if (lost.file) say_lost(&lost);
     if (check)
         tell(&scene, &frame.packing);
     else if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
