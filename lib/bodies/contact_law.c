@@ -2,6 +2,7 @@
 #include "bodies/contact_law.h"
 
 #include "bodies/anchor.h"
+#include "bodies/attraction.h"
 #include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
@@ -63,12 +64,6 @@ static vec3 turn_along(vec3 from, vec3 to, vec3 x)
     return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
 }
 
-/* What a pair shares among the places where it meets; of balls, one each */
-struct places {
-    double touching, tied; /* that touch; that cohesion or liquid holds */
-    bool broken;           /* a bond of the pair has broken, and it has not parted since */
-};
-
 bool contact_laws_bond(const struct packing *p, const struct pair_law *l)
 {
     const double end = p->t + p->dt, rounding = 4 * DBL_EPSILON; // of times, relative
@@ -90,7 +85,7 @@ static bool is_due(const struct packing *p, const struct contact *c, const struc
 
 /* Beta and the jump of a bond that there is, or that is made in this step */
 static void set_bond(struct contact_law *t, const struct packing *p, struct contact *c,
-                     const struct bond *old, const struct places *of)
+                     const struct bond *old, const struct attraction *of)
 {
     const struct pair_law *l = law_of(p, c);
     const bool due = is_due(p, c, old, of->broken);
@@ -104,7 +99,7 @@ static void set_bond(struct contact_law *t, const struct packing *p, struct cont
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
     }
     if (!(t->beta > 0)) return;
-    double area = old && bond_anchored(old) ? old->area : contact_laws_area(p, c) / of->touching;
+    double area = old && bond_anchored(old) ? old->area : contact_laws_area(p, c) / of->bonds;
     double S = area * t->beta * t->beta;
     t->stiff[0] = S * l->cn, t->stiff[1] = S * l->ct;
 }
@@ -142,7 +137,7 @@ static bool is_wet(const struct packing *p, const struct contact *c, const struc
 }
 
 static void set_tie(struct contact_law *t, const struct packing *p, struct contact *c,
-                    const struct bond *old, const struct places *of)
+                    const struct bond *old, const struct attraction *of)
 {
     const struct pair_law *l = law_of(p, c);
     bool wet = is_wet(p, c, l, old);
@@ -151,7 +146,7 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
     if (wet)
         t->state |=
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
-    t->pull = whole_pull(p, c, l, wet) / of->tied;
+    t->pull = whole_pull(p, c, l, wet) / of->among;
     if (pair_law_adheres(l)) set_bond(t, p, c, old, of);
     if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
@@ -164,42 +159,44 @@ static bool is_of_pair(const struct contact *c, const struct contact *d)
     return c->a == d->a && c->b == d->b;
 }
 
-/* The end of the contacts of one pair that begin at `first` */
-static int64_t end_of_pair(const struct contacts *s, int64_t first)
+/* Is the bond of a pair that comes before the contact's? */
+static bool comes_before(const struct bond *x, const struct contact *c)
 {
-    int64_t i = first + 1;
-    while (i < s->n && is_of_pair(&s->c[i], &s->c[first])) i++;
-    return i;
+    return x->a < c->a || (x->a == c->a && x->b < c->b);
 }
 
-/* Of the contacts first .. end-1 of a pair of which one is no ball; from: as of bonds_find() */
-static struct places count_places(const struct contacts *s, const struct packing *p, int64_t first,
-                                  int64_t end, int64_t from)
+/* What of contact c counts where it shares with others; pair: where the bonds of its pair begin */
+static struct attraction attraction_of(const struct packing *p, const struct contact *c,
+                                       const struct bond *old, int64_t pair)
 {
-    struct places of = { 0, 0, bonds_broken(&p->bonds, s->c[first].a, s->c[first].b, from) };
-    for (int64_t i = first; i < end; i++) {
-        const struct contact *c = &s->c[i];
-        const struct pair_law *l = law_of(p, c);
-        const struct bond *old = bonds_find(&p->bonds, c, &from);
-        of.touching += c->gap <= contact_laws_touch(p, c) && !(old && bond_anchored(old));
-        of.tied += whole_pull(p, c, l, is_wet(p, c, l, old)) > 0;
-    }
-    of.touching = fmax(of.touching, 1), of.tied = fmax(of.tied, 1);
-    return of;
+    const struct pair_law *l = law_of(p, c);
+    const bool shaped = contact_shaped(p, c), anchored = old && bond_anchored(old);
+    struct attraction t = { .tied = whole_pull(p, c, l, is_wet(p, c, l, old)) > 0 };
+    if (shaped) t.broken = bonds_broken(&p->bonds, c->a, c->b, pair);
+    if (!pair_law_adheres(l) || anchored) return t;
+    t.bonded = c->gap <= contact_laws_touch(p, c) && (shaped || is_due(p, c, old, false));
+    t.bonded = t.bonded || (!shaped && old && old->beta > 0);
+    return t;
 }
 
 int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why)
 {
-    int64_t from = 0;
-    if (contacts_alloc_laws(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
-    for (int64_t i = 0, end; i < s->n; i = end) {
-        struct places of = { 1, 1, false };
-        end = contact_shaped(p, &s->c[i]) ? end_of_pair(s, i) : i + 1;
-        if (contact_shaped(p, &s->c[i])) of = count_places(s, p, i, end, from);
-        for (int64_t k = i; k < end; k++)
-            set_tie(&s->law[k], p, &s->c[k], bonds_find(&p->bonds, &s->c[k], &from), &of);
+    struct attraction *of = malloc(((size_t)s->n + 1) * sizeof *of);
+    if (!of || contacts_alloc_laws(s)) {
+        free(of);
+        return why_set(why, EX_SOFTWARE, "no memory for the ties");
     }
-    return 0;
+    for (int64_t i = 0, pair = 0, from = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        while (pair < p->bonds.n && comes_before(&p->bonds.bond[pair], c)) pair++;
+        of[i] = attraction_of(p, c, bonds_find(&p->bonds, c, &from), pair);
+    }
+    int64_t from = 0;
+    if (!attraction_share(of, s, p, why))
+        for (int64_t i = 0; i < s->n; i++)
+            set_tie(&s->law[i], p, &s->c[i], bonds_find(&p->bonds, &s->c[i], &from), &of[i]);
+    free(of);
+    return why->status;
 }
 
 /* ---- over the step ---- */
@@ -246,8 +243,8 @@ static double cohesion_energy(const struct packing *p, const struct contact *c,
 static double share_of(const struct packing *p, const struct contact *c, const struct pair_law *l,
                        const struct contact_law *t)
 {
-    if (!(t->pull > 0) || !contact_shaped(p, c)) return 1;
-    return t->pull / whole_pull(p, c, l, t->state & CONTACT_LAW_WET);
+    double whole = whole_pull(p, c, l, t->state & CONTACT_LAW_WET);
+    return whole > 0 ? t->pull / whole : 1;
 }
 
 /* J: of the bond, were its beta still the one it began with */
@@ -336,12 +333,6 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
 static int32_t lesser(int32_t x, int32_t y)
 {
     return x < y ? x : y;
-}
-
-/* Is the bond of a pair that comes before the contact's? */
-static bool comes_before(const struct bond *x, const struct contact *c)
-{
-    return x->a < c->a || (x->a == c->a && x->b < c->b);
 }
 
 /* Has the contact's pair bond i of these? */
