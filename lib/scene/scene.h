@@ -213,7 +213,6 @@ struct scene_bodies {
     int32_t kind;
     int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
-    struct passage poured; /* what it has brought before the scene begins */
 };
 
 /* Where grains come in: one after another, each at a place drawn in the opening */
