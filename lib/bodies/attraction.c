@@ -331,8 +331,43 @@ static void share_pull(const struct run *y, struct attraction *of, int64_t i)
     share_face(&f, of);
 }
 
+/* Does wall w pass through x (m), to `near`, for a body of this radius? */
+static bool passes(const struct packing *p, int32_t w, vec3 x, double radius, double near)
+{
+    const struct wall *wall = &p->wall[w];
+    if (wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_MESH) return false;
+    const struct pose pose = wall_pose(p, wall, p->t + step_ahead(p));
+    struct touch t;
+    vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), wall->x);
+    return boundary_nearest(wall, p->dim, c, radius, &t) && fabs(t.distance) <= near;
+}
+
+/* Is hold i with the end of a wall where another wall goes on, which has a place nearer to the body? */
+static bool is_seam(const struct run *y, const struct attraction *of, int64_t i)
+{
+    const struct hold *h = &y->hold[i];
+    const struct contact *c = &y->s->c[h->i];
+    bool seam = false;
+    for (int64_t k = 0; c->a < 0 && k < y->n && !seam; k++) {
+        const struct contact *d = &y->s->c[y->hold[k].i];
+        const double near = fmax(h->flush, y->hold[k].flush);
+        if (d->a >= 0 || d->a == c->a || !of[y->hold[k].i].tied || d->gap >= c->gap) continue;
+        seam = !in_one_plane(h, &y->hold[k]) &&
+               passes(y->p, -1 - d->a, h->x, y->p->radius[h->body], near);
+    }
+    return seam;
+}
+
 static void share_run(const struct run *y, struct attraction *of)
 {
+    for (int64_t i = 0; i < y->n; i++) {
+        struct attraction *t = &of[y->hold[i].i];
+        if (t->tied && is_seam(y, of, i)) t->among = INFINITY;
+    }
+    for (int64_t i = 0; i < y->n; i++) {
+        struct attraction *t = &of[y->hold[i].i];
+        if (isinf(t->among)) t->tied = false;
+    }
     for (int64_t i = 0; i < y->n; i++) {
         struct attraction *t = &of[y->hold[i].i];
         if (t->tied && t->among == 0) share_pull(y, of, i);

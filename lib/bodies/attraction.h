@@ -2,7 +2,8 @@
  * bodies/attraction.h: how the places where bodies attract each other share the force of cohesion and liquid.
  *
  * A pair attracts once, at however many places it meets. Walls and fixed bodies side by side in one plane are parts of one
- * surface [detect/seam.h], which attracts a body once. Where all places of a pair are in one plane, the resultant of
+ * surface [detect/seam.h], which attracts a body once, and so do curved walls that end in one another: where a wall ends
+ * on a nearer one it does not attract. Where all places of a pair are in one plane, the resultant of
  * the force is at the centre of the face where the bodies meet: the centroid of the polygon that the places span or, where
  * detection has left four of more corners [geometry/meet.h], of the two faces' common part. Among the shares that have
  * it there they are the most even.

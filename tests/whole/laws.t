@@ -195,6 +195,10 @@ for x in 0 1e-5 0.02; do
         attracts "two segments" 7.7 "{ dim: 2, gravity: [0, 0], $c, walls: [{ segment: [[0, 0], [1, 0]] }, { segment: [[-1, 0], [0, 0]] }], bodies: [{ x: [$x, -0.05], radius: 0.05 }] }"
     done
 done
+for a in 0 1e-5 0.01; do
+    attracts "two half circles that meet $a rad beside a disc" 7.7 "{ dim: 2, gravity: [0, 0], cohesion: { force: 7.7, range: 0.01 },
+        walls: [1, -1 | { arc: { center: [0, 0], radius: 1, along: [., 0], arc: 3.141592653589793 } }], bodies: [{ x: [0.9 * ($a | cos), 0.9 * ($a | sin)], radius: 0.1 }] }"
+done
 attracts "a box across four rectangles" 7.7 "{ cohesion: { force: 7.7 }, $four, shapes: { b: { box: [0.2, 0.3, 0.1] } }, bodies: [{ x: [0.02, 0.03, 0.05], shape: \"b\" }] }"
 attracts "the corner of three planes" 23.1 '{ cohesion: { force: 7.7 }, walls: [{ rectangle: { center: [0.5, 0.5, 0], normal: [0, 0, 1], sides: [1, 1] } },
     { rectangle: { center: [0.5, 0, 0.5], normal: [0, 1, 0], sides: [1, 1] } }, { rectangle: { center: [0, 0.5, 0.5], normal: [1, 0, 0], sides: [1, 1] } }], bodies: [{ x: [0.05, 0.05, 0.05], radius: 0.05 }] }'
