@@ -164,18 +164,19 @@ static void say_lost(const struct scene_lost *lost)
              "other walls",
              (long long)lost->bonds);
     if (lost->bonds > 0) say_one_lost(lost->file, text);
-    if (lost->sums) say_one_lost(lost->file, "the sums of its walls begin anew");
+    if (lost->sums) say_one_lost(lost->file, "the sums of its walls begin again from 0");
     if (lost->forces)
         say_one_lost(lost->file,
                      "the lasting forces of a program are lost: it has to set them again");
     if (lost->poured)
-        say_one_lost(lost->file, "the pours begin anew: \"poured\" continues them, as nsd-info "
-                                 "--scene prints it");
+        say_one_lost(lost->file,
+                     "the pours begin again from 0: \"poured\" continues them, as nsd-info "
+                     "--scene prints it");
     if (lost->steered)
         say_one_lost(lost->file,
                      "a program changed gravity, friction or the motion of walls there: "
                      "here they are the scene's");
-    snprintf(text, sizeof text, "dt, \"auto\", is chosen anew: it was %g s", lost->dt);
+    snprintf(text, sizeof text, "dt, \"auto\", is chosen again: it was %g s", lost->dt);
     if (lost->dt > 0) say_one_lost(lost->file, text);
 }
 

@@ -22,9 +22,9 @@ struct scene_lost {
     int64_t bonds; /* bonds and bridges without a law, or with walls that the scene does not have */
     bool sums;     /* of walls */
     bool forces;   /* that last */
-    bool poured;   /* what pours have brought: they begin anew */
+    bool poured;   /* what pours have brought: they begin again from 0 */
     bool steered;  /* a program has changed gravity, friction or the motion of walls */
-    double dt;     /* s: of the run, where the scene's is chosen anew; 0: it is not */
+    double dt;     /* s: of the run, where the scene's is chosen again; 0: it is not */
 };
 struct scene_lost scene_lost(const struct packing *p, const struct scene *s);
 

@@ -124,7 +124,7 @@ is "a pour continued by its scene brings the grains that are left, as it would" 
     "$(nsd-info --last -p "$tmp/on.h5" | jq -sc 'map([.id, .radius])')"
 is "which are 60, and nothing is said" "$(nsd-info --last "$tmp/by_scene.h5" | jq .bodies) $(cat "$tmp/err")" "60 "
 nsd-info --scene "$tmp/half.h5" | jq 'del(.pour[0].poured)' | nsd-gen - 2>"$tmp/err" >/dev/null
-like "a pour that begins anew is reported" "$(cat "$tmp/err")" "half.h5: the pours begin anew"
+like "a pour that begins again is reported" "$(cat "$tmp/err")" "half.h5: the pours begin again from 0"
 # a document's names come after the scene's: the rows are others
 jq -n --arg d "$tmp/named_half.h5" '{ dt: 5e-4, walls: [{ point: [0, 0, 0], normal: [0, 0, 1], name: "floor" }],
     bodies: [{ document: $d }], remove: [{ name: "new" }, { name: "old" }] }' >"$tmp/taken.json"
