@@ -20,10 +20,10 @@ static bool same_wall(const struct packing *p, const struct scene *s, const stru
 {
     if (k >= p->walls || k >= from->walls) return false;
     const struct wall *w = &p->wall[k], *v = &from->wall[k];
-    bool place = !s->has_walls || same_vec(w->x, v->x);
-    return place && same_vec(w->n, v->n) && same_vec(w->along, v->along) &&
-           !memcmp(w->size, v->size, sizeof w->size) && w->arc == v->arc && w->shape == v->shape &&
-           w->side == v->side && w->elements == v->elements;
+    bool same = !s->has_walls || same_vec(w->x, v->x);
+    for (int i = 0; i < 3; i++) same = same && w->size[i] == v->size[i];
+    return same && same_vec(w->n, v->n) && same_vec(w->along, v->along) && w->arc == v->arc &&
+           w->shape == v->shape && w->side == v->side && w->elements == v->elements;
 }
 
 static bool same_walls(const struct packing *p, const struct scene *s, const struct packing *from)

@@ -212,7 +212,7 @@ like "a ball hangs from a bond to four rectangles as from one to a plane" "$(jq 
 
 # the face of a prism is where its centre of mass is: the resultant goes through that, from any surface below
 while read -r sides corners; do
-    prism=$(jq -nc "{ p: { points: [range(2) as \$z | $corners[] | . + [2 * \$z]] }, b: { box: [40, 40, 1] } }")
+    prism=$(jq -nc "{ p: { points: [range(2) as \$z | ${corners}[] | . + [2 * \$z]] }, b: { box: [40, 40, 1] } }")
     while IFS='|' read -r what below; do
         like "a prism of $sides sides on $what: the resultant is at the centre of its face" \
             "$(jq -n "{ dt: 1e-3, gravity: [0, 0, 0], cohesion: { force: 2, range: 1 }, shapes: $prism } + $below" | resultant |
