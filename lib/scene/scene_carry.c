@@ -132,9 +132,6 @@ static int carry_run(const struct carried *y, struct why *why)
     for (int64_t i = 0; p->image && y->from->image && i < y->from->n; i++)
         memcpy(p->image[y->row + i], y->from->image[i], sizeof *p->image);
     if (p->overlap == OVERLAP_UNSAID) p->overlap = y->from->overlap;
-    if (!p->sums.n && y->from->sums.n && same_walls(p, y->s, y->from) &&
-        sums_copy(&p->sums, &y->from->sums, why))
-        return why->status;
     return carry_forces(y, why);
 }
 
@@ -190,11 +187,10 @@ struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
         const double dt = packing_whole_dt(from);
         if (!lost.file) lost.file = s->bodies[g].file;
         lost.bonds += from->bonds.n;
-        lost.sums |= from->sums.n && !p->sums.n;
         lost.forces |= (had->force && !has->force) || (had->torque && !has->torque) ||
                        (had->push && !has->push);
         if (!continues(s, from)) continue;
-        lost.steered |= from->outside.steered;
+        lost.steered |= from->outside.steered, lost.sums |= from->sums.n > 0;
         for (int32_t k = 0; k < from->pours && s->pours && !poured; k++)
             lost.poured |= from->poured[k].bodies > 0;
         if (!(s->dt > 0) && p->dt != dt) lost.dt = dt;

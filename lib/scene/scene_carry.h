@@ -2,7 +2,7 @@
  * scene/scene_carry.h: what a document knows of its bodies besides their places and velocities, on its way into a packing
  * that is built of them. Bonds and liquid bridges come along wherever the scene has laws for them; bonds with a wall where
  * the scene has the same wall. A scene at the time of its document continues the run: it takes the remembered
- * reactions, the sums, forces that last, edges gone, and what the run does about overlaps, too.
+ * reactions, forces that last, edges gone, and what the run does about overlaps, too.
  */
 #ifndef NSD_SCENE_CARRY_H
 #define NSD_SCENE_CARRY_H
@@ -20,7 +20,7 @@ void scene_carry_dt(struct packing *p, const struct scene *s);
 struct scene_lost {
     const char *file; /* the first document; NULL: there is none */
     int64_t bonds; /* bonds and bridges without a law, or with walls that the scene does not have */
-    bool sums;     /* of walls */
+    bool sums;     /* of walls: they begin with each scene */
     bool forces;   /* that last */
     bool poured;   /* what pours have brought: they begin again from 0 */
     bool steered;  /* a program has changed gravity, friction or the motion of walls */
