@@ -4,6 +4,7 @@
 #include "cli/options.h"
 #include "cli/tool_filter.h"
 #include "detect/detect.h"
+#include "detect/touching.h"
 #include "scene/flow.h"
 
 #include <stdlib.h>
@@ -70,6 +71,7 @@ static void detect(struct frame *f, const char *where)
     struct packing *p = &f->packing;
     if (outside_begin(&p->outside, p->mass, p->n, p->walls, &why)) die_why(&why);
     packing_wrap(&f->packing, NULL);
+    if (touching_bond(&f->packing, &why)) die_why(&why);
     if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;

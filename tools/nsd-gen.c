@@ -6,6 +6,7 @@
 #include "import/scene_file.h"
 #include "io/writer.h"
 #include "scene/scene_build.h"
+#include "scene/scene_carry.h"
 #include "scene/scene_height.h"
 #include "scene/size_table.h"
 #include "scene/time_step.h"
@@ -146,6 +147,38 @@ static void say_fit(const struct scene_fit *f)
         "of their sum",
         f->shape, f->balls, f->volume, f->distance, f->moments);
     warn("%s", why.text);
+}
+
+/* As a reason, for the name is out of a scene */
+static void say_one_lost(const char *file, const char *what)
+{
+    struct why why = { 0 };
+    why_set(&why, EX_DATAERR, "warning: %s: %s", file, what);
+    warn("%s", why.text);
+}
+
+static void say_lost(const struct scene_lost *lost)
+{
+    char text[160];
+    snprintf(text, sizeof text,
+             "%lld bonds or liquid bridges are lost: the scene has no law for these pairs, or "
+             "other walls",
+             (long long)lost->bonds);
+    if (lost->bonds > 0) say_one_lost(lost->file, text);
+    if (lost->sums) say_one_lost(lost->file, "the sums of its walls begin again from 0");
+    if (lost->forces)
+        say_one_lost(lost->file,
+                     "the lasting forces of a program are lost: it has to set them again");
+    if (lost->poured)
+        say_one_lost(lost->file,
+                     "the pours begin again from 0: \"poured\" continues them, as nsd-info "
+                     "--scene prints it");
+    if (lost->steered)
+        say_one_lost(lost->file,
+                     "a program changed gravity, friction or the motion of walls there: "
+                     "here they are the scene's");
+    snprintf(text, sizeof text, "dt, \"auto\", is chosen again: it was %g s", lost->dt);
+    if (lost->dt > 0) say_one_lost(lost->file, text);
 }
 
 /* ---- what suits a scene ---- */
@@ -369,6 +402,8 @@ int tool_main(int argc, char **argv)
     if (check && !(scene.built = calloc((size_t)scene.groups + 1, sizeof *scene.built)))
         die(EX_SOFTWARE, "no memory for the sizes of grains");
     if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    const struct scene_lost lost = scene_lost(&frame.packing, &scene);
+    if (lost.file) say_lost(&lost);
     if (check)
         tell(&scene, &frame.packing);
     else if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||

@@ -465,13 +465,49 @@ static void set_cell(json_t *cell)
     json_object_del(cell, "affine");
 }
 
+/* Pours and removals go on, too: what they have done by now, and the beginning that was the scene's. */
+static void set_passages(json_t *list, const char *key, const struct passage *done, int32_t n,
+                         double began)
+{
+    for (int32_t k = 0; k < n && (size_t)k < json_array_size(list); k++) {
+        json_t *item = json_array_get(list, (size_t)k), *from = json_object_get(item, "from");
+        double at = json_is_number(from) ? json_number_value(from) : 0;
+        if (!strcmp(key, "poured") && !json_object_get(item, key))
+            json_object_set_new(item, "from", json_real(fmax(at, began)));
+        json_object_set_new(
+            item, key,
+            json_pack("{s:I, s:f}", "bodies", (json_int_t)done[k].bodies, "mass", done[k].mass));
+    }
+}
+
+/* The time of bonds is by default that of the scene, which is another now. */
+static void set_made(json_t *of, double began)
+{
+    json_t *law = json_object_get(of, "adhesion");
+    if (json_is_object(law) && !json_object_get(law, "made") &&
+        !json_is_true(json_object_get(law, "forever")))
+        json_object_set_new(law, "made", json_real(began));
+}
+
+static void set_times(json_t *j, const struct packing *p)
+{
+    size_t k;
+    json_t *pair;
+    double began = json_number_value(json_object_get(j, "time"));
+    set_made(j, began);
+    json_array_foreach(json_object_get(j, "pairs"), k, pair) set_made(pair, began);
+    set_passages(json_object_get(j, "pour"), "poured", p->poured, p->pours, began);
+    set_passages(json_object_get(j, "remove"), "removed", p->removed, p->removals, began);
+    json_object_set_new(j, "time", json_real(p->t));
+}
+
 /* The scene with the last frame's bodies, at its time */
 static void show_scene(const struct packing *p, const char *path)
 {
     json_t *j = p->scene ? json_loads(p->scene, 0, NULL) : scene_of_parameters(p);
     if (!json_is_object(j)) die(EX_DATAERR, "%s: /nsd/scene is no scene", path);
     json_object_set_new(j, "theta", json_real(p->theta));
-    json_object_set_new(j, "time", json_real(p->t));
+    set_times(j, p);
     set_loads(json_object_get(j, "walls"), p);
     set_room(json_object_get(j, "room"), p);
     if (cell_repeats(&p->cell)) set_cell(json_object_get(j, "cell"));

@@ -106,20 +106,24 @@ int anchors_place(struct contacts *s, const struct packing *p, const struct posi
     return 0;
 }
 
-void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area)
+/* Where body i is, and how it is turned, `ahead` (s) from here */
+static struct pose ahead_of(const struct packing *p, int64_t i, double ahead)
 {
-    double ahead = step_ahead(p);
+    if (!(ahead > 0)) return (struct pose){ p->q[i], p->x[i] };
+    return (struct pose){ top_predict(p, i), packing_predict(p, i) };
+}
+
+void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area,
+                 double ahead)
+{
     vec3 edge[3], half = v3_scale(0.5 * c->gap, c->n);
     cell_predict(&p->cell, ahead, edge);
     vec3 on_a = v3_sub(c->x, half), on_b = v3_add(c->x, half);
-    quat qb = top_predict(p, c->b);
-    vec3 xb = v3_add(packing_predict(p, c->b), cell_shift(edge, c->shift));
-    b->at_b = quat_turn_back(qb, v3_sub(on_b, xb)), b->axis = quat_turn_back(qb, c->n);
+    const struct pose of_b = ahead_of(p, c->b, ahead);
+    vec3 xb = v3_add(of_b.shift, cell_shift(edge, c->shift));
+    b->at_b = quat_turn_back(of_b.q, v3_sub(on_b, xb)), b->axis = quat_turn_back(of_b.q, c->n);
     b->area = area;
-    if (c->a < 0) {
-        const struct pose pose = wall_pose(p, &p->wall[-1 - c->a], p->t + ahead);
-        b->at_a = quat_turn_back(pose.q, v3_sub(on_a, pose.shift));
-        return;
-    }
-    b->at_a = quat_turn_back(top_predict(p, c->a), v3_sub(on_a, packing_predict(p, c->a)));
+    const struct pose of_a =
+        c->a < 0 ? wall_pose(p, &p->wall[-1 - c->a], p->t + ahead) : ahead_of(p, c->a, ahead);
+    b->at_a = quat_turn_back(of_a.q, v3_sub(on_a, of_a.shift));
 }

@@ -29,7 +29,8 @@ static inline bool contact_anchored(const struct contact *c)
     return c->feature < 0;
 }
 
-/* Gives b, made at c of this step, its anchors and an area (m^2). The bodies have not moved yet. */
-void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area);
+/* Gives b, made at c of this step, its anchors and an area (m^2). The contact has been detected `ahead` (s) of the bodies. */
+void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area,
+                 double ahead);
 
 #endif

@@ -9,10 +9,13 @@
 #include "base/why.h"
 #include "bodies/contact.h"
 
+/* Of a bond: there is a liquid bridge, also one that is new, whose energy has not been accounted for */
+enum { BOND_WET = 1, BOND_WETTED };
+
 struct bond {
     int32_t a, b, feature; /* the key, as in struct contact */
     int8_t shift[3];
-    int8_t wet;  /* 1: there is a liquid bridge */
+    int8_t wet;  /* BOND_WET ...; 0: no liquid bridge */
     double beta; /* intensity of adhesion; 0 where there is none, or it is broken */
     double gap;  /* m: expected at the next step, at the predicted positions */
     vec3 n;      /* the contact's normal when this was kept */

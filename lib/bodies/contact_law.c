@@ -2,10 +2,12 @@
 #include "bodies/contact_law.h"
 
 #include "bodies/anchor.h"
+#include "bodies/attraction.h"
 #include "bodies/freedom.h"
 #include "bodies/kinematics.h"
 #include "bodies/offset.h"
 
+#include <float.h>
 #include <stdlib.h>
 
 static const double TOUCH = 1e-6;      /* radii: pairs not further apart touch; it is rounding */
@@ -17,10 +19,14 @@ static const struct pair_law *law_of(const struct packing *p, const struct conta
     return &p->law[packing_pair(p, c->a, c->b)];
 }
 
-/* m: pairs with at most this gap touch */
-static double touch_of(const struct packing *p, const struct contact *c)
+double contact_laws_touch(const struct packing *p, const struct contact *c)
 {
     return TOUCH * packing_smaller_radius(p, c);
+}
+
+double contact_laws_touch_most(const struct packing *p)
+{
+    return TOUCH * packing_whole(p).large;
 }
 
 /* m: of a liquid bridge */
@@ -29,9 +35,9 @@ static double bridge_size(const struct packing *p, const struct contact *c)
     return bridge_radius(c->a < 0 ? 0 : p->radius[c->a], p->radius[c->b]);
 }
 
-/* m^2: of a bond, of all places of a pair together; discs are 1 m deep */
-static double bond_area(const struct packing *p, const struct contact *c, const struct pair_law *l)
+double contact_laws_area(const struct packing *p, const struct contact *c)
 {
+    const struct pair_law *l = law_of(p, c);
     double r = packing_smaller_radius(p, c);
     return l->area > 0 ? l->area : p->dim == 2 ? 2 * r : M_PI * r * r;
 }
@@ -44,7 +50,7 @@ double contact_laws_reach(const struct packing *p)
         reach = fmax(reach,
                      fmax(p->law[k].cohesion > 0 ? p->law[k].range : 0, bridge_reach(&p->law[k])));
     if (all.apart > -INFINITY) reach = fmax(reach, all.apart + MARGIN * all.small);
-    return fmax(reach, TOUCH * all.large);
+    return fmax(reach, contact_laws_touch_most(p));
 }
 
 /* The rotation that takes the unit vector `from` to `to` the short way, of a vector across `from` */
@@ -58,28 +64,42 @@ static vec3 turn_along(vec3 from, vec3 to, vec3 x)
     return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
 }
 
-/* What a pair shares among the places where it meets; of balls, one each */
-struct places {
-    double touching, tied; /* that touch; that cohesion or liquid holds */
-    bool broken;           /* a bond of the pair has broken, and it has not parted since */
-};
+bool contact_laws_bond(const struct packing *p, const struct pair_law *l)
+{
+    const double end = p->t + p->dt, rounding = 4 * DBL_EPSILON; // of times, relative
+    if (!pair_law_adheres(l)) return false;
+    return l->forever ||
+           (p->t - 2 * rounding * fabs(p->t) <= l->made && l->made < end - rounding * fabs(end));
+}
 
-/* Beta and the jump of a bond that there is, or that is made in this step */
-static void set_bond(struct contact_law *t, const struct packing *p, const struct contact *c,
-                     const struct bond *old, const struct places *of)
+/* Is a pair to be bonded in this step if it touches? Not one that is, or whose bond has broken and that has not parted
+   since. old: what lasts of the contact, or NULL; broken: bonds_broken() */
+static bool is_due(const struct packing *p, const struct contact *c, const struct bond *old,
+                   bool broken)
 {
     const struct pair_law *l = law_of(p, c);
-    bool touches = c->gap <= touch_of(p, c);
-    bool due = fabs(p->t - l->made) < 0.5 * p->dt && !(old && old->beta > 0);
-    if (touches && (l->forever ? !old && !of->broken : due)) {
+    if (!contact_laws_bond(p, l) || (old && old->beta > 0)) return false;
+    bool parted = !old || (old->wet && old->gap > contact_laws_touch(p, c));
+    return !l->forever || (parted && !broken);
+}
+
+/* Beta and the jump of a bond that there is, or that is made in this step */
+static void set_bond(struct contact_law *t, const struct packing *p, struct contact *c,
+                     const struct bond *old, const struct attraction *of)
+{
+    const struct pair_law *l = law_of(p, c);
+    const bool due = is_due(p, c, old, of->broken);
+    if (due && c->gap <= contact_laws_touch(p, c)) {
         t->beta = l->beta, t->state |= CONTACT_LAW_BONDED;
+    } else if (due) {
+        if (l->beta > 0) c->en = c->et = 0; // nothing rebounds that is bonded where it touches
     } else if (old && (old->beta > 0 || l->forever)) {
         vec3 slip = turn_along(old->n, c->n, old->slip);
         t->beta = old->beta, t->state |= CONTACT_LAW_BONDED;
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
     }
     if (!(t->beta > 0)) return;
-    double area = old && bond_anchored(old) ? old->area : bond_area(p, c, l) / of->touching;
+    double area = old && bond_anchored(old) ? old->area : contact_laws_area(p, c) / of->bonds;
     double S = area * t->beta * t->beta;
     t->stiff[0] = S * l->cn, t->stiff[1] = S * l->ct;
 }
@@ -92,72 +112,91 @@ static double offset_apart(const struct packing *p, const struct contact *c)
     return c->gap / p->dt + (impact ? 2 * approach : 0);
 }
 
+/* Does one surface push the other? */
+static bool pushes(const struct packing *p, const struct contact_law *t, const struct found *f)
+{
+    double push[3];
+    contact_law_push(p->dt, t, f, push);
+    return push[0] > 0;
+}
+
 /* N: of cohesion and, where the contact is wet, liquid, were the place the only one of its pair */
 static double whole_pull(const struct packing *p, const struct contact *c, const struct pair_law *l,
                          bool wet)
 {
-    double f = l->cohesion > 0 && c->gap <= fmax(l->range, touch_of(p, c)) ? l->cohesion : 0;
+    double f =
+        l->cohesion > 0 && c->gap <= fmax(l->range, contact_laws_touch(p, c)) ? l->cohesion : 0;
     return wet ? f + bridge_force(l, bridge_size(p, c), c->gap) : f;
 }
 
 static bool is_wet(const struct packing *p, const struct contact *c, const struct pair_law *l,
                    const struct bond *old)
 {
-    bool touches = c->gap <= touch_of(p, c);
+    bool touches = c->gap <= contact_laws_touch(p, c);
     return pair_law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
 }
 
 static void set_tie(struct contact_law *t, const struct packing *p, struct contact *c,
-                    const struct bond *old, const struct places *of)
+                    const struct bond *old, const struct attraction *of)
 {
     const struct pair_law *l = law_of(p, c);
     bool wet = is_wet(p, c, l, old);
     t->jump[0] = fmax(0, c->gap);
     t->mu_r = l->mu_r, t->mu_p = l->mu_p;
-    if (wet) t->state |= old && old->wet ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
-    t->pull = whole_pull(p, c, l, wet) / of->tied;
+    if (wet)
+        t->state |=
+            old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
+    t->pull = whole_pull(p, c, l, wet) / of->among;
     if (pair_law_adheres(l)) set_bond(t, p, c, old, of);
     if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
 }
 
-/* The end of the contacts of one pair that begin at `first` */
-static int64_t end_of_pair(const struct contacts *s, int64_t first)
+/* Are both contacts of the same two bodies? */
+static bool is_of_pair(const struct contact *c, const struct contact *d)
 {
-    int64_t i = first + 1;
-    while (i < s->n && s->c[i].a == s->c[first].a && s->c[i].b == s->c[first].b) i++;
-    return i;
+    return c->a == d->a && c->b == d->b;
 }
 
-/* Of the contacts first .. end-1 of a pair of which one is no ball; from: as of bonds_find() */
-static struct places count_places(const struct contacts *s, const struct packing *p, int64_t first,
-                                  int64_t end, int64_t from)
+/* Is the bond of a pair that comes before the contact's? */
+static bool comes_before(const struct bond *x, const struct contact *c)
 {
-    struct places of = { 0, 0, bonds_broken(&p->bonds, s->c[first].a, s->c[first].b, from) };
-    for (int64_t i = first; i < end; i++) {
-        const struct contact *c = &s->c[i];
-        const struct pair_law *l = law_of(p, c);
-        const struct bond *old = bonds_find(&p->bonds, c, &from);
-        of.touching += c->gap <= touch_of(p, c) && !(old && bond_anchored(old));
-        of.tied += whole_pull(p, c, l, is_wet(p, c, l, old)) > 0;
-    }
-    of.touching = fmax(of.touching, 1), of.tied = fmax(of.tied, 1);
-    return of;
+    return x->a < c->a || (x->a == c->a && x->b < c->b);
+}
+
+/* What of contact c counts where it shares with others; pair: where the bonds of its pair begin */
+static struct attraction attraction_of(const struct packing *p, const struct contact *c,
+                                       const struct bond *old, int64_t pair)
+{
+    const struct pair_law *l = law_of(p, c);
+    const bool shaped = contact_shaped(p, c), anchored = old && bond_anchored(old);
+    struct attraction t = { .tied = whole_pull(p, c, l, is_wet(p, c, l, old)) > 0 };
+    if (shaped) t.broken = bonds_broken(&p->bonds, c->a, c->b, pair);
+    if (!pair_law_adheres(l) || anchored) return t;
+    t.bonded = c->gap <= contact_laws_touch(p, c) && (shaped || is_due(p, c, old, false));
+    t.bonded = t.bonded || (!shaped && old && old->beta > 0);
+    return t;
 }
 
 int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why)
 {
-    int64_t from = 0;
-    if (contacts_alloc_laws(s)) return why_set(why, EX_SOFTWARE, "no memory for the ties");
-    for (int64_t i = 0, end; i < s->n; i = end) {
-        struct places of = { 1, 1, false };
-        end = contact_shaped(p, &s->c[i]) ? end_of_pair(s, i) : i + 1;
-        if (contact_shaped(p, &s->c[i])) of = count_places(s, p, i, end, from);
-        for (int64_t k = i; k < end; k++)
-            set_tie(&s->law[k], p, &s->c[k], bonds_find(&p->bonds, &s->c[k], &from), &of);
+    struct attraction *of = malloc(((size_t)s->n + 1) * sizeof *of);
+    if (!of || contacts_alloc_laws(s)) {
+        free(of);
+        return why_set(why, EX_SOFTWARE, "no memory for the ties");
     }
-    return 0;
+    for (int64_t i = 0, pair = 0, from = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        while (pair < p->bonds.n && comes_before(&p->bonds.bond[pair], c)) pair++;
+        of[i] = attraction_of(p, c, bonds_find(&p->bonds, c, &from), pair);
+    }
+    int64_t from = 0;
+    if (!attraction_share(of, s, p, why))
+        for (int64_t i = 0; i < s->n; i++)
+            set_tie(&s->law[i], p, &s->c[i], bonds_find(&p->bonds, &s->c[i], &from), &of[i]);
+    free(of);
+    return why->status;
 }
 
 /* ---- over the step ---- */
@@ -196,7 +235,7 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
 static double cohesion_energy(const struct packing *p, const struct contact *c,
                               const struct pair_law *l, double gap)
 {
-    double range = fmax(l->range, touch_of(p, c));
+    double range = fmax(l->range, contact_laws_touch(p, c));
     return gap < range ? -l->cohesion * (range - gap) : 0;
 }
 
@@ -204,8 +243,8 @@ static double cohesion_energy(const struct packing *p, const struct contact *c,
 static double share_of(const struct packing *p, const struct contact *c, const struct pair_law *l,
                        const struct contact_law *t)
 {
-    if (!(t->pull > 0) || !contact_shaped(p, c)) return 1;
-    return t->pull / whole_pull(p, c, l, t->state & CONTACT_LAW_WET);
+    double whole = whole_pull(p, c, l, t->state & CONTACT_LAW_WET);
+    return whole > 0 ? t->pull / whole : 1;
 }
 
 /* J: of the bond, were its beta still the one it began with */
@@ -250,8 +289,29 @@ static double spin_about(const struct packing *p, const struct contact *c)
     return 0.5 * p->dt * v3_dot(c->n, v3_add(wa, p->w[c->b]));
 }
 
-/* What lasts of contact i, whose tie is wet or bonded; false: nothing does. */
-static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i, struct bond *b)
+/* Bodies that push each other have touched, also if they rebound: what is made of their contact at the end of the step,
+   which is none of what there has been */
+struct made {
+    bool wet, bonded;
+};
+
+/* pair: where the bonds of the contact's pair begin */
+static struct made made_by_push(const struct packing *p, const struct contacts *s, int64_t i,
+                                int64_t pair)
+{
+    const struct contact *c = &s->c[i];
+    const struct contact_law *t = &s->law[i];
+    const struct pair_law *l = law_of(p, c);
+    const bool broken = contact_shaped(p, c) && bonds_broken(&p->bonds, c->a, c->b, pair);
+    if (!pair_law_attracts(l) || !pushes(p, t, &s->found[i])) return (struct made){ false, false };
+    return (struct made){ .wet = pair_law_wets(l) && !(t->state & CONTACT_LAW_WET),
+                          .bonded = l->beta > 0 && !(t->state & CONTACT_LAW_BONDED) &&
+                                    is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
+}
+
+/* What lasts of contact i; false: nothing does. */
+static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i, struct made made,
+                    struct bond *b)
 {
     const struct contact *c = &s->c[i];
     const struct contact_law *t = &s->law[i];
@@ -259,11 +319,12 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     // A broken bond is remembered while the pair touches, for it is not made anew. An anchored one has no
     // contact of its own in the next step: remember_broken() sees whether its pair has parted.
     bool bonded = t->state & CONTACT_LAW_BONDED;
-    bool rests = bonded && (e.gap <= touch_of(p, c) || contact_anchored(c));
-    if (!e.wet && !(e.beta > 0) && !rests) return false;
+    bool rests = bonded && (e.gap <= contact_laws_touch(p, c) || contact_anchored(c));
     *b = (struct bond){ .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
     for (int k = 0; k < 3; k++) b->shift[k] = c->shift[k];
-    b->wet = e.wet, b->beta = e.beta, b->gap = e.gap;
+    b->gap = e.gap, b->beta = made.bonded ? law_of(p, c)->beta : e.beta;
+    b->wet = e.wet ? BOND_WET : made.wet && e.gap < bridge_reach(law_of(p, c)) ? BOND_WETTED : 0;
+    if (!b->wet && !(b->beta > 0) && !rests) return false;
     vec3 slip = v3_axpy(v3_scale(e.slip[0], c->t1), e.slip[1], contact_t2(c));
     if (e.beta > 0) b->slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
     return true;
@@ -280,27 +341,48 @@ static bool has_bond(const struct contact *c, const struct bonds *s, int64_t i)
     return i >= 0 && i < s->n && s->bond[i].a == c->a && s->bond[i].b == c->b;
 }
 
-/* The place of a bond where there is a shape: that of the old one, or of this contact, with a new key, below
-   all of its pair. *found: as of bonds_find() */
-static void anchor(struct bond *b, const struct packing *p, const struct contacts *s, int64_t i,
-                   int64_t *found, const struct bonds *kept)
+/* The contacts of a step, where the bonds of the present one's pair begin, and what is kept so far */
+struct keeping {
+    const struct packing *p;
+    const struct contacts *s;
+    int64_t pair, found; /* found: as of bonds_find() */
+    struct bonds kept;
+};
+
+/* m^2: of the bond that contact i is when the step is over. All that are made of its pair by a push share one area. */
+static double area_of(const struct keeping *y, int64_t i, struct made made)
 {
-    const struct contact *c = &s->c[i];
-    const struct contact_law *t = &s->law[i];
-    const struct bond *old = bonds_find(&p->bonds, c, found);
-    int64_t from = *found;
+    const struct contact *c = &y->s->c[i];
+    const struct contact_law *t = &y->s->law[i];
+    const struct pair_law *l = law_of(y->p, c);
+    int64_t first = i, end = i + 1, n = 0;
+    if (t->beta > 0) return t->stiff[0] / (l->cn * t->beta * t->beta);
+    if (!made.bonded) return 0;
+    while (first > 0 && is_of_pair(&y->s->c[first - 1], c)) first--;
+    while (end < y->s->n && is_of_pair(&y->s->c[end], c)) end++;
+    for (int64_t k = first; k < end; k++) n += made_by_push(y->p, y->s, k, y->pair).bonded;
+    return contact_laws_area(y->p, c) / (double)n;
+}
+
+/* The place of a bond where there is a shape: that of the old one, or of contact i, with a new key, below
+   all of its pair */
+static void anchor(struct bond *b, struct keeping *y, int64_t i, struct made made)
+{
+    const struct packing *p = y->p;
+    const struct contact *c = &y->s->c[i];
+    const struct bond *old = bonds_find(&p->bonds, c, &y->found);
     if (old && bond_anchored(old)) {
         b->area = old->area, b->at_a = old->at_a, b->at_b = old->at_b, b->axis = old->axis;
         return;
     }
-    if (!(t->beta > 0)) return;
+    double area = area_of(y, i, made);
+    if (!(area > 0)) return;
     int32_t least = 0;
-    while (has_bond(c, &p->bonds, from - 1)) from--;
-    if (has_bond(c, &p->bonds, from)) least = lesser(least, p->bonds.bond[from].feature);
-    for (int64_t k = kept->n - 1; has_bond(c, kept, k); k--)
-        least = lesser(least, kept->bond[k].feature);
+    if (has_bond(c, &p->bonds, y->pair)) least = lesser(least, p->bonds.bond[y->pair].feature);
+    for (int64_t k = y->kept.n - 1; has_bond(c, &y->kept, k); k--)
+        least = lesser(least, y->kept.bond[k].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
-    anchor_bond(b, p, c, t->stiff[0] / (law_of(p, c)->cn * t->beta * t->beta));
+    anchor_bond(b, p, c, area, step_ahead(p));
 }
 
 /* Adds the anchored bonds that broke in earlier steps, of pairs that have not parted since; false when
@@ -315,35 +397,41 @@ static bool remember_broken(struct bonds *kept, const struct packing *p, const s
         while (c < s->n && (s->c[c].a < b->a || (s->c[c].a == b->a && s->c[c].b < b->b))) c++;
         bool together = false;
         for (int64_t k = c; k < s->n && s->c[k].a == b->a && s->c[k].b == b->b; k++)
-            together =
-                together || s->c[k].gap <= touch_of(p, &s->c[k]) || (s->law && s->law[k].beta > 0);
+            together = together || s->c[k].gap <= contact_laws_touch(p, &s->c[k]) ||
+                       (s->law && s->law[k].beta > 0);
         if (together) good = bonds_add(kept, b) != NULL;
     }
     return good;
 }
 
+/* Keeps what lasts of contact i; false when memory is short. */
+static bool keep(struct keeping *y, int64_t i)
+{
+    const struct contact *c = &y->s->c[i];
+    const struct contact_law *t = &y->s->law[i];
+    struct bond b;
+    while (y->pair < y->p->bonds.n && comes_before(&y->p->bonds.bond[y->pair], c)) y->pair++;
+    struct made made = made_by_push(y->p, y->s, i, y->pair);
+    bool lasts = t->state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED) || made.wet || made.bonded;
+    if (!lasts || !bond_of(y->p, y->s, i, made, &b)) return true;
+    bool bonded =
+        (t->state & CONTACT_LAW_BONDED && (t->beta > 0 || contact_anchored(c))) || made.bonded;
+    if (contact_shaped(y->p, c) && bonded) anchor(&b, y, i, made);
+    return bonds_add(&y->kept, &b) != NULL;
+}
+
 int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why)
 {
-    struct bonds kept = { 0 };
+    struct keeping y = { .p = p, .s = s };
     bool good = true;
-    int64_t from = 0;
-    for (int64_t i = 0; good && i < s->n && s->law; i++) {
-        const struct contact *c = &s->c[i];
-        struct bond b;
-        if (!(s->law[i].state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED)) || !bond_of(p, s, i, &b))
-            continue;
-        bool bonded =
-            s->law[i].state & CONTACT_LAW_BONDED && (s->law[i].beta > 0 || contact_anchored(c));
-        if (contact_shaped(p, c) && bonded) anchor(&b, p, s, i, &from, &kept);
-        good = bonds_add(&kept, &b) != NULL;
-    }
-    good = good && (!p->shape || remember_broken(&kept, p, s));
+    for (int64_t i = 0; good && i < s->n && s->law && s->found; i++) good = keep(&y, i);
+    good = good && (!p->shape || remember_broken(&y.kept, p, s));
     if (!good) {
-        bonds_free(&kept);
+        bonds_free(&y.kept);
         return why_set(why, EX_SOFTWARE, "no memory for the bonds");
     }
-    if (p->shape) bonds_sort(&kept);
+    if (p->shape) bonds_sort(&y.kept);
     bonds_free(&p->bonds);
-    p->bonds = kept;
+    p->bonds = y.kept;
     return 0;
 }

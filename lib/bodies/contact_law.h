@@ -20,6 +20,9 @@
  * by the implicit step beta = (h w + eta beta)/(h q + eta), and with eta = 0 beta = w/q. A bond of
  * less than a thousandth is broken: it would never end.
  *
+ * Bodies touch whose gap is at most rounding at the predicted positions, or at the first ones [detect/touching.h], and those
+ * that push each other in a step, also if they rebound.
+ *
  * Where a shape is, a pair has several places: they share its pull and the area of bonds that are made in
  * one step, and bonds keep their place [bodies/anchor.h].
  */
@@ -28,6 +31,15 @@
 
 #include "bodies/packing.h"
 
+/* m: pairs with at most this gap touch */
+double contact_laws_touch(const struct packing *p, const struct contact *c);
+/* m: no pair touches with a larger gap */
+double contact_laws_touch_most(const struct packing *p);
+/* m^2: of a bond, of all places of a pair together; discs are 1 m deep */
+double contact_laws_area(const struct packing *p, const struct contact *c);
+/* Are pairs with this law bonded in this step if they touch? A time belongs to the step that it is in, [t, t + dt), or
+   to the one that begins there but for rounding. */
+bool contact_laws_bond(const struct packing *p, const struct pair_law *l);
 /* m: contacts are to be sought up to this gap */
 double contact_laws_reach(const struct packing *p);
 /*

@@ -7,6 +7,7 @@
 #include "detect/detect.h"
 #include "detect/meeting.h"
 #include "detect/swift.h"
+#include "detect/touching.h"
 #include "problem/prepare.h"
 #include "ranks/blocks.h"
 #include "ranks/colours.h"
@@ -340,6 +341,7 @@ static int detect(struct rank_step *y, struct packing *whole, const struct gathe
     struct comm *t = y->part.comm;
     double reach;
     if (!t->me) memory_set(&whole->memory, o->warm), packing_wrap(whole, NULL);
+    if (!t->me && touching_bond(whole, why)) return why->status;
     detect_here(y, whole, s, o, &reach);
     contact_list_gather(list, &y->part, s, all);
     int e = y->part.p.law ? choose_by_laws(y, whole, g, o, reach, why) : 0;

@@ -231,6 +231,7 @@ struct scene_pour {
     int32_t kind;
     int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
+    struct passage poured; /* what it has brought before the scene begins */
 };
 
 /* Which grains go, and when: bodies whose centre is there */
@@ -243,6 +244,7 @@ struct scene_removal {
     int32_t *id;        /* [ids], rising */
     int32_t group;      /* only bodies of this group, 1 + row of the scene's names; 0: of all */
     double from, until; /* s */
+    struct passage removed; /* what it has taken before the scene begins */
 };
 
 /* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the

@@ -11,6 +11,7 @@
 #include "scene/grains.h"
 #include "scene/orientation.h"
 #include "scene/random_start.h"
+#include "scene/scene_carry.h"
 #include "scene/shelves.h"
 #include "scene/time_step.h"
 
@@ -636,6 +637,19 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct why *wh
     return packing_alloc_images(p, why);
 }
 
+/* What documents know of their bodies besides these */
+static int carry(struct packing *p, const struct scene *s, const struct grains *list,
+                 struct why *why)
+{
+    int64_t *row = calloc((size_t)s->groups + 1, sizeof *row);
+    if (!row) return why_set(why, EX_SOFTWARE, "no memory for the bodies");
+    for (int64_t g = 0; g < s->groups; g++)
+        row[g + 1] = row[g] + (is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count);
+    scene_carry(p, s, row, why);
+    free(row);
+    return why->status;
+}
+
 static int build_packing(struct packing *p, const struct scene *s, const struct grains *list,
                          struct why *why)
 {
@@ -651,12 +665,15 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
     if (rng) gsl_rng_set(rng, s->seed);
     if (rng && !set_parameters(p, s, why)) inherit_clock(p, s);
     if (rng && !why->status && !inherit_walls(p, s, why) && !inherit_cell(p, s, why) &&
-        !fill_groups(p, s, list, rng, why)) {
+        !fill_groups(p, s, list, rng, why) && !carry(p, s, list, why)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_wrap(p, NULL);
         names_settle(&p->names);
         p->pulls_most = pulls_most(&p->pulls, p->n, p->id, p->mass);
-        if (!set_masses(p, s, why) && !set_dt(p, s, why)) check_packing(p, s, list, why);
+        if (!set_masses(p, s, why) && !set_dt(p, s, why)) {
+            scene_carry_dt(p, s);
+            check_packing(p, s, list, why);
+        }
     }
     gsl_rng_free(rng);
     if (why->status) packing_free(p);

@@ -27,6 +27,15 @@ static int read_opening(jnode o, int dim, struct scene_pour *p)
     return 0;
 }
 
+/* What a pour or a removal has done before the scene begins, as nsd-info --scene prints it */
+static int read_passage(jnode o, struct passage *p)
+{
+    if (!o.json) return 0;
+    return json_node_only(o, "bodies mass") || json_node_need(&o, "bodies mass") ||
+           json_node_integer(json_node_key(&o, "bodies"), 0, INT64_MAX, &p->bodies) ||
+           json_node_number(json_node_key(&o, "mass"), J_NOT_NEGATIVE, &p->mass);
+}
+
 static int read_pour(jnode o, struct scene *s, struct scene_pour *p)
 {
     int64_t count = -1;
@@ -35,8 +44,9 @@ static int read_pour(jnode o, struct scene *s, struct scene_pour *p)
     if (which < 0 ||
         json_node_only(
             o, "rate mass_rate opening radius size shape orientation v w name kind density mass "
-               "from until count") ||
-        json_node_need(&o, "opening") || scene_read_form(o, s, &p->form))
+               "from until count poured") ||
+        read_passage(json_node_key(&o, "poured"), &p->poured) || json_node_need(&o, "opening") ||
+        scene_read_form(o, s, &p->form))
         return 1;
     p->by_mass = which == 1;
     if (json_node_number(json_node_key(&o, which ? "mass_rate" : "rate"), J_POSITIVE, &p->rate) ||
@@ -51,7 +61,8 @@ static int read_pour(jnode o, struct scene *s, struct scene_pour *p)
         json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &count))
         return 1;
     if (count >= 0) p->count = (double)count;
-    p->from = fmax(p->from, s->t); // nothing is due from before the scene begins
+    // nothing is due from before the scene begins, but to a pour that has begun
+    if (!json_node_key(&o, "poured").json) p->from = fmax(p->from, s->t);
     p->density = s->kind[p->kind].density;
     return scene_read_mass(&o, &p->density, &p->mass);
 }
@@ -105,7 +116,9 @@ static int read_removal(jnode o, struct scene *s, struct scene_removal *r)
                                 !json_node_key(&o, "name").json;
     *r = (struct scene_removal){ .kind = -1, .from = -INFINITY, .until = INFINITY };
     for (int k = 0; k < 3; k++) anywhere = anywhere && !json_node_key(&o, key[k]).json;
-    if (json_node_only(o, "outside inside below kind id name from until")) return 1;
+    if (json_node_only(o, "outside inside below kind id name from until removed") ||
+        read_passage(json_node_key(&o, "removed"), &r->removed))
+        return 1;
     if (anywhere && any)
         return json_node_fault(o, "needs one of outside, inside, below, kind, id or name: which "
                                   "bodies go");

@@ -6,6 +6,7 @@
 #include "detect/detect.h"
 #include "detect/meeting.h"
 #include "detect/swift.h"
+#include "detect/touching.h"
 #include "motion/move.h"
 #include "motion/project.h"
 #include "motion/sum_step.h"
@@ -328,6 +329,7 @@ static int detect_alone(struct step_makers *m, struct packing *p, struct contact
     struct step_memory *kept = ((struct alone *)m)->memory;
     memory_set(&p->memory, o->warm);
     packing_wrap(p, NULL);
+    if (touching_bond(p, why)) return why->status;
     if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, why)) return why->status;
     return o->warm ? memory_give(&p->memory, s, packing_rolls(p), why) : 0;
 }

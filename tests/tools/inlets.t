@@ -114,6 +114,17 @@ else
 fi
 nsd-info --scene "$tmp/named_run.h5" | nsd-gen - >"$tmp/named_again.h5" 2>"$tmp/err" && s=0 || s=$?
 is "a scene goes on from a document that has no body of the name any more" "$s" 0
+# poured by halves: by nsd-step alone and by the scene of the first half
+jq -n '{ dt: 1e-3, mu: 0.4, walls: [{ box: { x: [0, 0.3], y: [0, 0.3], z: [0, null] } }], remove: [{ inside: { z: [null, -1] } }],
+    pour: [{ rate: 100, count: 60, radius: { uniform: [0.01, 0.02] }, opening: { box: { x: [0.05, 0.25], y: [0.05, 0.25], z: [0.5, 1.5] } } }] }' | nsd-gen - >"$tmp/pours.h5"
+step -n 250 --every 250 -o "$tmp/half.h5" "$tmp/pours.h5"
+step -n 450 --every 450 -o "$tmp/on.h5" "$tmp/half.h5"
+nsd-info --scene "$tmp/half.h5" | nsd-gen - 2>"$tmp/err" | step -n 450 --every 450 -o "$tmp/by_scene.h5"
+is "a pour continued by its scene brings the grains that are left, as it would" "$(nsd-info --last -p "$tmp/by_scene.h5" | jq -sc 'map([.id, .radius])')" \
+    "$(nsd-info --last -p "$tmp/on.h5" | jq -sc 'map([.id, .radius])')"
+is "which are 60, and nothing is said" "$(nsd-info --last "$tmp/by_scene.h5" | jq .bodies) $(cat "$tmp/err")" "60 "
+nsd-info --scene "$tmp/half.h5" | jq 'del(.pour[0].poured)' | nsd-gen - 2>"$tmp/err" >/dev/null
+like "a pour that begins again is reported" "$(cat "$tmp/err")" "half.h5: the pours begin again from 0"
 # a document's names come after the scene's: the rows are others
 jq -n --arg d "$tmp/named_half.h5" '{ dt: 5e-4, walls: [{ point: [0, 0, 0], normal: [0, 0, 1], name: "floor" }],
     bodies: [{ document: $d }], remove: [{ name: "new" }, { name: "old" }] }' >"$tmp/taken.json"

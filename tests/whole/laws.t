@@ -135,6 +135,129 @@ else
     skip "wet grains as an FCLIB problem" "no h5py"
 fi
 
+# ---- what touches ----
+
+# a wet ball rises to a wet ceiling, and a tenth of the energy of its bridge is left to it after the rebound: it hangs
+for dt in 1e-5 2.5e-6; do
+    jq -n --argjson dt $dt '{ dt: $dt, e_n: 0.5, capillary: { volume: 1e-10, tension: 0.072 }, walls: [{ point: [0, 0, 2.05e-3], normal: [0, 0, -1] }],
+        bodies: [{ x: [0, 0, 1e-3], radius: 1e-3, v: [0, 0, 0.1] }] }' | nsd-gen - | step --until 0.03 --every 0.03s --log "$tmp/rise.log" -o "$tmp/rise.h5"
+    like "a wet ball that rebounds has a bridge, dt $dt" "$(height "$tmp/rise.h5" | jq '. > 1e-3 and . < 1.06e-3')" true
+    like "and its energy is balanced" "$(misfit "$tmp/rise.log" | jq '. < 1e-9')" true
+done
+# two wet balls that graze each other: after a step of dt the gap is (v_t dt)^2/4 R, 2.5 times what counts as touch
+jq -n '{ dt: 1e-4, gravity: [0, 0, 0], capillary: { volume: 1e-10, tension: 0.072 },
+    bodies: [{ x: [0, 0, 0], radius: 1e-3 }, { x: [0.002035, 0, 0], radius: 1e-3, v: [-0.2, 1, 0] }] }' | nsd-gen - | step -n 4 --contacts -o "$tmp/graze.h5"
+like "balls that slide past each other have touched" "$(nsd-info --last -c "$tmp/graze.h5" | jq .wet)" true
+for dt in 1e-6 3e-7; do
+    jq -n --argjson dt $dt '{ dt: $dt, gravity: [0, 0, 0], e_n: 0.5, adhesion: { c_n: 2e9, w: 100, forever: true },
+        bodies: [{ x: [0, 0, 0], radius: 1e-3, fixed: true }, { x: [2.023e-3, 0, 0], radius: 1e-3, v: [-0.5, 0, 0] }] }' |
+        nsd-gen - | step --until 0.003 --every 0.003s -o "$tmp/stuck.h5"
+    like "a ball that is bonded where it touches does not rebound, dt $dt" "$(nsd-info --last -p "$tmp/stuck.h5" | jq -s '.[1].v[0] | fabs < 1e-3')" true
+done
+# two discs that spin as one body: m w^2 R/(S c_n) = 4e-7 m of stretch, and half a step ahead a gap of 1.25e-6 m
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, adhesion: { c_n: 1e9, c_t: 1e9, w: 1000, made: 0 },
+    bodies: [{ x: [-0.05, 0], radius: 0.05, v: [0, -0.5], w: 10 }, { x: [0.05, 0], radius: 0.05, v: [0, 0.5], w: 10 }] }' | nsd-gen - >"$tmp/spin.h5"
+step --until 1 --every 1s -o "$tmp/spun.h5" "$tmp/spin.h5"
+like "discs that touch and spin at the time of bonds are bonded" "$(nsd-info --last -p "$tmp/spun.h5" | jq -s '[.[0].x, .[1].x] | transpose | map(.[0] - .[1] | . * .) | add | sqrt < 0.1001')" true
+bonded() { nsd-info --last -c "$1" | jq -s 'map(select(.beta == 1)) | length'; }
+while IFS='|' read -r what count scene; do
+    echo "{ \"dt\": 1e-3, \"mu\": 0.3, \"adhesion\": { \"c_n\": 1e9, \"w\": 1000, $scene }" | jq '.gravity = [range(.dim // 3) | 0]' | nsd-gen - >"$tmp/parts.h5"
+    step -n 10 --every 10 --contacts -o "$tmp/parted.h5" "$tmp/parts.h5"
+    is "bonds are made: $what" "$(bonded "$tmp/parted.h5")" "$count"
+done <<'SCENES'
+a ball that leaves a plane|1|"made": 0 }, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }], "bodies": [{ "x": [0, 0, 0.05], "radius": 0.05, "v": [0, 0, 0.01] }]
+whenever they touch|1|"forever": true }, "e_n": 0.5, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }], "bodies": [{ "x": [0, 0, 0.05], "radius": 0.05, "v": [0, 0, 0.01] }]
+a ball that leaves a sphere|1|"made": 0 }, "walls": [{ "sphere": { "center": [0, 0, -0.5], "radius": 0.5, "side": "outside" } }], "bodies": [{ "x": [0, 0, 0.05], "radius": 0.05, "v": [0, 0, 0.01] }]
+through the border of a cell|1|"made": 0 }, "dim": 2, "cell": { "lengths": [1, 1] }, "bodies": [{ "x": [0.05, 0.5], "radius": 0.05, "v": [0.01, 0] }, { "x": [0.95, 0.5], "radius": 0.05 }]
+a box that tips on a plane, by four corners|4|"made": 0 }, "shapes": { "b": { "box": [0.1, 0.1, 0.1] } }, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }], "bodies": [{ "x": [0, 0, 0.05], "shape": "b", "w": [0, 0.3, 0] }]
+a box that leaves another|4|"made": 0 }, "shapes": { "b": { "box": [0.1, 0.1, 0.1] } }, "bodies": [{ "x": [0, 0, 0.05], "shape": "b", "v": [0, 0, 0.01] }, { "x": [0, 0, -0.05], "shape": "b" }]
+at a time between two steps|1|"made": 0.0025 }, "dim": 2, "bodies": [{ "x": [0.05, 0], "radius": 0.05 }, { "x": [-0.05, 0], "radius": 0.05 }]
+at a time that rounding puts before a step|1|"made": 0.003 }, "dim": 2, "bodies": [{ "x": [0.05003, 0], "radius": 0.05, "v": [-0.01, 0] }, { "x": [-0.05, 0], "radius": 0.05 }]
+not later than that|0|"made": 0.0025 }, "dim": 2, "bodies": [{ "x": [0.05004, 0], "radius": 0.05, "v": [-0.01, 0] }, { "x": [-0.05, 0], "radius": 0.05 }]
+SCENES
+whole spin.h5
+
+# ---- attraction by surfaces of several parts ----
+
+# what nsd-detect finds of this scene: FORCE, and how far it acts beside the z axis
+resultant() { nsd-gen - | nsd-detect | nsd-info -c | jq -sc '(map(.pull) | add) as $f | [$f, (map(.pull * .point[0]) | add / $f), (map(.pull * (.point[1] // 0)) | add / $f)]'; }
+attracts() # NAME FORCE SCENE
+{
+    like "$1: attracts with $2 N" "$(jq -n "{ dt: 1e-3, gravity: [0, 0, 0] } + $3" | resultant | jq "(.[0] / $2 - 1 | fabs) < 1e-6")" true
+}
+four='walls: ([[1, 1], [-1, 1], [-1, -1], [1, -1]] | map({ rectangle: { center: [.[0] / 2, .[1] / 2, 0], normal: [0, 0, 1], sides: [1, 1] } }))'
+bricks='shapes: { b: { box: [1, 1, 0.2] } }'
+for x in 0 1e-5 0.02; do
+    for range in 0 0.01; do
+        c="cohesion: { force: 7.7, range: $range }"
+        attracts "four rectangles that meet $x m beside the ball, range $range" 7.7 "{ $c, $four, bodies: [{ x: [$x, 0, -0.05], radius: 0.05 }] }"
+        attracts "two fixed bricks" 7.7 "{ $c, $bricks, bodies: [{ x: [0.5, 0, 0.1], shape: \"b\", fixed: true }, { x: [$x, 0, -0.05], radius: 0.05 }, { x: [-0.5, 0, 0.1], shape: \"b\", fixed: true }] }"
+        attracts "two segments" 7.7 "{ dim: 2, gravity: [0, 0], $c, walls: [{ segment: [[0, 0], [1, 0]] }, { segment: [[-1, 0], [0, 0]] }], bodies: [{ x: [$x, -0.05], radius: 0.05 }] }"
+    done
+done
+for a in 0 1e-5 0.01; do
+    attracts "two half circles that meet $a rad beside a disc" 7.7 "{ dim: 2, gravity: [0, 0], cohesion: { force: 7.7, range: 0.01 },
+        walls: [1, -1 | { arc: { center: [0, 0], radius: 1, along: [., 0], arc: 3.141592653589793 } }], bodies: [{ x: [0.9 * ($a | cos), 0.9 * ($a | sin)], radius: 0.1 }] }"
+done
+attracts "a box across four rectangles" 7.7 "{ cohesion: { force: 7.7 }, $four, shapes: { b: { box: [0.2, 0.3, 0.1] } }, bodies: [{ x: [0.02, 0.03, 0.05], shape: \"b\" }] }"
+attracts "the corner of three planes" 23.1 '{ cohesion: { force: 7.7 }, walls: [{ rectangle: { center: [0.5, 0.5, 0], normal: [0, 0, 1], sides: [1, 1] } },
+    { rectangle: { center: [0.5, 0, 0.5], normal: [0, 1, 0], sides: [1, 1] } }, { rectangle: { center: [0, 0.5, 0.5], normal: [1, 0, 0], sides: [1, 1] } }], bodies: [{ x: [0.05, 0.05, 0.05], radius: 0.05 }] }'
+attracts "a bridge to four rectangles" '(4 * 3.141592653589793 * 0.05 * 0.072)' "{ capillary: { volume: 1e-8, tension: 0.072 }, $four, bodies: [{ x: [0, 0, -0.05], radius: 0.05 }] }"
+for walls in "$four" 'walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }]'; do
+    jq -n "{ dt: 1e-3, adhesion: { c_n: 1e8, w: 1e6, area: 1e-4 }, $walls, bodies: [{ x: [0, 0, -0.05], radius: 0.05 }] }" | nsd-gen - |
+        step -n 100 --every 100 --eps 1e-10 -o "$tmp/hangs.h5"
+    height "$tmp/hangs.h5"
+done >"$tmp/heights"
+like "a ball hangs from a bond to four rectangles as from one to a plane" "$(jq -s '(.[0] - .[1] | fabs) < 1e-8 and .[0] < -0.0515' "$tmp/heights")" true
+
+# the face of a prism is where its centre of mass is: the resultant goes through that, from any surface below
+while read -r sides corners; do
+    prism=$(jq -nc "{ p: { points: [range(2) as \$z | ${corners}[] | . + [2 * \$z]] }, b: { box: [40, 40, 1] } }")
+    while IFS='|' read -r what below; do
+        like "a prism of $sides sides on $what: the resultant is at the centre of its face" \
+            "$(jq -n "{ dt: 1e-3, gravity: [0, 0, 0], cohesion: { force: 2, range: 1 }, shapes: $prism } + $below" | resultant |
+                jq '(.[0] / 2 - 1 | fabs) < 1e-9 and (.[1] | fabs) < 1e-9 and (.[2] | fabs) < 1e-9')" true
+    done <<'BELOW'
+a plane|{ walls: [{ point: [0, 0, -1.2], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0], shape: "p" }] }
+two rectangles|{ walls: [10, -10 | { rectangle: { center: [., 0, -1.2], normal: [0, 0, 1], sides: [20, 40] } }], bodies: [{ x: [0, 0, 0], shape: "p" }] }
+a fixed brick|{ bodies: [{ x: [0, 0, 0], shape: "p" }, { x: [0, 0, -1.7], shape: "b", fixed: true }] }
+a brick|{ bodies: [{ x: [0, 0, -1.7], shape: "b" }, { x: [0, 0, 0], shape: "p" }] }
+BELOW
+done <<'PRISMS'
+4 [[0,0],[5,0],[1,1],[0,1]]
+5 [[1,0],[0.309017,0.951057],[-0.809017,0.587785],[-0.809017,-0.587785],[0.309017,-0.951057]]
+7 [[0,0],[3,0],[4,1],[3.5,2.5],[1,3],[-1,1.5],[-0.8,0.6]]
+PRISMS
+
+# ---- a run continued by its scene ----
+
+# by_scene NAME STEPS MORE: the rest of a run by nsd-step alone and by nsd-info --scene | FILTER | nsd-gen
+by_scene()
+{
+    step -n "$2" --every "$2" -o "$tmp/first.h5" "$tmp/$1"
+    step -n "$3" --every "$3" -o "$tmp/whole.h5" "$tmp/first.h5"
+    nsd-info --scene "$tmp/first.h5" | jq "${4:-.}" | nsd-gen - >"$tmp/again.h5" 2>"$tmp/said"
+    step -n "$3" --every "$3" -o "$tmp/rest.h5" "$tmp/again.h5"
+}
+jq -n '{ dt: 1e-4, mu: 0.3, adhesion: { c_n: 1e8, w: 10 }, walls: [{ point: [0, 0, 0], normal: [0, 0, -1], velocity: [0.01, 0, 0] }],
+    shapes: { b: { box: [0.02, 0.02, 0.02] } },
+    bodies: [{ x: [0, 0, -0.01], shape: "b" }, { x: [0, 0, -0.03], radius: 0.01 }, { x: [0.1, 0, -0.01], radius: 0.01 }] }' | nsd-gen - >"$tmp/bond.h5"
+jq -n '{ dt: 1e-5, gravity: [0, 0, 0], capillary: { volume: 1e-10, tension: 0.072 }, bodies: [{ x: [0, 0, 0], radius: 1e-3, fixed: true },
+        { x: [0, 0, -2.01e-3], radius: 1e-3, v: [0, 0, 0.05] }],
+    forces: [{ bodies: [1], along: [0, 0, -1], force: 6e-4, from: 0.002, until: 0.003 }] }' | nsd-gen - >"$tmp/bridge.h5"
+for name in bond.h5:200:200 bridge.h5:300:700; do
+    IFS=: read -r file before after <<<"$name"
+    by_scene "$file" "$before" "$after"
+    is "$file: a run continued by its scene has the same bits" "$(nsd-info --last -p "$tmp/rest.h5" | jq -c '[.x, .v, .w]')" "$(nsd-info --last -p "$tmp/whole.h5" | jq -c '[.x, .v, .w]')"
+    is "and nothing is said" "$(cat "$tmp/said")" ""
+done
+by_scene bond.h5 200 20 '.mu = 0.9 | .dt = 5e-5'
+like "another mu and dt break no bond" "$(nsd-info --last -p "$tmp/rest.h5" | jq -s 'map(.v[2] | fabs) | max < 1e-2')" true
+by_scene bond.h5 200 20 'del(.adhesion)'
+like "bonds without a law are lost, which is said" "$(cat "$tmp/said")" "nsd-gen: warning: .*first.h5: 6 bonds or liquid bridges are lost"
+by_scene bond.h5 200 20 '.walls[0].point[2] = 0.001'
+like "so are those with a wall that is another" "$(cat "$tmp/said")" "first.h5: 5 bonds or liquid bridges are lost"
+
 # ---- rolling and pivoting friction ----
 
 # slope TAN PART: a ball of 1 cm on a slope, with mu_r this part of its radius

@@ -1,0 +1,199 @@
+#include "scene/scene_carry.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Does the scene continue the run of the document? */
+static bool continues(const struct scene *s, const struct packing *from)
+{
+    return s->t == from->t;
+}
+
+static bool same_vec(vec3 a, vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Is wall k of the packing that of the document, wherever it is? */
+static bool same_wall(const struct packing *p, const struct scene *s, const struct packing *from,
+                      int32_t k)
+{
+    if (k >= p->walls || k >= from->walls) return false;
+    const struct wall *w = &p->wall[k], *v = &from->wall[k];
+    bool same = !s->has_walls || same_vec(w->x, v->x);
+    for (int i = 0; i < 3; i++) same = same && w->size[i] == v->size[i];
+    return same && same_vec(w->n, v->n) && same_vec(w->along, v->along) && w->arc == v->arc &&
+           w->shape == v->shape && w->side == v->side && w->elements == v->elements;
+}
+
+static bool same_walls(const struct packing *p, const struct scene *s, const struct packing *from)
+{
+    bool same = p->walls == from->walls;
+    for (int32_t k = 0; same && k < p->walls; k++) same = same_wall(p, s, from, k);
+    return same;
+}
+
+/* A document and where its bodies begin in p */
+struct carried {
+    struct packing *p;
+    const struct scene *s;
+    const struct packing *from;
+    int64_t row;
+};
+
+/* What body or wall a of the document is in p; false: it is not there. */
+static bool find(const struct carried *y, int32_t *a)
+{
+    if (*a < 0) return same_wall(y->p, y->s, y->from, -1 - *a);
+    *a += (int32_t)y->row;
+    return true;
+}
+
+/* Does the key of a pair mean in p what it means in the document? */
+static bool has_images(const struct carried *y, const int8_t shift[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (shift[k] && !(y->p->cell.repeats[k] && y->from->cell.repeats[k])) return false;
+    return true;
+}
+
+/* An anchor in the frame of a wall, which is counted from where the wall is described */
+static vec3 move_anchor(const struct carried *y, int32_t wall, vec3 at)
+{
+    const struct pose was = wall_pose(y->from, &y->from->wall[wall], y->from->t),
+                      now = wall_pose(y->p, &y->p->wall[wall], y->p->t);
+    if (continues(y->s, y->from)) return at;
+    return quat_turn_back(now.q, v3_sub(pose_of(&was, at), now.shift));
+}
+
+static int carry_bonds(const struct carried *y, struct why *why)
+{
+    struct packing *p = y->p;
+    for (int64_t i = 0; p->law && i < y->from->bonds.n; i++) {
+        struct bond b = y->from->bonds.bond[i];
+        const int32_t wall = -1 - b.a;
+        if (!find(y, &b.a)) continue;
+        b.b += (int32_t)y->row;
+        const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
+        if (!pair_law_wets(l)) b.wet = 0;
+        bool bonds = pair_law_adheres(l);
+        if (!has_images(y, b.shift) || (!bonds && !b.wet)) continue;
+        if (!bonds) b.beta = 0;
+        if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
+        if (!bonds_add(&p->bonds, &b)) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    }
+    return 0;
+}
+
+static int carry_memory(const struct carried *y, struct why *why)
+{
+    struct memory *m = &y->p->memory;
+    const struct memory *from = &y->from->memory;
+    if (!from->on || !continues(y->s, y->from)) return 0;
+    struct recall *more = realloc(m->recall, (size_t)(m->n + from->n + 1) * sizeof *more);
+    if (!more) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    m->recall = more, m->room = m->n + from->n + 1, m->on = true;
+    for (int64_t i = 0; i < from->n; i++) {
+        struct recall x = from->recall[i];
+        if (!find(y, &x.a) || !has_images(y, x.shift)) continue;
+        x.b += (int32_t)y->row;
+        m->recall[m->n++] = x;
+    }
+    return 0;
+}
+
+static int carry_force(const struct carried *y, const vec3 *from, vec3 **to, struct why *why)
+{
+    if (!from) return 0;
+    if (outside_alloc(to, y->p->n, why)) return why->status;
+    memcpy(*to + y->row, from, (size_t)y->from->n * sizeof *from);
+    return 0;
+}
+
+static int carry_forces(const struct carried *y, struct why *why)
+{
+    const struct lasting *from = &y->from->outside.lasts;
+    struct lasting *to = &y->p->outside.lasts;
+    if (carry_force(y, from->force, &to->force, why) ||
+        carry_force(y, from->torque, &to->torque, why))
+        return why->status;
+    if (!from->push || !same_walls(y->p, y->s, y->from)) return 0;
+    free(to->push);
+    to->push = calloc((size_t)y->p->walls + 1, sizeof *to->push);
+    if (!to->push) return why_set(why, EX_SOFTWARE, "no memory for forces on walls");
+    memcpy(to->push, from->push, (size_t)y->p->walls * sizeof *to->push);
+    return 0;
+}
+
+static int carry_run(const struct carried *y, struct why *why)
+{
+    struct packing *p = y->p;
+    if (!continues(y->s, y->from)) return 0;
+    for (int64_t i = 0; p->image && y->from->image && i < y->from->n; i++)
+        memcpy(p->image[y->row + i], y->from->image[i], sizeof *p->image);
+    if (p->overlap == OVERLAP_UNSAID) p->overlap = y->from->overlap;
+    return carry_forces(y, why);
+}
+
+/* Grains of pours are numbered from the first number that the document has for them. */
+static void carry_account(struct packing *p, const struct scene *s, const struct packing *from)
+{
+    int64_t poured = 0, next = p->first_id;
+    for (int32_t k = 0; k < s->pours; k++) {
+        p->poured[k] = s->pour[k].poured;
+        poured += p->poured[k].bodies;
+    }
+    for (int32_t k = 0; k < s->removals; k++) p->removed[k] = s->removal[k].removed;
+    if (!poured) return;
+    int64_t first = next > poured ? next - poured : 0;
+    if (from && from->first_id > first) first = from->first_id;
+    p->first_id = (int32_t)first;
+}
+
+int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct why *why)
+{
+    const struct packing *first = NULL;
+    for (int64_t g = 0; g < s->groups && !why->status; g++) {
+        const struct carried y = { p, s, s->bodies[g].document, row[g] };
+        if (!y.from || s->bodies[g].foreign) continue;
+        if (!first) first = y.from;
+        if (!carry_bonds(&y, why) && !carry_memory(&y, why)) carry_run(&y, why);
+    }
+    bonds_sort(&p->bonds), memory_sort(&p->memory);
+    carry_account(p, s, first);
+    return why->status;
+}
+
+void scene_carry_dt(struct packing *p, const struct scene *s)
+{
+    for (int64_t g = 0; g < s->groups; g++) {
+        const struct packing *from = s->bodies[g].document;
+        if (!from || !p->memory.n || from->dt == p->dt) continue;
+        memory_scale(&p->memory, p->dt / from->dt);
+        return;
+    }
+}
+
+struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
+{
+    struct scene_lost lost = { .bonds = -p->bonds.n };
+    const struct lasting *has = &p->outside.lasts;
+    int64_t poured = 0;
+    for (int32_t k = 0; k < s->pours; k++) poured += s->pour[k].poured.bodies;
+    for (int64_t g = 0; g < s->groups; g++) {
+        const struct packing *from = s->bodies[g].document;
+        if (!from || s->bodies[g].foreign) continue;
+        const struct lasting *had = &from->outside.lasts;
+        const double dt = packing_whole_dt(from);
+        if (!lost.file) lost.file = s->bodies[g].file;
+        lost.bonds += from->bonds.n;
+        lost.forces |= (had->force && !has->force) || (had->torque && !has->torque) ||
+                       (had->push && !has->push);
+        if (!continues(s, from)) continue;
+        lost.steered |= from->outside.steered, lost.sums |= from->sums.n > 0;
+        for (int32_t k = 0; k < from->pours && s->pours && !poured; k++)
+            lost.poured |= from->poured[k].bodies > 0;
+        if (!(s->dt > 0) && p->dt != dt) lost.dt = dt;
+    }
+    return lost;
+}

@@ -1,0 +1,31 @@
+/*
+ * scene/scene_carry.h: what a document knows of its bodies besides their places and velocities, on its way into a packing
+ * that is built of them. Bonds and liquid bridges come along wherever the scene has laws for them; bonds with a wall where
+ * the scene has the same wall. A scene at the time of its document continues the run: it takes the remembered
+ * reactions, forces that last, edges gone, and what the run does about overlaps, too.
+ */
+#ifndef NSD_SCENE_CARRY_H
+#define NSD_SCENE_CARRY_H
+
+#include "bodies/packing.h"
+#include "scene/scene.h"
+
+/* Once p has the scene's bodies, of the documents' groups in their order, walls and laws; row[g]: where group g begins.
+   Returns 0 or EX_SOFTWARE. */
+int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct why *why);
+/* Once it has its dt, too */
+void scene_carry_dt(struct packing *p, const struct scene *s);
+
+/* What the documents have and p does not */
+struct scene_lost {
+    const char *file; /* the first document; NULL: there is none */
+    int64_t bonds; /* bonds and bridges without a law, or with walls that the scene does not have */
+    bool sums;     /* of walls: they begin with each scene */
+    bool forces;   /* that last */
+    bool poured;   /* what pours have brought: they begin again from 0 */
+    bool steered;  /* a program has changed gravity, friction or the motion of walls */
+    double dt;     /* s: of the run, where the scene's is chosen again; 0: it is not */
+};
+struct scene_lost scene_lost(const struct packing *p, const struct scene *s);
+
+#endif
