@@ -280,8 +280,15 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (!m.q2) return no_memory(p, why);
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, measure_some, &m);
     p->norm_q = sqrt(sum_of_slots(p, m.q2));
-    for (int64_t i = 0; i < p->slots; i++) m.q2[i] = sqrt(m.q2[i]);
-    problem_set_unit(p, sum_of_slots(p, m.q2));
+    for (int64_t i = 0; i < p->slots; i++) {
+        m.q2[i] = sqrt(m.q2[i]);
+        p->most_q = fmax(p->most_q, m.q2[i]);
+    }
+    p->mean_q = sum_of_slots(p, m.q2) / (double)(p->n ? p->n : 1);
+    for (int64_t i = 0; i < pack->n; i++) p->heaviest = fmax(p->heaviest, pack->mass[i]);
+    if (exchange) p->most_q = exchange->most(exchange, p->most_q);
+    if (exchange) p->heaviest = exchange->most(exchange, p->heaviest);
+    problem_set_unit(p);
     free(m.q2);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);
