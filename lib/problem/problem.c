@@ -41,7 +41,7 @@ void problem_set_array(struct problem *p, enum array which, void *x)
 void problem_free(struct problem *p)
 {
     for (int k = 0; k < ARRAYS; k++) free(problem_array(p, (enum array)k).x);
-    free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin);
+    free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin), free(p->held);
     plan_free(p->plan);
     delassus_free(&p->sorted);
     free(p->brake);

@@ -71,15 +71,17 @@ struct problem {
                                       there is only W */
     vec3 *spin;                    /* [packing->n] y before the reactions; NULL without levers */
     double *pull;                  /* [slots] N s: of cohesion, against n; NULL: none */
-    int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
-    struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
-    struct delassus *W;            /* NULL: given by bodies */
-    struct delassus *own;          /* W where the problem is to free it, else NULL: W is borrowed */
-    struct delassus sorted;        /* given by W: its block rows in the order of the slots */
-    double dt;             /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v;        /* m/s: the unit of velocities in scaled errors, g dt */
-    double scale_r;        /* N s: that of reactions, m g dt */
-    double fall;           /* m/s: |g| dt */
+    struct body *
+        held; /* [bodies - packing->n] those beyond the packing's, which do not move, as they were */
+    int32_t *seat;              /* [packing->n] body i of the packing is body[seat[i]] */
+    struct couplings *coupling; /* what freedoms the packing has beyond its bodies; NULL: none */
+    struct delassus *W;         /* NULL: given by bodies */
+    struct delassus *own;       /* W where the problem is to free it, else NULL: W is borrowed */
+    struct delassus sorted;     /* given by W: its block rows in the order of the slots */
+    double dt;                  /* s: the paper's forces are r / dt; 1 where there are no steps */
+    double scale_v;             /* m/s: the unit of velocities in scaled errors, g dt */
+    double scale_r;             /* N s: that of reactions, m g dt */
+    double fall;                /* m/s: |g| dt */
     double unit;           /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
     double mean_q, most_q; /* m/s: |u~_free| of a contact, the mean and the largest */
     double heaviest;       /* kg: the largest mass that a contact moves; 0: unknown */

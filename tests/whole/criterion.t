@@ -70,14 +70,14 @@ done
 
 # Light balls pinched between two heavy ones, one of which a force presses: they are carried along, and the heavy one
 # stays. lambda r is the mass ratio times what moves, and there is a solution.
-pinch() # dim, mass ratio, balls
+pinch() # dim, mass ratio, balls, force
 {
-    jq -n --argjson dim "$1" --argjson R "$2" --argjson k "$3" '(0.1 / pow($R; 1 / $dim)) as $s | ([0.2, 100 * $s] | min) as $v |
+    jq -n --argjson dim "$1" --argjson R "$2" --argjson k "$3" --argjson F "${4:-50}" '(0.1 / pow($R; 1 / $dim)) as $s | ([0.2, 100 * $s] | min) as $v |
         {dim: $dim, dt: 1e-4, mu: 0.5, gravity: [0, 0, 0][:$dim], overlap: true, bodies: ([{x: [-0.1 - $s, 0, 0][:$dim],
         radius: 0.1, fixed: true, v: [0, $v, 0][:$dim]}, {x: [0.1 + $s, 0, 0][:$dim], radius: 0.1, v: [0, $v, 0][:$dim]}] +
         [range($k) | ((. - ($k - 1) / 2) * 2.2 * $s) as $y |
             {x: [0, $y, 0][:$dim], radius: ($s + ((0.01 + $y * $y) | sqrt) - 0.1)}]),
-        forces: [{bodies: [1], along: [-1, 0, 0][:$dim], force: 50}]}' | nsd-gen -
+        forces: [{bodies: [1], along: [-1, 0, 0][:$dim], force: $F}]}' | nsd-gen -
 }
 for dim in 2 3; do
     for ratio in 1e3 1e9 1e12; do
@@ -89,6 +89,8 @@ for dim in 2 3; do
         done
     done
 done
+# sal's first steps there are no numbers: the solve goes on from the best ones that it had
+status 0 "an iterate that is no number leaves none behind" nsd-step -e --global auto -m sal -n 20 --every 20 <(pinch 3 1e3 3 1e6)
 if command -v h5copy >/dev/null; then
     pinch 3 1e12 3 | nsd-step -n 1 2>/dev/null | nsd-cat --last | nsd-detect --fclib=local >"$tmp/both.h5"
     h5copy -i "$tmp/both.h5" -o "$tmp/pinch.h5" -s fclib_local -d fclib_local
