@@ -184,6 +184,55 @@ static double farthest(const struct packing *p, const struct wall *w, vec3 from)
     return most;
 }
 
+/* m/s, rad/s: of a drive, from time t (s) on, until its way ends or the next row of its table comes */
+static double drive_speed_at(const struct drives *d, const struct drive *k, double t)
+{
+    t += k->clock;
+    if (t < k->from || t >= k->until) return 0;
+    if (k->signal != DRIVE_TABLE) return drive_top_speed(d, k);
+    const struct drive_row *r = &d->row[k->first];
+    for (int32_t i = 1; i < k->rows; i++)
+        if (t >= r[i - 1].t && t < r[i].t)
+            return fabs((r[i].s - r[i - 1].s) / (r[i].t - r[i - 1].t));
+    return 0;
+}
+
+/* m/s: of all drives of a wall, from time t on until one of them changes */
+static double drives_speed_at(const struct packing *p, const struct wall *w, const double *arm,
+                              double t)
+{
+    double sum = 0;
+    for (int32_t i = 0; i < w->drives; i++)
+        sum += arm[i] * drive_speed_at(&p->drives, &p->drives.drive[w->first_drive + i], t);
+    return sum;
+}
+
+enum { AT_ONCE_MOST = 64 }; /* drives, and rows of their tables, of which each time is looked at */
+
+/* m/s: the largest sum of the speeds of drives that act at the same time. Speeds change where a drive begins or a row
+   of its table lies. Of many: the sum of all */
+static double drives_top_speed(const struct packing *p, const struct wall *w)
+{
+    const struct drives *d = &p->drives;
+    double all = 0, most = 0, arm[AT_ONCE_MOST];
+    int64_t changes = 0;
+    for (int32_t i = 0; i < w->drives; i++) {
+        const struct drive *k = &d->drive[w->first_drive + i];
+        double reach = k->turns ? farthest(p, w, k->point) : 1;
+        if (i < AT_ONCE_MOST) arm[i] = reach;
+        all += drive_top_speed(d, k) * reach, changes += 1 + k->rows;
+    }
+    if (w->drives < 2 || changes > AT_ONCE_MOST) return all;
+    for (int32_t i = 0; i < w->drives; i++) {
+        const struct drive *k = &d->drive[w->first_drive + i];
+        double first = isfinite(k->from) ? k->from : -1e300;
+        most = dmax(most, drives_speed_at(p, w, arm, first - k->clock));
+        for (int32_t r = 0; r < k->rows; r++)
+            most = dmax(most, drives_speed_at(p, w, arm, d->row[k->first + r].t - k->clock));
+    }
+    return most;
+}
+
 double wall_top_speed(const struct packing *p, const struct wall *w)
 {
     double most = v3_norm(w->v);
@@ -191,9 +240,5 @@ double wall_top_speed(const struct packing *p, const struct wall *w)
         most += fabs((w->load.speed + w->load.rate) * wall_lever(p, w, p->t));
     else
         most += fabs(w->load.speed);
-    for (int32_t i = w->first_drive; i < w->first_drive + w->drives; i++) {
-        const struct drive *k = &p->drives.drive[i];
-        most += drive_top_speed(&p->drives, k) * (k->turns ? farthest(p, w, k->point) : 1);
-    }
-    return most;
+    return most + drives_top_speed(p, w);
 }

@@ -82,9 +82,10 @@ void problem_react(struct problem *p, const double *r, int threads)
     device_home(p, true);
     for (int64_t i = 0; i < p->slots; i++) {
         int64_t c = p->contact[i];
-        if (c < 0) continue;
-        for (int k = 0; k < 3; k++) slot_bundle(p, i)->r[k][slot_lane(i)] = r[3 * i + k];
-        for (int k = 0; k < p->d && p->W; k++) p->W->r[p->d * c + k] = r[3 * i + k];
+        // where no contact is, r is 0 again: an iterate that was no number has left that there as well
+        for (int k = 0; k < 3; k++)
+            slot_bundle(p, i)->r[k][slot_lane(i)] = c < 0 ? 0 : r[3 * i + k];
+        for (int k = 0; k < p->d && p->W && c >= 0; k++) p->W->r[p->d * c + k] = r[3 * i + k];
     }
     if (p->W) delassus_begin(p->W);
     problem_renew(p, threads);

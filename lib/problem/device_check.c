@@ -79,7 +79,10 @@ static bool make_balls(struct problem *p, int32_t contact[CHAIN], int64_t group[
                            .group = group,
                            .bodies = CHAIN + 1,
                            .dt = 1,
-                           .unit = 1 };
+                           .unit = 1,
+                           .endless = { 1e9, 0 },
+                           .rounded = 1e14,
+                           .wild = 1e2 };
     p->body = lay_lines(p->bodies, sizeof *p->body);
     p->rebound = lay_lines(p->bundles, sizeof *p->rebound);
     if (!p->body || !p->rebound || !lay_bundles(p)) return false;

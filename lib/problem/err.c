@@ -217,7 +217,8 @@ void err_eval(struct err *e, const struct problem *p, bool believes, enum err_te
         e->natural_siconos = p->norm_q > 0 ? siconos / p->norm_q : siconos;
         e->natural_q = ratio(off, p->norm_q);
         e->velocity_error = isfinite(off) ? sqrt(bundle_max(all.max_velocity2)) : off;
-        e->jammed = (int64_t)bundle_sum(all.jammed);
+        // reactions that make bodies that fast have only gone too far
+        e->jammed = e->velocity_error > p->wild ? 0 : (int64_t)bundle_sum(all.jammed);
         if (!(e->velocity_error <= ROUNDING * p->speed))
             e->velocity = ratio(e->velocity_error, p->unit);
         if (!p->packing) e->stray = ratio(e->velocity_error, p->unit);

@@ -71,12 +71,15 @@ ALWAYS_INLINE vd natural2(vd mu, const vd r[3], vd rho, const vd u[3])
     return d * d;
 }
 
-/* off2: the square of the velocity by which contacts miss the law; push2: that of lambda r */
-ALWAYS_INLINE void add_velocity(struct sums *s, double unit, int k, vd off2, vd push2)
+/* off2: the square of the velocity by which contacts miss the law; push2, r2: those of lambda r and r */
+ALWAYS_INLINE void add_velocity(struct sums *s, const struct problem *p, int k, vd off2, vd push2,
+                                vd r2)
 {
-    vd seen2 = larger(off2, ROUNDING_OF_R * ROUNDING_OF_R * push2);
-    vm jammed = lt(splat(JAMMED * JAMMED * unit * unit), push2) &
-                lt(splat(MISSES * MISSES * unit * unit), seen2);
+    const double *end = p->endless, misses = MISSES * p->unit;
+    vd seen2 = pick(lt(splat(p->rounded * p->rounded), push2),
+                    larger(off2, ROUNDING_OF_R * ROUNDING_OF_R * push2), off2);
+    vm jammed = lt(splat(end[0] * end[0]), push2) & lt(splat(end[1] * end[1]), r2) &
+                lt(splat(misses * misses), seen2) & lt(off2, splat(p->wild * p->wild));
     add_to(s->velocity2 + k, off2);
     raise_to(s->max_velocity2 + k, pick(jammed, splat(0), seen2));
     add_to(s->jammed + k, pick(jammed, splat(1), splat(0)));
@@ -92,7 +95,7 @@ ALWAYS_INLINE void add_natural(struct sums *s, const struct problem *p, int64_t 
     vd n2 = natural2(mu, r, rho, u);
     add_to(s->natural2 + k, n2);
     vd r2 = dot3(r, r);
-    add_velocity(s, p->unit, k, n2 / (rho * rho), r2 / (rho * rho));
+    add_velocity(s, p, k, n2 / (rho * rho), r2 / (rho * rho), r2);
     add_to(s->siconos2 + k, natural2(mu, r, splat(1), u));
     add_to(s->r2 + k, r2);
 }
@@ -117,7 +120,7 @@ ALWAYS_INLINE void add_bonds(struct sums *s, const struct problem *p, int64_t bu
     vd n2 = dot3(off, off);
     if (which & ERR_TERMS) add_to(s->motion + k, lambda * norm3(off));
     if (!(which & ERR_NATURAL)) return;
-    add_to(s->natural2 + k, n2), add_velocity(s, p->unit, k, n2 * lambda * lambda, splat(0));
+    add_to(s->natural2 + k, n2), add_velocity(s, p, k, n2 * lambda * lambda, splat(0), splat(0));
     add_to(s->siconos2 + k, n2), add_to(s->r2 + k, dot3(pull, pull));
 }
 

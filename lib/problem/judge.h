@@ -18,10 +18,11 @@ struct sums {
 };
 
 /*
- * A contact is jammed where its reaction alone would change its velocity by more than JAMMED units [struct
- * problem] and it misses the law by more than MISSES of them all the same: the bodies cannot give way. Masses that
- * differ by a factor of 1e6 make 4e6 units of a contact at rest; leaps along the growth [solve/anderson.c] soon
- * make 1e9 and more of one that has no solution.
+ * A contact is jammed where its reaction is without end [problem_is_endless()] and it misses the law by more than
+ * MISSES units all the same: the bodies cannot give way. A light ball between heavy ones has a lambda r of their
+ * mass ratio times their velocity, and a solution, so that r counts as well, by the heaviest mass. Leaps along the
+ * growth [solve/anderson.c] soon make more of a contact that has no solution. Where they have gone too far, bodies
+ * give way wildly, and nothing is jammed.
  */
 #define MISSES 1e-3
 /* Of |lambda r|: below it, what a contact seems to miss the law by is rounding. */

@@ -727,13 +727,14 @@ static void judge(struct device *d, const struct problem *p, bool believes, enum
 {
     struct opencl *o = (struct opencl *)d;
     int64_t blocks = (p->bundles + per_block - 1) / per_block;
-    double unit = p->unit;
+    const double *end = p->endless, misses = MISSES * p->unit;
     if (!need(o, JUDGED, (size_t)blocks * sizeof *s)) return;
     SET(JUDGE, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
         MEMORY(U), MEMORY(W_CC), ROWS_OF_W, integer(p->d), whole(p->bundles),
         integer((int32_t)per_block), integer(believes), integer((which & ERR_TERMS) != 0),
         integer((which & ERR_NATURAL) != 0), real(ROUNDING_OF_R * ROUNDING_OF_R),
-        real(JAMMED * JAMMED * unit * unit), real(MISSES * MISSES * unit * unit), MEMORY(JUDGED));
+        real(p->rounded * p->rounded), real(end[0] * end[0]), real(end[1] * end[1]),
+        real(misses * misses), real(p->wild * p->wild), MEMORY(JUDGED));
     launch(o, JUDGE, blocks * BUNDLE);
     const struct columns columns = { SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed) };
     sum_parts(o, JUDGED, blocks, columns, JUDGED_SUM, s->motion);

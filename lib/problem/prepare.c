@@ -86,12 +86,24 @@ static bool copy_ties(struct problem *p, const struct problem *bodies)
     return good;
 }
 
+/* kg: of the freedoms, as contacts feel them; 0: there are none */
+static double heaviest_freedom(const struct couplings *y)
+{
+    double most = 0;
+    for (int64_t i = 0; y && i < y->n; i++) {
+        const double *J = y->of[i].J, J2 = J[0] * J[0] + J[1] * J[1] + J[2] * J[2];
+        if (J2 > 0) most = fmax(most, y->freedoms.f[y->of[i].freedom].mass / J2);
+    }
+    return most;
+}
+
 /* What a problem given by W does not know of the packing */
 static void describe(struct problem *p, const struct problem *bodies, const struct contacts *s)
 {
     p->packing = bodies->packing;
     p->dt = bodies->dt, p->fall = bodies->fall, p->speed = bodies->speed;
-    p->unit = fmax(p->unit, p->fall);
+    p->heaviest = fmax(bodies->heaviest, heaviest_freedom(bodies->coupling));
+    problem_set_unit(p);
     p->scale_v = bodies->scale_v, p->scale_r = bodies->scale_r;
     for (int64_t i = 0; s->found && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;

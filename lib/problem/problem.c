@@ -6,6 +6,7 @@
 #include "problem/plan.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,7 +41,7 @@ void problem_set_array(struct problem *p, enum array which, void *x)
 void problem_free(struct problem *p)
 {
     for (int k = 0; k < ARRAYS; k++) free(problem_array(p, (enum array)k).x);
-    free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin);
+    free(p->body), free(p->split), free(p->pull), free(p->in_W), free(p->spin), free(p->held);
     plan_free(p->plan);
     delassus_free(&p->sorted);
     free(p->brake);
@@ -53,12 +54,34 @@ void problem_free(struct problem *p)
 /*
  * g dt, or a part of the mean |u~_free| where that is more: while much collides, errors of g dt would be a
  * thousandth of what the contacts change. A mean, so that one impact on a pile does not blur the rest.
+ * Without gravity nothing but the mean is known of the motion. In slow shear it is about the rate times a
+ * diameter, the velocity that is sought, so that the part is a smaller one.
  */
-#define UNIT_OF_SPEED 0.2
+#define UNIT_OF_SPEED      0.2
+#define UNIT_OF_WEIGHTLESS 0.02
 
-void problem_set_unit(struct problem *p, double sum)
+/*
+ * Of reactions without end. A reaction r that has one changes the momentum of what it holds up: r is at most
+ * m v, of the heaviest body and the fastest contact, times the chains and the wedges that amplify it. ENDLESS
+ * m v is more than these give; lambda r is then ENDLESS times the mass ratio times v.
+ */
+#define JAMMED  1e9  /* of the unit that there is with gravity */
+#define ROUNDED 1e14 /* v: the rounding of lambda r is then a third of v */
+#define ENDLESS 1e3
+#define WILD    1e2 /* v: a tenth of what a reaction without end makes of the heaviest body, or more */
+
+void problem_set_unit(struct problem *p)
 {
-    p->unit = fmax(p->fall, UNIT_OF_SPEED * sum / (double)(p->n ? p->n : 1));
+    const bool weightless = p->packing && p->fall == 0;
+    const double unit = fmax(p->fall, UNIT_OF_SPEED * p->mean_q), v = fmax(p->fall, p->most_q);
+    p->unit = weightless ? UNIT_OF_WEIGHTLESS * p->mean_q : unit;
+    p->endless[0] = JAMMED * unit, p->endless[1] = ENDLESS * p->heaviest * v;
+    p->rounded = ROUNDED * v, p->wild = WILD * v;
+}
+
+bool problem_is_endless(const struct problem *p, double lambda, double r)
+{
+    return lambda * r > p->endless[0] && r > p->endless[1];
 }
 
 int64_t problem_bundles(const struct problem *p)
@@ -133,7 +156,7 @@ static void store_some(void *arg, int64_t first, int64_t end)
         for (int k = 0; k < 3 && problem_undivided(p); k++)
             c->u[k] /= 1 + (k ? law->et : law->en); // it is D u~
         c->status = (int8_t)local_status(slot_bundle(p, i)->mu[slot_lane(i)], c->r);
-        if (slot_lambda(p, i) * c->r[0] > JAMMED * p->unit) c->status = STATUS_JAMMED;
+        if (problem_is_endless(p, slot_lambda(p, i), c->r[0])) c->status = STATUS_JAMMED;
         double x[BESIDE_R];
         if (p->extra) slot_get_beyond(p, i, x);
         for (int k = 0; k < 3 && p->extra; k++) {

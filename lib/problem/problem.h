@@ -71,18 +71,26 @@ struct problem {
                                       there is only W */
     vec3 *spin;                    /* [packing->n] y before the reactions; NULL without levers */
     double *pull;                  /* [slots] N s: of cohesion, against n; NULL: none */
-    int32_t *seat;                 /* [packing->n] body i of the packing is body[seat[i]] */
-    struct couplings *coupling;    /* what freedoms the packing has beyond its bodies; NULL: none */
-    struct delassus *W;            /* NULL: given by bodies */
-    struct delassus *own;          /* W where the problem is to free it, else NULL: W is borrowed */
-    struct delassus sorted;        /* given by W: its block rows in the order of the slots */
-    double dt;      /* s: the paper's forces are r / dt; 1 where there are no steps */
-    double scale_v; /* m/s: the unit of velocities in scaled errors, g dt */
-    double scale_r; /* N s: that of reactions, m g dt */
-    double fall;    /* m/s: |g| dt */
-    double unit;    /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
-#define JAMMED                                                                                     \
-    1e9 /* units: what a contact's reaction makes of its velocity where it has no end [problem/judge.h] */
+    struct body *
+        held; /* [bodies - packing->n] those beyond the packing's, which do not move, as they were */
+    int32_t *seat;              /* [packing->n] body i of the packing is body[seat[i]] */
+    struct couplings *coupling; /* what freedoms the packing has beyond its bodies; NULL: none */
+    struct delassus *W;         /* NULL: given by bodies */
+    struct delassus *own;       /* W where the problem is to free it, else NULL: W is borrowed */
+    struct delassus sorted;     /* given by W: its block rows in the order of the slots */
+    double dt;                  /* s: the paper's forces are r / dt; 1 where there are no steps */
+    double scale_v;             /* m/s: the unit of velocities in scaled errors, g dt */
+    double scale_r;             /* N s: that of reactions, m g dt */
+    double fall;                /* m/s: |g| dt */
+    double unit;           /* m/s: the scene's own velocity, in which CRITERION_VELOCITY counts */
+    double mean_q, most_q; /* m/s: |u~_free| of a contact, the mean and the largest */
+    double heaviest;       /* kg: the largest mass that a contact moves; 0: unknown */
+    double endless
+        [2]; /* m/s, N s: lambda r and r of a contact whose reaction grows without end are larger
+                          than both [problem/judge.h] */
+    double
+        rounded; /* m/s: what a contact with a larger lambda r misses the law by is rounding, at least */
+    double wild;   /* m/s: where contacts miss the law by more, reactions do not hold one another */
     double norm_q; /* m/s: |u~_free| of all contacts, |q| */
     double speed;  /* m/s: the fastest point before the step, plus g dt; 0: there is only W */
 };
@@ -122,8 +130,10 @@ void slot_set_beyond(struct problem *p, int64_t i, const double x[BESIDE_R]);
    of the cell's edges gains, and what cohesion pulls. */
 void problem_set_free_motion(struct problem *p);
 
-/* Sets the unit of CRITERION_VELOCITY from the sum of |u~_free| of all contacts. */
-void problem_set_unit(struct problem *p, double sum);
+/* Sets unit and endless from mean_q, most_q, fall and heaviest. */
+void problem_set_unit(struct problem *p);
+/* Is lambda r of a contact one that grows without end? */
+bool problem_is_endless(const struct problem *p, double lambda, double r);
 
 /* How many of these threads are to share a sweep: all where the groups are large enough, else two
    where the order has halves, else one */

@@ -56,13 +56,14 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct
             p->norm_q += q[j] * q[j], q2 += q[j] * q[j];
             trace += D[4 * j];
         }
-        speeds += sqrt(q2);
+        speeds += sqrt(q2), p->most_q = fmax(p->most_q, sqrt(q2));
     }
     // there is no g and no m: the unit of velocity is the root mean square of q, that of mass 1
     // over the mean of W_ii
     p->norm_q = sqrt(p->norm_q);
     if (p->norm_q > 0) p->scale_v = p->norm_q / sqrt((double)(W->d * W->n));
-    problem_set_unit(p, speeds);
+    p->mean_q = speeds / (double)(p->n ? p->n : 1);
+    problem_set_unit(p);
     p->scale_r = trace > 0 ? p->scale_v * (double)(W->d * W->n) / trace : p->scale_v;
     return 0;
 }

@@ -11,6 +11,7 @@
 #include "problem/problem.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     PER_THREAD = 4096 /* bodies, contacts or slots that are worth a thread: 100 us of work */
@@ -86,7 +87,9 @@ static bool set_pulls(struct problem *p, const struct contacts *s)
 
 void problem_set_free_motion(struct problem *p)
 {
-    team_share(team_size(), p->packing->n, PER_THREAD, free_some, p);
+    const int64_t n = p->packing->n;
+    team_share(team_size(), n, PER_THREAD, free_some, p);
+    memcpy(p->body + n, p->held, (size_t)(p->bodies - n) * sizeof *p->held);
     if (p->exchange) p->exchange->begin(p->exchange, p);
     for (int64_t i = 0; p->pull && i < p->slots; i++) {
         const double pulled[3] = { -p->pull[i], 0, 0 };
@@ -259,6 +262,9 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (!room) return free(half), no_memory(p, why);
     team_share(team_size(), pack->n, PER_THREAD, set_some, p);
     lay_seats(p, plan, s);
+    if (!(p->held = malloc((size_t)(p->bodies - pack->n) * sizeof *p->held)))
+        return free(half), no_memory(p, why);
+    memcpy(p->held, p->body + pack->n, (size_t)(p->bodies - pack->n) * sizeof *p->held);
     struct filling f = { p, s, &cell, o->alpha, o->rho_factor, half };
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, fill_bundles, &f);
     room = !exchange || !exchange->slower || !brake_make(p, &f, exchange->slower);
@@ -280,8 +286,15 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (!m.q2) return no_memory(p, why);
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, measure_some, &m);
     p->norm_q = sqrt(sum_of_slots(p, m.q2));
-    for (int64_t i = 0; i < p->slots; i++) m.q2[i] = sqrt(m.q2[i]);
-    problem_set_unit(p, sum_of_slots(p, m.q2));
+    for (int64_t i = 0; i < p->slots; i++) {
+        m.q2[i] = sqrt(m.q2[i]);
+        p->most_q = fmax(p->most_q, m.q2[i]);
+    }
+    p->mean_q = sum_of_slots(p, m.q2) / (double)(p->n ? p->n : 1);
+    for (int64_t i = 0; i < pack->n; i++) p->heaviest = fmax(p->heaviest, pack->mass[i]);
+    if (exchange) p->most_q = exchange->most(exchange, p->most_q);
+    if (exchange) p->heaviest = exchange->most(exchange, p->heaviest);
+    problem_set_unit(p);
     free(m.q2);
     for (int64_t i = 0; s->found && i < p->slots; i++)
         if (p->contact[i] >= 0) take_found(p, i, s);

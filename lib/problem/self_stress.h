@@ -16,5 +16,8 @@
 /* Of the reactions in the problem's slots, without what bonds and rolling friction add; 0 where all are
    0. Returns 0, or -1 when memory is short. */
 int self_stress(const struct problem *p, double *ratio);
+/* work = r . W r / sum of lambda_a r_a^2: reactions without end have only their rounding, others the inverse of a mass
+   ratio, or more. most: N s, of |r_a|. The same returns. */
+int self_stress_work(const struct problem *p, double *work, double *most);
 
 #endif

@@ -4,6 +4,7 @@
 #include "base/number.h"
 #include "bodies/room.h"
 #include "detect/detect.h"
+#include "geometry/between.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -198,6 +199,68 @@ static double lowest_surface(const struct packing *p, vec3 up)
     return low;
 }
 
+/* Boundaries, and the surfaces of meshes, below bodies that fall */
+struct ground {
+    const struct packing *p;
+    vec3 up;
+    double low;              /* m: where surfaces end below */
+    struct surface *surface; /* [walls] of meshes; NULL where memory is short: these are not seen */
+};
+
+static struct ground ground_of(const struct packing *p, vec3 up)
+{
+    struct ground g = { p, up, lowest_surface(p, up), NULL };
+    struct why why = { 0 };
+    g.surface = calloc((size_t)p->walls + 1, sizeof *g.surface);
+    for (int32_t k = 0; g.surface && k < p->walls; k++) {
+        const struct wall *w = &p->wall[k];
+        if (w->shape != BOUNDARY_MESH || !wall_there(w, p->t)) continue;
+        if (surface_init(&g.surface[k], &p->mesh, w->first_element, w->elements, w->weld, &why))
+            g.surface[k].n = 0;
+    }
+    return g;
+}
+
+static void ground_free(struct ground *g)
+{
+    for (int32_t k = 0; g->surface && k < g->p->walls; k++) surface_free(&g->surface[k]);
+    free(g->surface);
+}
+
+enum { HALVINGS = 40 }; /* of the way down, to where a surface is */
+
+/* m: how high x is above the rectangle, disc or mesh that is within `most` (m) below it; INFINITY: it is not */
+static double above_surface(const struct ground *g, int32_t k, vec3 x, double most)
+{
+    const struct packing *p = g->p;
+    const struct wall *w = &p->wall[k];
+    const bool mesh = w->shape == BOUNDARY_MESH;
+    const struct surface *s = mesh && g->surface ? &g->surface[k] : NULL;
+    if (mesh ? !s || !s->n : w->shape != BOUNDARY_RECTANGLE && w->shape != BOUNDARY_DISC)
+        return INFINITY;
+    const struct pose at = wall_pose(p, w, p->t);
+    const vec3 from = quat_turn_back(at.q, v3_sub(x, wall_at(p, w, p->t))),
+               down = quat_turn_back(at.q, v3_scale(-1, g->up));
+    double near = 0, far = most;
+    if (!boundary_between(w, p->dim, s, from, v3_axpy(from, far, down))) return INFINITY;
+    for (int i = 0; i < HALVINGS; i++) {
+        double middle = (near + far) / 2;
+        *(boundary_between(w, p->dim, s, from, v3_axpy(from, middle, down)) ? &far : &near) =
+            middle;
+    }
+    return far;
+}
+
+/* m: how high x is above what is below it; INFINITY: nothing is */
+static double above_ground(const struct ground *g, vec3 x)
+{
+    double least = above_planes(g->p, x, g->up), most = v3_dot(x, g->up) - g->low;
+    most = isfinite(g->low) ? dmin(least, dmax(0, most) * (1 + 1e-9)) : least;
+    for (int32_t k = 0; k < g->p->walls && most > 0 && isfinite(most); k++)
+        if (wall_there(&g->p->wall[k], g->p->t)) least = dmin(least, above_surface(g, k, x, most));
+    return least;
+}
+
 /* Two unit vectors across a third; in the plane the second is z */
 static void across(int dim, vec3 n, vec3 side[2])
 {
@@ -278,11 +341,10 @@ static double volume_of(const struct packing *p, int64_t i)
     return unit * power(p->radius[i], p->dim);
 }
 
-/* low: m, where surfaces end below */
-static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3 up, double low,
-                       bool rests)
+static void column_add(struct stack *c, const struct ground *g, int64_t i, bool rests)
 {
-    double z = v3_dot(p->x[i], up), r = p->radius[i], h = above_planes(p, p->x[i], up);
+    const struct packing *p = g->p;
+    double z = v3_dot(p->x[i], g->up), r = p->radius[i], h;
     if (rests && p->mass[i] > 0) {
         c->floor = dmax(c->floor, z + r);
         return;
@@ -291,8 +353,8 @@ static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3
         c->bottom = dmin(c->bottom, z + r);
         return;
     }
-    c->top = dmax(c->top, z + r);
-    c->bottom = dmin(c->bottom, isfinite(h) ? z - h : dmin(z - r, low));
+    c->top = dmax(c->top, z + r), h = above_ground(g, p->x[i]);
+    c->bottom = dmin(c->bottom, isfinite(h) ? z - h : dmin(z - r, g->low));
     c->volume += volume_of(p, i);
 }
 
@@ -300,8 +362,8 @@ static void column_add(struct stack *c, const struct packing *p, int64_t i, vec3
 static double fall_of_bodies(const struct packing *p, vec3 up)
 {
     struct stack column[COLUMNS * COLUMNS];
-    double large = packing_whole(p).large, low = lowest_surface(p, up), from[2] = { 0 },
-           width[2] = { 1, 1 }, most = 0;
+    double large = packing_whole(p).large, from[2] = { 0 }, width[2] = { 1, 1 }, most = 0;
+    struct ground ground = ground_of(p, up);
     int n[2] = { 1, 1 };
     vec3 side[2];
     across(p->dim, up, side);
@@ -320,7 +382,7 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         int at[2] = { 0, 0 };
         for (int a = 0; a < p->dim - 1; a++)
             at[a] = (int)dmin(n[a] - 1, (v3_dot(p->x[i], side[a]) - from[a]) / width[a]);
-        column_add(&column[at[0] * n[1] + at[1]], p, i, up, low, rests && rests[i]);
+        column_add(&column[at[0] * n[1] + at[1]], &ground, i, rests && rests[i]);
     }
     for (int k = 0; k < n[0] * n[1]; k++) {
         double settled = column[k].volume / (SETTLED[p->dim] * width[0] * width[1]);
@@ -328,10 +390,11 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         if (settled > 0) most = dmax(most, column[k].top - bottom - settled);
     }
     free(rests);
+    ground_free(&ground);
     return most;
 }
 
-/* m: from the highest place of an opening to a plane, or to the lowest body */
+/* m: from the highest place of an opening to what is below it, or to the lowest body */
 static double fall_of_pour(const struct scene_pour *pour, const struct packing *p, vec3 up)
 {
     vec3 x = pour->center, reach = v3(0, 0, 0);
@@ -341,7 +404,9 @@ static double fall_of_pour(const struct scene_pour *pour, const struct packing *
         x = v3((lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, p->dim == 2 ? 0 : (lo[2] + hi[2]) / 2);
         reach = v3_sub(v3(hi[0], hi[1], p->dim == 2 ? 0 : hi[2]), x);
     }
-    double h = above_planes(p, x, up);
+    struct ground ground = ground_of(p, up);
+    double h = above_ground(&ground, x);
+    ground_free(&ground);
     extent(p, up, range);
     low = isfinite(h) ? h : dmax(0, p->n ? v3_dot(x, up) - range[0] : 0);
     return low + fabs(up.x * reach.x) + fabs(up.y * reach.y) + fabs(up.z * reach.z);

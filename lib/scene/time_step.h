@@ -24,6 +24,8 @@
  * that dt is 0.032 sqrt(m/(P d)); and a load's own, F/M, of a wall or of an edge of the cell. The impacts are
  * those of what has a velocity at the start, what falls, and what a load drives: the way h that is left until
  * grains lie at a solid fraction of 0.6, in the plane 0.8, gives sqrt(v^2 + 2 a h).
+ * What falls ends on the planes, rectangles, discs and meshes below it that there are at the start. Drives of a
+ * wall count together where they act at the same time.
  */
 #ifndef NSD_TIME_STEP_H
 #define NSD_TIME_STEP_H

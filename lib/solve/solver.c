@@ -7,6 +7,7 @@
 #include "problem/device.h"
 #include "problem/device_check.h"
 #include "problem/exchange.h"
+#include "problem/self_stress.h"
 #include "solve/prices.h"
 
 #include <math.h>
@@ -38,10 +39,27 @@ enum {
     RENEW_EVERY = 1000        /* sweeps: their rounding stays below 1e-13 of the velocities */
 };
 
+/* r . W r / lambda r^2 of reactions without end is rounding; masses that differ by 1e12 leave 1e-12. */
+#define NO_WORK 1e-14
+#define LATER   10 /* times the reactions that there are: from then on they are looked at again */
+
+/* err_eval(); where W alone is known, and no mass, what reactions without end are is seen by their work. */
+static void judge(struct err *e, struct problem *p, bool believes, enum err_terms which,
+                  int threads)
+{
+    double work, most;
+    err_eval(e, p, believes, which, threads);
+    if (!e->jammed || p->packing || p->device || self_stress_work(p, &work, &most) ||
+        !(work > NO_WORK))
+        return;
+    p->endless[1] = LATER * most;
+    err_eval(e, p, believes, which, threads);
+}
+
 static void evaluate(struct solve *s)
 {
     struct err e;
-    err_eval(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
+    judge(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_value(&e, s->o->criterion, s->o->eps);
     s->jammed = e.jammed > 0;
 }
@@ -272,7 +290,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
         rep->gave_up = all->count(all, rep->gave_up);
     }
     double overlap = rep->err.max_overlap;
-    err_eval(&rep->err, p, s.believes, ERR_ALL, o->threads);
+    judge(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
     if (leave_device(p, rep)) return -1;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;

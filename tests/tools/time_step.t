@@ -17,6 +17,11 @@ near "gravity: sqrt(0.002 r / g)" "$(checked "$ball" "$(limit gravity)")" '0.002
 # it falls until its column of (2 r)^2 is filled to 0.6 by 4/3 pi r^3
 near "a fall: 0.05 r / sqrt(2 g h)" "$(checked "$ball" "$(limit fall)")" \
     '0.05e-3 / (2 * 9.81 * (0.101 - 4 / 3 * 3.14159265358979324 * 1e-9 / (0.6 * 4e-6)) | sqrt)'
+# a disc above a segment, a metre above the bottom: it falls to the segment
+shelf='{dim: 2, dt: 1e-5, bodies: [{x: [0, 0.1], radius: 1e-3}], walls: [{point: [0, -1], normal: [0, 1]}, {segment: [[-0.02, 0], [0.02, 0]]}]}'
+to_shelf='0.05e-3 / (2 * 9.81 * (0.101 - 3.14159265358979324 * 1e-6 / (0.8 * 2e-3)) | sqrt)'
+near "a fall on a shelf ends there" "$(checked "$shelf" "$(limit fall)")" "$to_shelf"
+near "beside the shelf it does not" "$(checked "$shelf"' | .bodies[0].x[0] = 0.03' "$(limit fall)")" "${to_shelf/0.101/1.101}"
 # two balls that touch each other and the wall of a round drum of 0.1 m; a third falls on them
 second='(1 / 99 | asin * 2 | [0.099 * sin, -0.099 * cos])'
 rest="$second"' as $at | {dt: 1e-5, walls: [{cylinder: {point: [0, 0, 0], axis: [0, 1, 0], radius: 0.1}}],
@@ -31,6 +36,10 @@ drum='{dt: 1, dim: 2, gravity: [0, 0], bodies: [{x: [0, -0.05], radius: 1e-3}],
     walls: [{circle: {center: [0, 0], radius: 0.1}, drives: [{about: [0, 0], speed: 2}]}]}'
 near "a drum's wall where the discs are: 0.05 r / (w R)" "$(checked "$drum" "$(limit wall)")" 5e-4
 near "its turn: 0.02 / w" "$(checked "$drum" "$(limit turn)")" 0.01
+near "drives that follow one another are not added" "$(checked "$ball"' | .walls[0].drives =
+    [{along: [0, 0, 1], speed: 1, from: 0, until: 1}, {along: [0, 0, 1], speed: 2, from: 1, until: 2}]' "$(limit wall)")" 2.5e-5
+near "those that overlap are" "$(checked "$ball"' | .walls[0].drives =
+    [{along: [0, 0, 1], speed: 1, from: 0, until: 1.5}, {along: [0, 0, 1], speed: 2, from: 1, until: 2}]' "$(limit wall)")" '0.05e-3 / 3'
 near "a drive of 50 Hz: 1/200 of its period" \
     "$(checked "$ball"' | .walls[0].drives = [{along: [0, 0, 1], amplitude: 1e-9, frequency: 50}]' "$(limit period)")" 1e-4
 cell='{dt: 1, dim: 2, gravity: [0, 0], density: 1000, bodies: [{x: [0.1, 0.1], radius: 0.01}],

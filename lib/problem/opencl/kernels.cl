@@ -356,8 +356,8 @@ __kernel void judge(__global const struct bundle *bundle, __global const struct 
                     __global const struct rebound *rebound, __global struct body *body,
                     __global const double *r, __global const double *belief,
                     __global const double *w, GIVEN_BY_W, int d, long bundles, int per_block,
-                    int believes, int terms, int natural, double rounding2, double jammed2,
-                    double misses2, __global double *out)
+                    int believes, int terms, int natural, double rounding2, double rounded2, double push_end2,
+                    double r_end2, double misses2, double wild2, __global double *out)
 {
     int64_t which = get_global_id(0) / BUNDLE, first = which * per_block, end = first + per_block;
     int k = get_global_id(0) % BUNDLE;
@@ -386,8 +386,9 @@ __kernel void judge(__global const struct bundle *bundle, __global const struct 
             double rho = lambda > 0 ? 1.0 / lambda : 1;
             double n2 = natural2(mu, of, rho, moves), r2 = dot3(of, of);
             double off2 = n2 / (rho * rho), push2 = r2 / (rho * rho);
-            double seen2 = larger(off2, rounding2 * push2);
-            bool jammed = jammed2 < push2 && misses2 < seen2;
+            double seen2 = rounded2 < push2 ? larger(off2, rounding2 * push2) : off2;
+            bool jammed = push_end2 < push2 && r_end2 < r2 && misses2 < seen2 &&
+                          off2 < wild2;
             sum[SUM_NATURAL2] += n2, sum[SUM_VELOCITY2] += off2;
             sum[SUM_MAX_VELOCITY2] = larger(jammed ? 0 : seen2, sum[SUM_MAX_VELOCITY2]);
             sum[SUM_JAMMED] += jammed ? 1 : 0;
