@@ -231,7 +231,7 @@ static int coarse(uint32_t *crc, struct why *why)
     const char *path = fresh(".h5"), *image = fresh(".vti");
     snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, why);
     if (!why->status && !fields_init(&f, &s, 0, 0, why)) {
-        fields_set(&f, &s);
+        (void)fields_set(&f, &s, why);
         if (!fields_file_open(&file, path, &f, "", why))
             for (int k = 0; k < 2 && !fields_file_add(file, &f, k, k, why); k++) continue;
         FILE *out = fopen(image, "w");
