@@ -18,14 +18,16 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin)
         vec3 row = r->period.inverse[k];
         const double w[3] = { row.x, row.y, row.z };
         double least = 0, most = 0, at = v3_dot(row, x), more = margin * v3_norm(row);
+        bool bounded = true;
         for (int j = 0; j < 3; j++) {
             if (w[j] == 0) continue;
+            bounded = bounded && isfinite(r->lo[j]) && isfinite(r->hi[j]);
             least += fmin(w[j] * r->lo[j], w[j] * r->hi[j]);
             most += fmax(w[j] * r->lo[j], w[j] * r->hi[j]);
         }
         least = ceil(least - more - at), most = floor(most + more - at);
-        if (most - least >= far) least = 0, most = far; // region_check_images() refuses it
-        if (fabs(least) <= far && fabs(most) <= far)
+        if (bounded && !(most - least < far)) least = 0, most = far; // region_check_images() refuses it
+        if (bounded && fabs(least) <= far && fabs(most) <= far)
             s.from[k] = (int64_t)least, s.to[k] = (int64_t)most;
         s.at[k] = s.from[k];
     }
