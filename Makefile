@@ -34,7 +34,7 @@ PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 # libhdf5 36 (libcurl and its own), CHOLMOD OpenBLAS, cairo X11, and a tool then starts in 10 ms of the
 # processor instead of 2. SHARED=1: none, as distributions want it.
 SHARED ?=
-FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L $(HDF5) 2>/dev/null))
+FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a 2>/dev/null)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L $(HDF5) 2>/dev/null))
 library = $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlib$1.a))) -l$1)
 # CHOLMOD's archive needs METIS, of which Debian has no link for compilers
 METIS   := $(firstword $(foreach d,$(FOLDERS),$(wildcard $dlibmetis.so $dlibmetis.so.5)))
