@@ -17,6 +17,8 @@ command -v nsd-gen >/dev/null || PATH=$PWD/build:$PATH
 
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
+# A command that ends the file before its plan is named.
+trap 'diag "$0: line $LINENO ended with $?: $BASH_COMMAND"' ERR
 
 # A sanitizer's verdict must not look like one of our exit statuses. H5LTopen_file_image itself leaks.
 echo leak:H5LTopen_file_image >"$tmp/lsan"
@@ -166,6 +168,9 @@ stock()
     [ -x build/nsd-step ] && PATH=$PWD/build:$PATH env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL \
         make -s -f tests/support/stock.mk "build/stock/$1.h5" >&2 && cat "build/stock/$1.h5"
 }
+
+# terminal COMMAND ...: at a terminal of its own. script(1) has the same, with a shell and its signals in between.
+terminal() { /usr/bin/python3 -I -S tests/support/terminal.py "$@"; }
 
 have_h5py() { /usr/bin/python3 -c 'import h5py' 2>/dev/null; }
 
