@@ -173,7 +173,7 @@ FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/so
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/device \
-         project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         project/fresh_machine project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
