@@ -169,10 +169,24 @@ stock()
         make -s -f tests/support/stock.mk "build/stock/$1.h5" >&2 && cat "build/stock/$1.h5"
 }
 
-# terminal COMMAND ...: at a terminal of its own. script(1) has the same, with a shell and its signals in between.
-terminal() { /usr/bin/python3 -I -S tests/support/terminal.py "$@"; }
+# py ARGUMENT ...: python3, which has imported h5py and numpy already. In the background, or where they may be
+# missing: /usr/bin/python3
+repository=$PWD
+py() { NSD_TEST=$$ /usr/bin/python3 -I -S "$repository/tests/support/python.py" "$tmp/python" "$@"; }
 
-have_h5py() { /usr/bin/python3 -c 'import h5py' 2>/dev/null; }
+# terminal COMMAND ...: at a terminal of its own. script(1) has the same, with a shell and its signals in between.
+terminal() { /usr/bin/python3 -I -S "$repository/tests/support/terminal.py" "$@"; }
+
+# has MODULE: does Python have it? It is looked for, not imported.
+declare -A python_has
+has()
+{
+    [ -n "${python_has[$1]-}" ] || python_has[$1]=$(/usr/bin/python3 -c 'import importlib.util, sys
+print(bool(importlib.util.find_spec(sys.argv[1])))' "$1" 2>/dev/null || echo False)
+    [ "${python_has[$1]}" = True ]
+}
+
+have_h5py() { has h5py; }
 
 done_testing()
 {

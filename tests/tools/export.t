@@ -4,12 +4,11 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; backquotes of Markdown
 . tests/support/tap.sh
 
-has() { /usr/bin/python3 -c "import $1" 2>/dev/null; }
 other() # "what is true" MODULE ...: as tests/support/export.py has it, where Python has the module
 {
     local name=$1 module=$2
     shift 2
-    if has "$module"; then ok "$name" /usr/bin/python3 tests/support/export.py "$@"; else skip "$name" "no $module"; fi
+    if has "$module"; then ok "$name" py tests/support/export.py "$@"; else skip "$name" "no $module"; fi
 }
 
 nsd-gen 60 >"$tmp/gen.h5"
@@ -128,7 +127,7 @@ other "nsd.py reads a problem of FCLIB's, and its solution" h5py fclib "$tmp/pro
 moved_report()
 {
     tail -c +513 "$tmp/out.h5" >"$tmp/old.hdf5"
-    /usr/bin/python3 -c "import h5py, sys
+    py -c "import h5py, sys
 f = h5py.File(sys.argv[1], 'r+')
 f.create_group('observables'); f.move('/nsd/solver', '/observables/solver')" "$tmp/old.hdf5" &&
         cmp <(nsd-info "$tmp/old.hdf5") <(nsd-info "$tmp/out.h5") &&

@@ -3,7 +3,7 @@
 # shellcheck source=tests/support/tap.sh disable=SC2016,SC2034,SC2317 # functions, and variables, named in what ok evaluates
 . tests/support/tap.sh
 
-scenes=$PWD/scenes repository=$PWD
+scenes=$PWD/scenes
 cd "$tmp"
 
 # The last frame's particles and passages, bit by bit, of documents of one frame
@@ -83,7 +83,7 @@ with h5py.File("whole.h5") as f:
     assert (here.sum(1) == poured - removed).all() and len(radius) == poured[-1]
     assert (p["id/step"][:] == p["position/step"][:]).all()
 EOF
-    ok "h5py finds a row a body, NaN and id -1 where it is not there" /usr/bin/python3 rows.py
+    ok "h5py finds a row a body, NaN and id -1 where it is not there" py rows.py
 else
     skip "h5py finds a row a body" "no h5py"
 fi
@@ -200,7 +200,7 @@ with h5py.File(sys.argv[1]) as f:
 least = min((np.linalg.norm(x[i + 1:] - x[i], axis=1) - r[i + 1:] - r[i]).min() for i in range(len(r) - 1))
 assert least >= 0 and ((x - r[:, None]).min() >= 0) and (x + r[:, None]).max() <= 0.01, least'
 if have_h5py; then
-    ok "no pair of it overlaps at all, brute force says" /usr/bin/python3 -c "$no_overlap" dense.h5
+    ok "no pair of it overlaps at all, brute force says" py -c "$no_overlap" dense.h5
 else
     skip "no pair of it overlaps at all" "no h5py"
 fi
@@ -251,7 +251,7 @@ chmod 640 grown.h5 && ln -s grown.h5 link.h5
 ok "a link stays one, and rights stay" eval 'nsd-step -n 1 -i link.h5 2>/dev/null && [ -L link.h5 ] && [ "$(stat -c %a grown.h5)" = 640 ] && every_frame grown.h5 "length == 21"'
 cp base.h5 typed.h5
 if [ -x /usr/bin/python3 ]; then
-    ok "at a terminal, FILE is appended to" eval '(cd "$repository" && terminal nsd-step -n 50 --every 10 "$tmp/typed.h5") && every_frame typed.h5 "length == 15"'
+    ok "at a terminal, FILE is appended to" eval 'terminal nsd-step -n 50 --every 10 typed.h5 && every_frame typed.h5 "length == 15"'
 else
     skip "at a terminal, FILE is appended to" "no python3"
 fi
@@ -263,7 +263,7 @@ ok "and the file is as it was" cmp base.h5 kept.h5
 ok "left as it is" cmp broken.h5 broken.was
 if have_h5py; then
     tail -c +513 kept.h5 >mine.h5
-    /usr/bin/python3 - <<'EOF'
+    py - <<'EOF'
 import h5py
 with h5py.File("mine.h5", "r+") as f:
     g = f.create_group("observables/mine")
