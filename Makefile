@@ -19,7 +19,7 @@ Q        = $(if $(V),,@printf '%-4s%s\n' $1 $2;)
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CC      ?= cc
-CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g)
+CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
 # The manual that is made of cookbook/
 COOKBOOK := build/man/nsd-cookbook.7
@@ -361,7 +361,7 @@ MANUALS := $(wildcard man/*) $(COOKBOOK)
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
-	scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
+	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
 # Links to manuals that are not ours become plain text.
 BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
