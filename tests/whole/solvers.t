@@ -137,9 +137,10 @@ fi
 if [ -d "$problems/piles" ] && [ -z "$thin" ]; then
     nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile8000.h5"
     for g in ipm prox; do
-        nsd-solve --global $g --criterion natural --eps 1e-9 --max-seconds 4 --log "$tmp/log" \
-            "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null
-        ok "--global $g ends within its seconds" jq -e '.elapsed < 8' "$tmp/log"
+        # seconds of the processor, of which a busy machine gives fewer in the same time
+        spent=$(TIMEFORMAT=%0U && { time nsd-solve --global $g --criterion natural --eps 1e-9 --max-seconds 4 \
+            "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null; } 2>&1)
+        ok "--global $g ends within its seconds" [ "$spent" -lt 8 ]
     done
 fi
 
