@@ -19,7 +19,7 @@ Q        = $(if $(V),,@printf '%-4s%s\n' $1 $2;)
 PREFIX  ?= /usr/local
 DESTDIR ?=
 CC      ?= cc
-CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g)
+CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
 # The manual that is made of cookbook/
 COOKBOOK := build/man/nsd-cookbook.7
@@ -34,7 +34,7 @@ PC   := $(shell pkg-config --cflags $(LIBS) 2>/dev/null)
 # libhdf5 36 (libcurl and its own), CHOLMOD OpenBLAS, cairo X11, and a tool then starts in 10 ms of the
 # processor instead of 2. SHARED=1: none, as distributions want it.
 SHARED ?=
-FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L $(HDF5) 2>/dev/null))
+FOLDERS := $(dir $(shell $(CC) -print-file-name=libgsl.a 2>/dev/null)) $(patsubst -L%,%/,$(shell pkg-config --libs-only-L $(HDF5) 2>/dev/null))
 library = $(firstword $(if $(SHARED),,$(foreach d,$(FOLDERS),$(wildcard $dlib$1.a))) -l$1)
 # CHOLMOD's archive needs METIS, of which Debian has no link for compilers
 METIS   := $(firstword $(foreach d,$(FOLDERS),$(wildcard $dlibmetis.so $dlibmetis.so.5)))
@@ -173,7 +173,7 @@ FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/so
          tools/export tools/grains tools/view tools/pipeline tools/boundary) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
 REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/device \
-         project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
+         project/fresh_machine project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
@@ -361,7 +361,7 @@ MANUALS := $(wildcard man/*) $(COOKBOOK)
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
-	scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
+	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
 # Links to manuals that are not ours become plain text.
 BAR   := $(subst $() ,|,$(notdir $(MANUALS)))

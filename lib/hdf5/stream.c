@@ -19,7 +19,10 @@ enum {
     LARGE = 1 << 26,  /* bytes: a document from here on outweighs the tool, and is not kept */
     GROWTH = 1 << 26, /* bytes by which an unfinished document may grow while it is read */
     PIPE = 1 << 20,   /* bytes that a pipe shall hold, the most that is anybody's: fewer waits */
-    PIECE = 1 << 19   /* bytes whose checksum is taken while they are in a core's second cache */
+    SPENT =
+        1
+        << 20, /* bytes of a file whose documents have been read: worth a call that gives them back */
+    PIECE = 1 << 19 /* bytes whose checksum is taken while they are in a core's second cache */
 };
 
 static void store(unsigned char *p, uint64_t x, int bytes)
@@ -64,6 +67,7 @@ struct stream {
     struct timespec written; /* when it was last, as it was opened */
     unsigned char *map;      /* a whole regular file; NULL: a pipe */
     size_t size, at;         /* of that file when it was opened, and how much of it is read */
+    size_t spent;            /* bytes of the map that have been given back */
     size_t mapped;           /* bytes of the map, and of addresses behind it for what will grow */
     unsigned char *buffer, *spare; /* a pipe's document, and the one before it */
     size_t room, spare_room;
@@ -87,7 +91,7 @@ static void file_close(struct stream *s)
     if (s->old && s->map) munmap(s->old, s->old_mapped);
     if (s->map) s->old = s->map, s->old_mapped = s->mapped;
     if (s->fd > 0) close(s->fd);
-    s->map = NULL, s->size = s->mapped = s->at = 0, s->fd = -1;
+    s->map = NULL, s->size = s->mapped = s->spent = s->at = 0, s->fd = -1;
 }
 
 static void buffer_free(struct stream *s)
@@ -123,6 +127,15 @@ static bool buffer_grow(struct stream *s, size_t room)
 void stream_unload(const struct stream *s)
 {
     if (s->map && s->size > LARGE) madvise(s->map, s->size, MADV_DONTNEED); // the pages are clean
+}
+
+/* The pages of documents that have been read: a stream of any length in a file takes the memory of a document. */
+static void unload_spent(struct stream *s)
+{
+    const size_t end = s->at - s->at % (size_t)sysconf(_SC_PAGESIZE);
+    if (!s->map || end < s->spent + SPENT) return;
+    madvise(s->map + s->spent, end - s->spent, MADV_DONTNEED);
+    s->spent = end;
 }
 
 void stream_release(struct stream *s)
@@ -276,6 +289,7 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
 {
     *im = (struct image){ 0 };
     swap_buffers(s);
+    unload_spent(s);
     for (;;) {
         if (s->fd < 0) {
             im->bytes = NULL;

@@ -40,7 +40,7 @@ refuses 65 "an unfinished document that has been cut off" nsd-info cut.h5
 if have_h5py; then
     beyond() # a chunk's address, beyond the end of the file, and the end of the document in front of it
     {
-        /usr/bin/python3 - <<'PYTHON'
+        py - <<'PYTHON'
 import h5py
 data = bytearray(open('f.h5', 'rb').read())
 with h5py.File('f.h5', 'r') as f: at = f['/particles/all/position/value'].id.get_chunk_info(0).byte_offset

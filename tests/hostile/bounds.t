@@ -125,7 +125,7 @@ nsd-step -n 3 --contacts base.h5 2>/dev/null >frames.h5
 make()
 {
     foreign "$2" "$1"
-    /usr/bin/python3 - "$1" "$3" <<'PYTHON'
+    py - "$1" "$3" <<'PYTHON'
 import sys, h5py, numpy as np
 f = h5py.File(sys.argv[1], 'r+', libver='latest')
 def put(path, a, **how):

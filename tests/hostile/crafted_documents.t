@@ -21,7 +21,7 @@ fi
 make()
 {
     tail -c +513 "$tmp/$2" >"$tmp/$1"
-    /usr/bin/python3 - "$tmp/$1" "$tmp" "$3" <<'PYTHON'
+    py - "$tmp/$1" "$tmp" "$3" <<'PYTHON'
 import os, sys, h5py, numpy as np
 from h5py import h5d, h5p, h5s, h5t
 path, tmp, code = sys.argv[1:]
@@ -258,7 +258,7 @@ refuses 65 "a table with lines without end" table "$tmp/endless"
 
 alone() # the tool ends, whichever way, and no process of its is left to whoever inherits orphans
 {
-    /usr/bin/python3 - "$@" <<'PYTHON'
+    py - "$@" <<'PYTHON'
 import ctypes, os, subprocess, sys
 ctypes.CDLL(None).prctl(36, 1, 0, 0, 0)  # PR_SET_CHILD_SUBREAPER: orphans become ours
 s = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode
@@ -280,7 +280,7 @@ kept()
     make more.h5 four.h5 "f.create_dataset('/mine', data=np.arange(1000.), chunks=(100,), compression='gzip', shuffle=True, fletcher32=True)
 f['/g/x'] = np.int16(3); f['/g/x'].attrs['k'] = np.arange(6, dtype='f4').reshape(2, 3); f['/words'] = np.array([b'a', b'bcd'])
 f['/text'] = 'h\\u00e9llo'; f['/flags'] = np.array([True, False]); f['/u'] = np.array([2**64 - 1], 'u8')"
-    nsd-cat --stream "$tmp/more.h5" >"$tmp/copy.h5" && /usr/bin/python3 - "$tmp/more.h5" "$tmp/copy.h5" <<'PYTHON'
+    nsd-cat --stream "$tmp/more.h5" >"$tmp/copy.h5" && py - "$tmp/more.h5" "$tmp/copy.h5" <<'PYTHON'
 import sys, h5py, numpy as np
 a, b = (h5py.File(p) for p in sys.argv[1:])
 for name in '/mine', '/g/x', '/words', '/u', '/flags':
@@ -293,7 +293,7 @@ many()
 {
     make many.h5 four.h5 "
 for k in range(600): f['/g%d/x' % (k % 7) + str(k)] = np.arange(k % 50)" &&
-        nsd-cat "$tmp/many.h5" >"$tmp/copy.h5" && /usr/bin/python3 -c "
+        nsd-cat "$tmp/many.h5" >"$tmp/copy.h5" && py -c "
 import h5py, numpy as np
 f = h5py.File('$tmp/copy.h5')
 for k in range(600): assert np.array_equal(f['/g%d/x' % (k % 7) + str(k)][()], np.arange(k % 50)), k"
@@ -304,7 +304,7 @@ labelled()
     nsd-detect --fclib=local "$tmp/solved.h5" | tail -c +513 >"$tmp/problem.h5" &&
         /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/problem.h5', 'r+'); f['fclib_local'].attrs['by'] = 'hand'; f['fclib_local/W'].attrs['k'] = [1, 2]" &&
         nsd-solve "$tmp/problem.h5" 2>/dev/null | nsd-cat >"$tmp/copy.h5" &&
-        /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/copy.h5'); assert f['fclib_local'].attrs['by'] == b'hand' or f['fclib_local'].attrs['by'] == 'hand'; assert list(f['fclib_local/W'].attrs['k']) == [1, 2]"
+        py -c "import h5py; f = h5py.File('$tmp/copy.h5'); assert f['fclib_local'].attrs['by'] == b'hand' or f['fclib_local'].attrs['by'] == 'hand'; assert list(f['fclib_local/W'].attrs['k']) == [1, 2]"
 }
 ok "and attributes of the groups of an FCLIB problem from elsewhere" labelled
 make compound.h5 four.h5 "f['/mine'] = np.zeros(3, [('a', 'i4'), ('b', 'f8')])"

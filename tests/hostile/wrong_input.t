@@ -210,7 +210,7 @@ foreign "$tmp/good.h5" "$tmp/base.h5"
 # edits FILE CHANGE ...: copies of it in $tmp/wrong.0, .1 ..., each with one change, in Python
 edits()
 {
-    /usr/bin/python3 - "$tmp/wrong." "$@" <<'PYTHON'
+    py - "$tmp/wrong." "$@" <<'PYTHON'
 import shutil, sys, h5py, numpy as np
 out, base, changes = sys.argv[1], sys.argv[2], sys.argv[3:]
 for k, change in enumerate(changes):

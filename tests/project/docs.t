@@ -42,6 +42,8 @@ structure() # FILE: what is wrong with it
         }' "$1"
 }
 ok "make: nsd-cookbook(7)" make -s build/man/nsd-cookbook.7
+is "make demo begins without a complaint where no compiler is installed yet" \
+    "$(make -n demo CC=no-such-compiler 2>&1 >/dev/null)" ""
 pages=(man/* build/man/nsd-cookbook.7)
 for manual in "${pages[@]}"; do is "$manual: macros, lists and headings" "$(structure "$manual")" ""; done
 broken() # LINE BECOMES: a manual with one fault

@@ -6,47 +6,31 @@
 
 # "## 5 problem" opens a floor; "- `sweep.h .c`" or "- `sweep.h`" names a module of it.
 mapfile -t rooms < <(awk '/^## [0-9]+ / { print $3 }' lib/README.md)
-floor_of() # room: its number; nothing where there is no such room
-{
-    awk -v room="$1" '/^## [0-9]+ / && $3 == room { print $2 }' lib/README.md
-}
-
 modules() { find lib -name '*.[ch]' | sed 's/\.[ch]$//' | sort -u; }
-includes() # of a file or several, "room/name.h" a line
-{
-    sed -n 's/^ *# *include "\(.*\)"$/\1/p' "$@"
-}
-
 no_room() { find lib -name '*.[ch]' | awk -F/ -v rooms=" ${rooms[*]} " 'NF != 3 || !index(rooms, " " $2 " ")'; }
 unnamed() # modules that the README does not name in their room
 {
     awk '/^## [0-9]+ / { room = $3 } /^- `/ { n = split($0, w, "`"); for (i = 2; i < n; i += 2) { split(w[i], name, "."); print "lib/" room "/" name[1] } }' lib/README.md | sort -u |
         comm -3 - <(modules)
 }
+# "FILE ROOM/NAME.h": every include of ours, found once
+awk 'match($0, /^ *# *include "[^"]*"$/) { sub(/^[^"]*"/, ""); sub(/"$/, ""); print FILENAME, $0 }' lib/*/*.[ch] >"$tmp/includes"
+
 foreign() # includes of ours that are no file of a room
 {
     local f i
-    for f in lib/*/*.[ch]; do
-        for i in $(includes "$f"); do [ -f "lib/$i" ] || echo "$f: $i"; done
-    done
+    while read -r f i; do [ -f "lib/$i" ] || echo "$f: $i"; done <"$tmp/includes"
 }
 upwards()
 {
-    local f i
-    for f in lib/*/*.[ch]; do
-        for i in $(includes "$f"); do
-            [ "$(floor_of "${i%%/*}")" -le "$(floor_of "$(basename "$(dirname "$f")")")" ] || echo "$f: $i"
-        done
-    done
+    awk 'FNR == NR { if (/^## [0-9]+ /) floor[$3] = $2; next }
+        { split($1, at, "/"); split($2, of, "/"); if (!(of[1] in floor) || floor[of[1]] > floor[at[2]]) print $1 ": " $2 }' \
+        lib/README.md "$tmp/includes"
 }
 circles() # in room $1, by modules: x.h and x.c are one
 {
-    local m i
-    for m in $(modules | grep "^lib/$1/"); do
-        for i in $(includes "$m".[ch] | grep "^$1/"); do
-            [ "lib/${i%.h}" = "$m" ] || echo "$m lib/${i%.h}"
-        done
-    done | { tsort >/dev/null; } 2>&1
+    awk -v room="$1" '{ split($1, at, "/"); split($2, of, "/"); sub(/[.][ch]$/, "", $1); sub(/[.]h$/, "", $2) }
+        at[2] == room && of[1] == room && $1 != "lib/" $2 { print $1, "lib/" $2 }' "$tmp/includes" | { tsort >/dev/null; } 2>&1
 }
 
 nothing() # COMMAND ...: prints nothing

@@ -1,7 +1,6 @@
 """export.py WHAT ...: what export.t asks of other programs' readers; an assertion that fails says what."""
 import glob
 import os
-import resource
 import subprocess
 import sys
 import time
@@ -342,16 +341,6 @@ def fclib(document):
     assert abs(u - p.u).max() <= 1e-9 * abs(p.u).max()
     r = p.r.reshape(-1, p.dim)
     assert (r[:, 0] >= 0).all() and (np.linalg.norm(r[:, 1:], axis=1) <= p.mu * r[:, 0] * (1 + 1e-9)).all()
-
-
-def memory(few, many, *command):
-    """The most memory that a command takes of a stream, MB: as much for many frames as for few."""
-    most = []
-    for name in few, many:  # in this order: the children's maximum only rises
-        with subprocess.Popen(["cat", name], stdout=subprocess.PIPE) as cat:  # pages of a file that is mapped would count
-            subprocess.run(command, stdin=cat.stdout, stdout=subprocess.DEVNULL, check=True)
-        most.append(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)
-    assert most[1] < 1.25 * most[0], most
 
 
 globals()[sys.argv[1]](*[int(a) if a.isdigit() else a for a in sys.argv[2:]])

@@ -17,6 +17,8 @@ command -v nsd-gen >/dev/null || PATH=$PWD/build:$PATH
 
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT
+# A command that ends the file before its plan is named.
+trap 'diag "$0: line $LINENO ended with $?: $BASH_COMMAND"' ERR
 
 # A sanitizer's verdict must not look like one of our exit statuses. H5LTopen_file_image itself leaks.
 echo leak:H5LTopen_file_image >"$tmp/lsan"
@@ -167,7 +169,24 @@ stock()
         make -s -f tests/support/stock.mk "build/stock/$1.h5" >&2 && cat "build/stock/$1.h5"
 }
 
-have_h5py() { /usr/bin/python3 -c 'import h5py' 2>/dev/null; }
+# py ARGUMENT ...: python3, which has imported h5py and numpy already. In the background, or where they may be
+# missing: /usr/bin/python3
+repository=$PWD
+py() { NSD_TEST=$$ /usr/bin/python3 -I -S "$repository/tests/support/python.py" "$tmp/python" "$@"; }
+
+# terminal COMMAND ...: at a terminal of its own. script(1) has the same, with a shell and its signals in between.
+terminal() { /usr/bin/python3 -I -S "$repository/tests/support/terminal.py" "$@"; }
+
+# has MODULE: does Python have it? It is looked for, not imported.
+declare -A python_has
+has()
+{
+    [ -n "${python_has[$1]-}" ] || python_has[$1]=$(/usr/bin/python3 -c 'import importlib.util, sys
+print(bool(importlib.util.find_spec(sys.argv[1])))' "$1" 2>/dev/null || echo False)
+    [ "${python_has[$1]}" = True ]
+}
+
+have_h5py() { has h5py; }
 
 done_testing()
 {

@@ -6,8 +6,8 @@
 thin=${NSD_THIN-}
 steps=$((thin ? 200 : 300))
 step() { nsd-step "$@" 2>/dev/null; }
-numbers() { /usr/bin/python3 - "$@"; }
-if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
+numbers() { py - "$@"; }
+if ! has h5py; then echo "1..0 # SKIP no h5py"; exit; fi
 
 # ---- a drum of each kind: of a cylinder, and of 10 000 triangles in a file ----
 

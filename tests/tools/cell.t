@@ -57,7 +57,7 @@ is 'a cell is cut only into edges that move as its own' \
 nsd-detect --fclib=local "$tmp/dense.h5" >"$tmp/both.h5"
 foreign "$tmp/both.h5" "$tmp/both.raw"
 if have_h5py; then
-    /usr/bin/python3 - "$tmp/both.raw" "$tmp/problem.h5" <<'PY'
+    py - "$tmp/both.raw" "$tmp/problem.h5" <<'PY'
 import sys, h5py
 with h5py.File(sys.argv[1]) as f, h5py.File(sys.argv[2], "w") as g:
     f.copy("fclib_local", g)
@@ -140,7 +140,7 @@ if have_h5py; then
     lie() # name, python on f
     {
         cp "$tmp/plain.h5" "$tmp/lie.h5"
-        /usr/bin/python3 -c "
+        py -c "
 import h5py, numpy as np
 with h5py.File('$tmp/lie.h5', 'r+') as f:
     box = f['particles/all/box']
@@ -169,7 +169,7 @@ with h5py.File('$tmp/lie.h5', 'r+') as f:
     lie 'half of the drive' 'del f["nsd/cell/stress"]'
 
     cp "$tmp/plain.h5" "$tmp/h5md.h5"
-    /usr/bin/python3 -c "
+    py -c "
 import h5py
 with h5py.File('$tmp/h5md.h5', 'r+') as f:
     box = f['particles/all/box']

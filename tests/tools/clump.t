@@ -3,11 +3,11 @@
 # shellcheck source=tests/support/tap.sh disable=SC2016 # jq's variables
 . tests/support/tap.sh
 
-if ! /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+if ! has h5py; then
     echo "1..0 # SKIP no h5py"
     exit 0
 fi
-/usr/bin/python3 tests/support/clump.py write "$tmp"
+py tests/support/clump.py write "$tmp"
 scene() # FILE BALLS [jq's change]
 {
     jq -n --arg f "$1.obj" --argjson b "$2" '{dt: 1e-4, density: 2500, bodies: [{x: [0, 0, 3], shape: "g"}],
@@ -21,7 +21,7 @@ for case in sphere:1:1 torus:30:1 ell:40:0.001; do
     like "$name: what it is worth is said" "$(cat "$tmp/$name.said")" "^nsd-gen: shape \"g\": $balls balls: volume .*, distance .*, moments .* of their sum$"
     nsd-gen --check "$tmp/scene.json" >"$tmp/check" 2>"$tmp/none"
     ok "$name: mass, centre and moments are the surface's; volume and distance as said" \
-        /usr/bin/python3 tests/support/clump.py judge "$tmp/$name.h5" "$tmp/$name.obj" "$scale" "$balls" "$(said volume)" "$(said distance)"
+        py tests/support/clump.py judge "$tmp/$name.h5" "$tmp/$name.obj" "$scale" "$balls" "$(said volume)" "$(said distance)"
     ok "$name: the moments of the balls are not far off" jq -e '.clumps[0].moments < 0.03' "$tmp/check"
     nsd-gen "$tmp/scene.json" >"$tmp/again.h5" 2>"$tmp/none"
     ok "$name: the same balls again" cmp "$tmp/again.h5" "$tmp/$name.h5"

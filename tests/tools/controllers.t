@@ -146,11 +146,11 @@ bad "a pressure and a force are refused" box '.walls[2].load.force = 1' 'walls\[
 if have_h5py; then
     for change in 'f["/nsd/cell/size_mass"][0] = -1' 'f["/nsd/cell/mean"][0] = float("nan")' 'f["/nsd/cell/factor"][1, 0] = -5' 'f["/nsd/cell/mass"][0, 0] = 1'; do
         foreign "$tmp/mean.h5" "$tmp/forged.h5"
-        /usr/bin/python3 -c "import h5py, sys; f = h5py.File(sys.argv[1], 'r+'); $change" "$tmp/forged.h5"
+        py -c "import h5py, sys; f = h5py.File(sys.argv[1], 'r+'); $change" "$tmp/forged.h5"
         refuses 65 "a document with $change is refused" nsd-cat "$tmp/forged.h5"
     done
     foreign "$tmp/wall.h5" "$tmp/forged.h5"
-    /usr/bin/python3 -c 'import h5py, sys; f = h5py.File(sys.argv[1], "r+"); f["/particles/boundary/load/spread"][:] = 7' "$tmp/forged.h5"
+    py -c 'import h5py, sys; f = h5py.File(sys.argv[1], "r+"); f["/particles/boundary/load/spread"][:] = 7' "$tmp/forged.h5"
     refuses 65 "a pressure that is neither there nor not is refused" nsd-cat "$tmp/forged.h5"
 fi
 done_testing

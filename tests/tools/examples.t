@@ -263,7 +263,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     name="$1: ${name//  / }"
     case $command in
     'gnuplot '* | 'ffmpeg '*) command -v "${command%% *}" >/dev/null || { skip "$name" "no ${command%% *}"; return; } ;;
-    *import*MDAnalysis*) /usr/bin/python3 -c 'import MDAnalysis' 2>/dev/null || { skip "$name" "no MDAnalysis"; return; } ;;
+    *import*MDAnalysis*) has MDAnalysis || { skip "$name" "no MDAnalysis"; return; } ;;
     *import*h5py*) have_h5py || { skip "$name" "no h5py"; return; } ;;
     esac
     cd "$tmp/run" || return
@@ -271,9 +271,9 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     case $command in
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
-    *import*nsd*) PYTHONPATH=$repository/python /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
-    import*sys.stdin*) cat a.h5 packing.h5 | /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
-    import*) /usr/bin/python3 -c "$command" >stdout 2>stderr || s=$? ;;
+    *import*nsd*) PYTHONPATH=$repository/python py -c "$command" >stdout 2>stderr || s=$? ;;
+    import*sys.stdin*) cat a.h5 packing.h5 | py -c "$command" >stdout 2>stderr || s=$? ;;
+    import*) py -c "$command" >stdout 2>stderr || s=$? ;;
     *) GNUTERM=dumb bash -o pipefail -c "$command" >stdout 2>stderr || s=$? ;;
     esac
     [ "$s" != 141 ] || s=0 # cut off by head

@@ -4,12 +4,11 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; jq's variables
 . tests/support/tap.sh
 
-has() { /usr/bin/python3 -c "import $1" 2>/dev/null; }
 other() # "what is true" MODULE ...: as tests/support/formats.py has it, where Python has the module
 {
     local name=$1 module=$2
     shift 2
-    if has "$module"; then ok "$name" /usr/bin/python3 tests/support/formats.py "$@"; else skip "$name" "no $module"; fi
+    if has "$module"; then ok "$name" py tests/support/formats.py "$@"; else skip "$name" "no $module"; fi
 }
 
 nsd-gen 60 | nsd-step -n 20 --every 5 >"$tmp/balls.h5" 2>/dev/null
@@ -80,7 +79,7 @@ done
 ok "inertia and shapes, too" h5diff "$tmp/mixed.h5" "$tmp/mixed.back.h5" /particles
 ok "and the table of shapes" h5diff "$tmp/mixed.h5" "$tmp/mixed.back.h5" /nsd/shape
 if has h5py; then
-    /usr/bin/python3 tests/support/formats.py ondem_foreign "$tmp/foreign.vtkhdf"
+    py tests/support/formats.py ondem_foreign "$tmp/foreign.vtkhdf"
     is "a file of another program: spheres, a box, walls, its kinds" "$(nsd-gen --from "$tmp/foreign.vtkhdf" | nsd-info -p | jq -c '[.id, .kind, .shape, .mass, .v[0]]')" \
         '[2,"rock9","ball",2,1]
 [3,"rock4","box 1",2,1]
@@ -88,7 +87,7 @@ if has h5py; then
     # our own file without what is nsd's: balls, boxes and clumps are the format's
     jq '.bodies = [.bodies[0, 2, 4]] | del(.shapes.stone, .shapes.rod)' "$tmp/mixed.json" | nsd-gen - >"$tmp/plain.h5"
     nsd-export -o "$tmp/plain.vtkhdf" "$tmp/plain.h5"
-    /usr/bin/python3 -c "
+    py -c "
 import h5py
 f = h5py.File('$tmp/plain.vtkhdf', 'r+')
 del f['nsd']
@@ -100,7 +99,7 @@ for b in f['VTKHDF/Assembly'].values():
     is "the clump is made of its members" "$(h5dump -d /nsd/shape/form "$tmp/plain.back.h5" 2>/dev/null | grep -m 1 -o '(0): .*')" "(0): 3, 1"
     is "friction is the lesser of two materials', as Yade has it" "$(nsd-gen --from "$tmp/foreign.vtkhdf" >"$tmp/foreign.h5"; nsd-info --scene "$tmp/foreign.h5" | jq -c '[.pairs[].mu]')" "[0.3,0.3,0.5]"
     ok "a run goes on from it" sh -c "nsd-gen --from '$tmp/foreign.vtkhdf' | nsd-step -n 3 >'$tmp/none' 2>&1"
-    spoil() { cp "$tmp/foreign.vtkhdf" "$tmp/bad.vtkhdf" && /usr/bin/python3 -c "import h5py; f = h5py.File('$tmp/bad.vtkhdf', 'r+'); $1"; }
+    spoil() { cp "$tmp/foreign.vtkhdf" "$tmp/bad.vtkhdf" && py -c "import h5py; f = h5py.File('$tmp/bad.vtkhdf', 'r+'); $1"; }
     refuses_after() { spoil "$2" && refuses 65 "$1" nsd-gen --from "$tmp/bad.vtkhdf"; }
     refuses_after "a block without body_id" "del f['VTKHDF/Points/PointData/body_id']"
     refuses_after "a sphere without a radius" "f['VTKHDF/Points/PointData/radius'][0] = float('nan')"

@@ -3,19 +3,19 @@
 # them, as a wall and as a grain; what is refused, and why; files that are cut off; bounds.
 . tests/support/tap.sh
 
-if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
+if ! has h5py; then echo "1..0 # SKIP no h5py"; exit; fi
 root=$PWD
 cd "$tmp"
 
 # ---- what is read ----
 
-/usr/bin/python3 "$root/tests/support/mesh.py" write . && : >said
+py "$root/tests/support/mesh.py" write . && : >said
 while read -r name _; do
     for k in wall grain; do nsd-gen "$name.$k.json" >"$name.$k.h5" 2>>said || :; done
     nsd-detect --gap 0.5 "$name.wall.h5" >"$name.gap.h5"
 done <list
 is "a cube in $(wc -l <list) files: corners, triangles, area, volume; the gap of a ball; a grain's mass and reach" \
-    "$(/usr/bin/python3 "$root/tests/support/mesh.py" judge . 2>&1)" ""
+    "$(py "$root/tests/support/mesh.py" judge . 2>&1)" ""
 is "what is left out of a wall is counted" "$(cat said)" \
     "nsd-gen: twice.stl: left out: 5 triangles that have no area, or the corners of another
 nsd-gen: turned.stl: left out: 1 triangles that have no area, or the corners of another"
@@ -24,7 +24,7 @@ wall() { echo "{\"dt\": 1e-3, \"walls\": [{\"mesh\": {\"file\": \"$1\"}}]}" >bad
 area() # FILE: the number of its triangles, and their area
 {
     wall "$1"
-    nsd-gen bad.json >area.h5 && /usr/bin/python3 -c 'import h5py, numpy as np
+    nsd-gen bad.json >area.h5 && py -c 'import h5py, numpy as np
 m = h5py.File("area.h5")["particles/boundary/mesh"]; v, e = m["vertex"][:], m["element"][:]
 a = np.linalg.norm(np.cross(v[e[:, 1]] - v[e[:, 0]], v[e[:, 2]] - v[e[:, 0]]), axis=1).sum() / 2
 print(len(e), round(a, 9))'
@@ -111,7 +111,7 @@ bad "and a shorter one" a.ply 'line 20: "1" is too much' < <(ply 's/^4 0 2/3 0 2
 bad "a byte behind the last element" a.ply '1 bytes behind' < <(cat little.ply; printf 'x')
 bad "another format" a.off 'neither STL, OBJ nor PLY' < <(printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n')
 bad "one that names other files" a.gltf 'neither STL, OBJ nor PLY' < <(printf '{"asset": {"version": "2.0"}}')
-/usr/bin/python3 - <<'END'
+py - <<'END'
 import struct
 for name, east in ("far.stl", 4649776), ("near.stl", 1300):
     t = [(east + a, b, 0) for a, b in ((0, 0), (1.3, 0), (0, 1.3))]

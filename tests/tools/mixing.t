@@ -4,8 +4,8 @@
 # shellcheck source=tests/support/tap.sh disable=SC2154,SC2016 # tap.sh sets tmp; text for other programs
 . tests/support/tap.sh
 
-if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
-truth() { /usr/bin/python3 tests/support/mixing.py "$@"; }
+if ! has h5py; then echo "1..0 # SKIP no h5py"; exit; fi
+truth() { py tests/support/mixing.py "$@"; }
 step() { nsd-step "$@" 2>/dev/null; }
 
 # ---- lattices: N a side, of kinds that an expression of jq gives ----
@@ -27,14 +27,14 @@ fcc 'if $k % 2 == 0 then "sand" else "clay" end' >"$tmp/layers.h5"
 ok "layers of a dense lattice: 8 of 12 neighbours are unlike" truth lattice "$tmp/layers.h5" 2 neighbours=1.3333333333333333
 fcc 'if $k < 3 then "sand" else "clay" end' >"$tmp/halves.h5"
 ok "halves of one: 4 of 12 at the two borders" truth lattice "$tmp/halves.h5" 2 neighbours=0.4444444444444444
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(6)
 print(json.dumps({ "dt": 1, "kinds": { "a": {}, "b": {} }, "gravity": [0, 0, -1],
     "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 0.01, "kind": random.choice("ab") } for _ in range(4000)], "overlap": True }))' |
     nsd-gen - >"$tmp/random.h5"
 ok "at random: 1" truth at_random "$tmp/random.h5"
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(7)
 print(json.dumps({ "dim": 2, "dt": 1, "kinds": { "a": {}, "b": {}, "c": {} }, "gravity": [0, -1], "overlap": True,
@@ -93,7 +93,7 @@ like "without contacts there are no lifetimes" "$(nsd-stat --last -m lifetimes "
 
 # ---- fields ----
 
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(9)
 L = [[0.1, 2, 0], [0.3, -0.2, 0.5], [0, 1, 0.4]]
@@ -102,7 +102,7 @@ def body():
     return { "x": x, "radius": random.choice([0.02, 0.05]), "v": [3 + sum(a * b for a, b in zip(row, x)) for row in L] }
 print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "overlap": True, "bodies": [body() for _ in range(800)] }))' | nsd-gen - >"$tmp/affine.h5"
 ok "an affine flow of bodies at random: the exact gradient, no temperature" truth affine "$tmp/affine.h5" "$tmp/affine-fields.h5"
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(10)
 def body():
@@ -110,7 +110,7 @@ def body():
     return { "x": x, "radius": 0.02, "v": [4 * x[1] + random.gauss(0, 0.5), random.gauss(0, 0.5), random.gauss(0, 0.5)] }
 print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "overlap": True, "bodies": [body() for _ in range(6000)] }))' | nsd-gen - >"$tmp/thermal.h5"
 ok "velocities at random in a shear: their variance" truth thermal "$tmp/thermal.h5" "$tmp/thermal-fields.h5" 0.5
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(11)
 def body(i, j, k):

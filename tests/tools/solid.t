@@ -26,7 +26,7 @@ jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, kinds: { steel: {}, glas
 
 pixel() # FILE X Y: r g b
 {
-    /usr/bin/python3 - "$@" <<'END'
+    py - "$@" <<'END'
 import struct, sys, zlib
 data = open(sys.argv[1], "rb").read()
 at, parts = 8, b""

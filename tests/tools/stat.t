@@ -3,8 +3,8 @@
 # tables, and frames in which there is nothing to measure.
 . tests/support/tap.sh
 
-if ! /usr/bin/python3 -c 'import h5py, numpy' 2>/dev/null; then echo "1..0 # SKIP no h5py"; exit; fi
-truth() { /usr/bin/python3 tests/support/stat.py "$@"; }
+if ! has h5py; then echo "1..0 # SKIP no h5py"; exit; fi
+truth() { py tests/support/stat.py "$@"; }
 step() { nsd-step "$@" 2>/dev/null; }
 
 # ---- lattices: a hair closer than touching ----
@@ -90,7 +90,7 @@ jq -n '{ dt: 1e-3, gravity: [0, 0, 0], bodies: [range(3) | { x: [0.5, 0.5, (0.4 
 nsd-stat --width 0.05 --spacing 0.04 -f "$tmp/few-fields.h5" "$tmp/few.h5" >/dev/null 2>&1
 mass() # of the fields' last frame, over that of the bodies
 {
-    /usr/bin/python3 -c 'import h5py, numpy as np, sys
+    py -c 'import h5py, numpy as np, sys
 f, p = h5py.File(sys.argv[1]), h5py.File(sys.argv[2])
 d, cell = f["fields/density/value"], np.prod(f["fields/spacing"][:])
 assert len(d) == 2 and list(f["fields/step"][:]) == [1, 2]
@@ -115,7 +115,7 @@ jq -n '{ dt: 1e-3, gravity: [0, 0, 0], seed: 5, bodies: [{ count: 300, radius: 1
     box: { x: [0, 1], y: [0, 1], z: [0, null] } }] }' | nsd-gen - >"$tmp/gas.h5"
 step -n 50 --every 10 -o "$tmp/flight.h5" "$tmp/gas.h5"
 ok "free flight: <v^2> t^2" truth flight "$tmp/flight.h5"
-/usr/bin/python3 -c '
+py -c '
 import json, random
 random.seed(6)
 print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 1e-9 } for _ in range(4000)] }))' |

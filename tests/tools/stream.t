@@ -58,20 +58,19 @@ quiet() { nsd-solve "$tmp/contacts.h5" 2>&- >"$tmp/quiet.h5" && cmp "$tmp/quiet.
 ok "closed stderr: the document is the same" quiet
 all_closed() { nsd-step -n 2 -o "$tmp/closed.h5" "$tmp/heap.h5" <&- >&- 2>&- && nsd-info "$tmp/closed.h5"; }
 ok "all three closed: -o FILE is a document" all_closed
-if command -v script >/dev/null; then
+if [ -x /usr/bin/python3 ]; then
     for command in "${commands[@]:0:7}"; do
         [[ $command != nsd-step* ]] || command="nsd-step - <$tmp/heap.h5" # a FILE it appends to
-        into() { script -q -e -c "$command 2>$tmp/said" "$tmp/typed" </dev/null >/dev/null 2>&1; }
+        into() { terminal sh -c "$command 2>$tmp/said" >/dev/null; }
         status 64 "$(short "$command") does not write to a terminal" into
         like "says so" "$(cat "$tmp/said")" "^${command%% *}: standard output is a terminal"
     done
-    into() { script -q -e -c "nsd-info $tmp/heap.h5" "$tmp/typed" </dev/null; }
-    status 0 "nsd-info does" into
-    into() { script -q -e -c "nsd-step -n 200 $tmp/heap.h5 >$tmp/progress.h5" "$tmp/typed" </dev/null; }
+    status 0 "nsd-info does" terminal nsd-info "$tmp/heap.h5"
+    into() { terminal sh -c "nsd-step -n 200 $tmp/heap.h5 >$tmp/progress.h5"; }
     status 0 "nsd-step shows its progress on a terminal" into
     ok "and writes the same document" cmp "$tmp/progress.h5" <(step -n 200 "$tmp/heap.h5" | nsd-cat -o "$tmp/same.h5"; cat "$tmp/same.h5")
 else
-    skip "documents do not go to a terminal" "no script(1)"
+    skip "documents do not go to a terminal" "no python3"
 fi
 
 # ---- streams ----

@@ -182,10 +182,10 @@ like "says what to do" "$(cat "$tmp/err")" '-o FILE'
 nsd-step --sums -n 1 -o "$tmp/later.h5" "$tmp/without.h5" 2>/dev/null
 refuses 65 "nor are sums joined that began at different times" nsd-cat -o "$tmp/joined.h5" "$tmp/a.h5" "$tmp/later.h5"
 is "without sums a measure is null, and says what keeps them" "$(nsd-stat --last -m sums "$tmp/without.h5" | jq -c '[.sums, (.why.sums | test("--sums"))]')" '[null,true]'
-if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+if has h5py; then
     nsd-cat --last "$tmp/a.h5" >"$tmp/crafted.h5"
     while IFS='|' read -r what how; do
-        /usr/bin/python3 -c 'import h5py, sys; f = h5py.File(sys.argv[1], "r"); g = h5py.File(sys.argv[2], "w"); [f.copy(n, g) for n in f]; s = g["particles/boundary/sums"]; exec(sys.argv[3])' \
+        py -c 'import h5py, sys; f = h5py.File(sys.argv[1], "r"); g = h5py.File(sys.argv[2], "w"); [f.copy(n, g) for n in f]; s = g["particles/boundary/sums"]; exec(sys.argv[3])' \
             "$tmp/crafted.h5" "$tmp/bad.h5" "$how"
         refuses 65 "$what" nsd-stat -m sums "$tmp/bad.h5"
     done <<'END'

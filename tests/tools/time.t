@@ -45,7 +45,7 @@ ok "with dt = 1e-6 it goes on, and is not off" eval 'nsd-info --last far.h5 | jq
 
 if have_h5py; then
     foreign one.h5 set.h5
-    change() { cp "$1" set.h5 && /usr/bin/python3 -c "import h5py, numpy as np
+    change() { cp "$1" set.h5 && py -c "import h5py, numpy as np
 f = h5py.File('set.h5', 'r+'); p = f['particles/all/position']
 $2"; }
     foreign one.h5 plain.h5
@@ -57,7 +57,7 @@ $2"; }
         for tool in nsd-info nsd-step nsd-cat; do refuses 65 "$tool: step $far is refused" "$tool" set.h5; done
     done
     foreign late.h5 from.h5
-    ok "what is counted from stands in the document" /usr/bin/python3 -c "import h5py
+    ok "what is counted from stands in the document" py -c "import h5py
 assert list(h5py.File('from.h5')['nsd'].attrs['time_origin']) == [7.3, 0]"
     change from.h5 'p["time"][0] = 5; p["step"][0] = 10'
     step -n 10 set.h5 >moved.h5

@@ -130,7 +130,7 @@ ok "a weight stays a weight while dt changes" eval \
 if have_h5py; then
     foreign whole.h5 set.h5
     for bad in 3e-3 0 'float("nan")' 8e-3 1e-300; do
-        cp set.h5 bad.h5 && /usr/bin/python3 -c "import h5py
+        cp set.h5 bad.h5 && py -c "import h5py
 h5py.File('bad.h5', 'r+')['nsd/time_step/value'][-1] = $bad"
         refuses 65 "a frame's dt of $bad is refused" nsd-step bad.h5
     done

@@ -29,7 +29,7 @@ done
 changed()
 {
     cp "$tmp/$1.h5" "$tmp/bad.h5"
-    /usr/bin/python3 - "$tmp/bad.h5" "$2" <<'PYTHON'
+    py - "$tmp/bad.h5" "$2" <<'PYTHON'
 import sys, h5py, numpy as np
 f = h5py.File(sys.argv[1], 'r+')
 A = '/particles/all/'
@@ -118,7 +118,7 @@ rm "$tmp"/huge*
 # copies of what nsd does not know, whatever its type and size
 kept() # SIZE CODE: f['/mine'] and its attributes
 {
-    changed "$1" "$2" && nsd-cat --stream "$tmp/bad.h5" >"$tmp/copy.h5" && /usr/bin/python3 - "$tmp/bad.h5" "$tmp/copy.h5" <<'PYTHON'
+    changed "$1" "$2" && nsd-cat --stream "$tmp/bad.h5" >"$tmp/copy.h5" && py - "$tmp/bad.h5" "$tmp/copy.h5" <<'PYTHON'
 import sys, h5py, numpy as np
 a, b = (h5py.File(p) for p in sys.argv[1:])
 def text(v): return v.decode() if isinstance(v, bytes) else v # h5py has two kinds

@@ -28,7 +28,7 @@ is "curves of nsd-stat, by their steps" "$(meta "$tmp/few.html" '.curves["z.mean
 # what a chunk says is what the document says, to the rounding that the page states
 chunks()
 {
-    /usr/bin/python3 - "$tmp/out.html" "$tmp/out.h5" <<'PYTHON'
+    py - "$tmp/out.html" "$tmp/out.h5" <<'PYTHON'
 import base64, json, re, sys, zlib
 import h5py, numpy as np
 page = open(sys.argv[1]).read()
@@ -64,7 +64,7 @@ printf '{"dt": 1e-3, "shapes": {"cube": {"box": [0.1, 0.1, 0.1]}, "pill": {"caps
 nsd-web "$tmp/shapes.h5" >"$tmp/shapes.html" 2>/dev/null
 shapes()
 {
-    /usr/bin/python3 - "$tmp/shapes.html" <<'PYTHON'
+    py - "$tmp/shapes.html" <<'PYTHON'
 import base64, re, sys, zlib
 import numpy as np
 page = open(sys.argv[1]).read()

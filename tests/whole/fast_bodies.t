@@ -74,11 +74,11 @@ ok "a row that touches moves on as one, without restitution" near "$(went 1 | jq
 
 for case in '30 4 2' '20 10 1'; do
     read -r n path steps <<<"$case"
-    /usr/bin/python3 tests/support/hard_balls.py make "$n" "$path" >"$tmp/gas.json"
+    py tests/support/hard_balls.py make "$n" "$path" >"$tmp/gas.json"
     nsd-gen "$tmp/gas.json" >"$tmp/in.h5"
     nsd-info -p "$tmp/in.h5" >"$tmp/gas.txt"
     now=$(went "$steps")
-    /usr/bin/python3 tests/support/hard_balls.py run "$tmp/gas.txt" "$(nsd-info --last "$tmp/out.h5" | jq -s 'map(.time | numbers)[0]')" >"$tmp/truth"
+    py tests/support/hard_balls.py run "$tmp/gas.txt" "$(nsd-info --last "$tmp/out.h5" | jq -s 'map(.time | numbers)[0]')" >"$tmp/truth"
     ok "$n balls after $(jq .impacts "$tmp/truth") impacts are where they are by steps from impact to impact" \
         jq -e --argjson b "$now" '. as $e | .impacts > 15 and ([range($b | length) as $i | range(3) as $k |
             (($b[$i].x[$k] - $e.x[$i][$k]) / $e.edge | . - round | fabs)] | max < 1e-11)' "$tmp/truth"
@@ -181,7 +181,7 @@ ok "beyond the limit of substeps bodies pass, and are counted" grep -q 'worst: .
 
 cp "$tmp/swarm.h5" "$tmp/whole.h5"
 nsd-gen scenes/gas.json | jq -n empty
-/usr/bin/python3 tests/support/hard_balls.py make 60 3 | jq '.mu = 0.2 | .e_n = 0.8 | .gravity = [0, 0, -9.81]' | nsd-gen - >"$tmp/in.h5"
+py tests/support/hard_balls.py make 60 3 | jq '.mu = 0.2 | .e_n = 0.8 | .gravity = [0, 0, -9.81]' | nsd-gen - >"$tmp/in.h5"
 nsd-step -n 4 --contacts -o "$tmp/one.h5" "$tmp/in.h5" 2>/dev/null
 nsd-step -j 4 -n 4 --contacts -o "$tmp/four.h5" "$tmp/in.h5" 2>/dev/null
 ok "4 threads write the bytes of one" cmp "$tmp/one.h5" "$tmp/four.h5"

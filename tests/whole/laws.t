@@ -120,7 +120,7 @@ done
 foreign()
 {
     nsd-detect "--fclib=$1" "$2" >"$tmp/fclib.h5"
-    /usr/bin/python3 - "$tmp/fclib.h5" "$tmp/problem.h5" "fclib_$1" <<'PYTHON'
+    py - "$tmp/fclib.h5" "$tmp/problem.h5" "fclib_$1" <<'PYTHON'
 import h5py, sys
 with h5py.File(sys.argv[1], 'r') as a, h5py.File(sys.argv[2], 'w') as b:
     a.copy(sys.argv[3], b)
@@ -560,7 +560,7 @@ done
 changed()
 {
     tail -c +513 "$tmp/$1" >"$tmp/changed.h5"
-    /usr/bin/python3 -c "import h5py, numpy as np
+    py -c "import h5py, numpy as np
 f = h5py.File('$tmp/changed.h5', 'r+')
 $2
 f.close()"

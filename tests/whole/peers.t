@@ -7,7 +7,7 @@
 # ---- the kept page ----
 
 for kept in docs/peers/*.json; do
-    ok "$kept has every job of the table" /usr/bin/python3 - "$kept" <<'PY'
+    ok "$kept has every job of the table" py - "$kept" <<'PY'
 import json, re, sys
 jobs = re.findall(r'^    "([a-z0-9-]+)": Job\(', open("bench/peers/jobs.py").read(), re.M)
 assert len(jobs) == 7 and set(jobs) <= set(json.load(open(sys.argv[1]))["jobs"])
@@ -24,7 +24,7 @@ fi
 
 # ---- observables ----
 
-observes() { /usr/bin/python3 - <<'PY'
+observes() { py - <<'PY'
 import sys
 sys.path.insert(0, "bench/peers")
 import numpy as np
@@ -55,7 +55,7 @@ ok "solid fraction, energy and angle of known arrangements" observes
 
 # ---- the scene of a job as LIGGGHTS gets it ----
 
-translates() { /usr/bin/python3 - "$tmp" <<'PY'
+translates() { py - "$tmp" <<'PY'
 import json, os, sys
 sys.path.insert(0, "bench/peers")
 import numpy as np

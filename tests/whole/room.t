@@ -58,8 +58,8 @@ diag "coarse $coarse fine $fine"
 ok "an empty room: M s^2/2 = p (V0 - V), to 1e-5" holds '.[0] | fabs < 1e-5' <<<"$fine"
 ok "of second order in dt" holds -n "$coarse as \$c | $fine as \$f | \$c[0] / \$f[0] | . > 3.5 and . < 4.5"
 # the equation of motion M ds/dt = -3 p V, dV/dt = 3 s V, by scipy
-if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
-    ode=$(/usr/bin/python3 -c '
+if has scipy; then
+    ode=$(py -c '
 from scipy.integrate import solve_ivp
 M = 6 * 0.1 * 0.05 ** 2
 y = solve_ivp(lambda t, y: [-3 * y[1] / M, 3 * y[0] * y[1]], [0, 0.1], [0, 1e-3], rtol=1e-10, atol=1e-14).y[:, -1]
@@ -189,11 +189,11 @@ jq '.dt = 1 | .room.mass = 1e-3 | .bodies[0].radius = 0.01' "$tmp/one.json" | ns
 status 65 "a room that falls in faster than a step ends the run" eval 'nsd-step -n 5 -o "$tmp/fasts.h5" "$tmp/fast.h5"'
 like "and says how to go on" "$(cat "$tmp/err")" "changes by -.* of its size in step 1, and a tenth is the most: take a smaller dt, a larger mass"
 # documents that say what no scene can
-if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
+if has h5py; then
     bent() # DATASET ROW VALUE MESSAGE
     {
         nsd-cat --last "$tmp/test.h5" | tail -c +513 >"$tmp/bent.h5"
-        /usr/bin/python3 -c 'import h5py, sys
+        py -c 'import h5py, sys
 f = h5py.File(sys.argv[1], "r+"); f["particles/boundary/load/" + sys.argv[2]][eval(sys.argv[3])] = float(sys.argv[4])' "$tmp/bent.h5" "$1" "$2" "$3"
         refuses 65 "a document whose $1 is $3 at $2" nsd-info -w "$tmp/bent.h5"
         like "why" "$(cat "$tmp/err")" "$4"

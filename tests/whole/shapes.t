@@ -444,7 +444,7 @@ if have_h5py; then
     status 0 'a document of shapes is read without its header, too' nsd-info "$tmp/good.raw"
     while IFS='|' read -r what change; do
         cp "$tmp/good.raw" "$tmp/poked.raw"
-        /usr/bin/python3 -c "import h5py, numpy; f = h5py.File('$tmp/poked.raw', 'r+'); s = f['/nsd/shape']; a = f['/particles/all/shape']; $change"
+        py -c "import h5py, numpy; f = h5py.File('$tmp/poked.raw', 'r+'); s = f['/nsd/shape']; a = f['/particles/all/shape']; $change"
         refuses 65 "a document with $what" nsd-info "$tmp/poked.raw"
     done <<'EOS'
 a shape that is not there|a[0] = 99

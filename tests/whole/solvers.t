@@ -11,7 +11,13 @@ nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --criterion glob -
     nsd-cat --last | nsd-detect --fclib=local >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
-below() { jq -e --argjson most "$3" ".$2 <= \$most" <(nsd-err "$1") >/dev/null; }
+# awk: it is asked a hundred times, and jq takes ten times as long to start
+below() # DOCUMENT NAME MOST: that number of each line of nsd-err
+{
+    nsd-err "$1" | awk -v name="\"$2\":" -v most="$3" '
+        { at = index($0, name); x = substr($0, at + length(name)); if (!at || x !~ /^-?[0-9]/ || x + 0 > most) bad = 1 }
+        END { exit bad || !NR }'
+}
 
 # ---- the paper's criterion, by bodies; W of the same packing ----
 
@@ -78,7 +84,7 @@ spoilt() # NAME PYTHON: of the group g
 {
     foreign "$tmp/heap.h5" "$tmp/heap.hdf5"
     h5copy -i "$tmp/heap.hdf5" -o "$tmp/$1.h5" -s /fclib_local -d /fclib_local
-    /usr/bin/python3 -c "import h5py; g = h5py.File('$tmp/$1.h5', 'r+')['fclib_local']; $2"
+    py -c "import h5py; g = h5py.File('$tmp/$1.h5', 'r+')['fclib_local']; $2"
 }
 if have_h5py; then
     spoilt negative 'g["W/x"][...] *= -1'
@@ -131,9 +137,10 @@ fi
 if [ -d "$problems/piles" ] && [ -z "$thin" ]; then
     nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile8000.h5"
     for g in ipm prox; do
-        nsd-solve --global $g --criterion natural --eps 1e-9 --max-seconds 4 --log "$tmp/log" \
-            "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null
-        ok "--global $g ends within its seconds" jq -e '.elapsed < 8' "$tmp/log"
+        # seconds of the processor, of which a busy machine gives fewer in the same time
+        spent=$(TIMEFORMAT=%0U && { time nsd-solve --global $g --criterion natural --eps 1e-9 --max-seconds 4 \
+            "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null; } 2>&1)
+        ok "--global $g ends within its seconds" [ "$spent" -lt 8 ]
     done
 fi
 
