@@ -451,7 +451,7 @@ refuses 64 "nsd-gen: an empty operand" nsd-gen ''
 refuses 64 "nsd-gen -d 4" nsd-gen -d 4 10
 if ! grep -q __asan_init "$(command -v nsd-gen)"; then # the sanitizer needs terabytes of addresses
     many() { (ulimit -v 2000000 && nsd-gen 2000000000); }
-    refuses 70 "nsd-gen: more balls than memory" many
+    refuses 65 "nsd-gen: more balls than memory" many
 fi
 for tool in nsd-gen "${readers[@]}"; do
     refuses 64 "$tool: an unknown option" "$tool" --no-such-option
@@ -517,7 +517,7 @@ kinds() { printf '{"dt": 1, "kinds": {"%s": {"density": 1}}, "bodies": []}' "$1"
 refuses 65 "nsd-gen: a kind's name of two lines" kinds 'a\nb'
 refuses 65 "nsd-gen: a kind without a name" kinds ''
 far() { echo '{"dt": 1, "bodies": [{"x": [1e308, 0, 0], "radius": 1, "v": [1e308, 0, 0]}]}' | nsd-gen - | nsd-step; }
-refuses 65 "nsd-step: what nobody could read is not written" far
+status 1 "nsd-step: a step whose result is infinite ends the run" far
 if ! grep -q __asan_init "$(command -v nsd-gen)"; then
     endless() { (ulimit -v 1500000 && echo '{"dt": 1, "bodies": [{"file": "/dev/zero"}]}' | nsd-gen -); }
     refuses 66 "nsd-gen: a table without end" endless

@@ -14,6 +14,8 @@ import numpy as np
 import nsd
 import nsd._library
 
+warnings.simplefilter("ignore", nsd.FailedStep)  # coarse runs of forty balls
+
 folder = sys.argv[1]
 heap = {"dt": 1e-4, "mu": 0.3, "seed": 4,
         "bodies": [{"count": 40, "radius": {"uniform": [4e-4, 5e-4]},
