@@ -3,6 +3,7 @@
 #include "cli/tool_filter.h"
 #include "motion/move.h"
 #include "motion/sum_step.h"
+#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -21,7 +22,10 @@ static void move(struct frame *f, const char *where)
     if (f->packing.sums.n && !impulses_init(&sum, &f->packing, &f->contacts, false, &why))
         sum_step(&f->packing, &f->contacts, &sum, &why);
     impulses_free(&sum);
-    if (why.status || move_step(&f->packing, &f->contacts, &why)) die_why(&why);
+    struct projected did = { 0 };
+    if (why.status || move_step(&f->packing, &f->contacts, &did, &why)) die_why(&why);
+    if (f->reported && overlap_projects(f->packing.overlap))
+        step_report_projected(&f->report, &did);
     f->detected = false, f->stale = true;
 }
 

@@ -387,4 +387,12 @@ static const struct column layout_gain_balance[] = {
     { 0 },
 };
 
+/* The same where bodies that overlap are moved apart */
+static const struct column layout_projection_balance[] = {
+    { "projection_work", "J", COLUMN_F64, 1, offsetof(struct report, balance.projection) },
+    { "projection_angular_momentum", "N m s", COLUMN_F64, 3,
+      offsetof(struct report, balance.spun) },
+    { 0 },
+};
+
 #endif

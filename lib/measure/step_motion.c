@@ -7,7 +7,7 @@ int step_motion_init(struct step_motion *m, const struct snapshot *s, struct why
 {
     *m = (struct step_motion){ .p = s->p };
     if (packing_copy(&m->other, s->p, why)) return why->status;
-    return (s->moved ? move_back : move_step)(&m->other, s->s, why);
+    return s->moved ? move_back(&m->other, s->s, why) : move_step(&m->other, s->s, NULL, why);
 }
 
 void step_motion_free(struct step_motion *m)

@@ -286,15 +286,26 @@ static bool after_sweep(void *with, struct displaced *d, bool more)
     return in_any(with, more);
 }
 
-void blocks_move_apart(struct blocks *b, const struct contacts *s)
+/* The bodies of this rank */
+static bool *own_of(const struct subdomain *y)
+{
+    bool *own = comm_new(y->comm, y->p.n, sizeof *own);
+    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
+    return own;
+}
+
+void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projected *did)
 {
     struct comm *t = b->part->comm;
     struct why why = { 0 };
     subdomain_refresh(b->part);
     if (!overlap_projects(b->part->p.overlap)) return;
     struct apart a = { b, letters(t, b->touched, 3) };
-    const struct project_share share = { &a, b->slower, in_any, after_sweep };
-    if (project_shared(&b->part->p, s, &share, &why)) comm_fail(t, why.status, why.text);
+    bool *own = did ? own_of(b->part) : NULL;
+    const struct project_share share = { &a, own, b->slower, in_any, after_sweep };
+    if (project_shared(&b->part->p, s, &share, did, &why)) comm_fail(t, why.status, why.text);
+    if (did) add(&b->exchange, (double *)did, sizeof *did / sizeof(double)); // it has nothing else
+    free(own);
     letters_free(t, a.since);
     subdomain_refresh(b->part);
 }
@@ -304,8 +315,7 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
 {
     struct subdomain *y = b->part;
     struct why why = { 0 };
-    bool *own = comm_new(y->comm, y->p.n, sizeof *own);
-    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
+    bool *own = own_of(y);
     if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
     free(own);
     add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else

@@ -573,10 +573,10 @@ static int balance_by_all(struct step_makers *m, const struct packing *p, const 
 }
 
 static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
-                             struct why *why)
+                             struct projected *did, struct why *why)
 {
     (void)p, (void)why;
-    blocks_move_apart(&((struct by_all *)m)->blocks, s);
+    blocks_move_apart(&((struct by_all *)m)->blocks, s, did);
     return 0;
 }
 

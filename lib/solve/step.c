@@ -99,6 +99,7 @@ static int begin(struct step_makers *m,
 static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
 {
     rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    rep->projected = false;
     return rep->balanced;
 }
 
@@ -125,7 +126,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                                       .rho_factor = o->solve.method->rho,
                                       .order = o->order };
     if (problem_prepare_delassus(&p, W, &form, why)) return why->status;
-    rep->balanced = rep->tied = rep->may_gain = false;
+    rep->balanced = rep->tied = rep->may_gain = rep->projected = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
@@ -217,10 +218,18 @@ int step_balance_whole(struct step_makers *m, const struct packing *p, const str
 }
 
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct why *why)
+                          struct projected *did, struct why *why)
 {
     (void)m;
-    return overlap_projects(p->overlap) ? project_apart(p, s, why) : 0;
+    return overlap_projects(p->overlap) ? project_apart(p, s, did, why) : 0;
+}
+
+void step_report_projected(struct report *rep, const struct projected *did)
+{
+    struct balance *b = &rep->balance;
+    rep->projected = rep->balanced;
+    b->projection = did->work, b->potential += did->work;
+    for (int k = 0; k < 3; k++) b->spun[k] = did->spin[k];
 }
 
 /* The balances and the motion */
@@ -228,12 +237,14 @@ static int move(struct step_makers *m, struct packing *p, const struct contacts 
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
+    struct projected did = { 0 };
     if (impulses_init(&sum, p, s, false, why)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
     if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
     if (isfinite(rep->err.paper.eps_glob) && !sum_step(p, s, &sum, why) &&
         !move_by(p, s, &sum, why))
-        m->move_apart(m, p, s, why);
+        m->move_apart(m, p, s, rep->balanced ? &did : NULL, why);
+    if (overlap_projects(p->overlap) && rep->balanced) step_report_projected(rep, &did);
 end:
     impulses_free(&sum);
     return why->status;

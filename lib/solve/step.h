@@ -9,6 +9,7 @@
 #include "detect/swift.h"
 #include "motion/balance.h"
 #include "motion/impulse.h"
+#include "motion/project.h"
 #include "problem/plan.h"
 #include "solve/solver.h"
 #include "solve/substeps.h"
@@ -79,9 +80,9 @@ struct step_makers {
     /* The balances of the step */
     int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
                    const struct impulses *sum, struct balance *b, struct why *why);
-    /* Bodies that overlap are moved apart, where the packing needs it. */
+    /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
-                      struct why *why);
+                      struct projected *did, struct why *why);
     /* Which bodies go through something: once the step is made, and before the first one and before substeps */
     int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
                  struct report *rep, struct why *why);
@@ -98,7 +99,9 @@ int step_measure_whole(struct step_makers *m, const struct packing *p, const str
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        const struct impulses *sum, struct balance *b, struct why *why);
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct why *why);
+                          struct projected *did, struct why *why);
+/* What bodies that have been moved apart add to the report */
+void step_report_projected(struct report *rep, const struct projected *did);
 
 /* Parts of it. */
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
