@@ -1,4 +1,5 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
+#include "bodies/energy.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "motion/move.h"
@@ -23,9 +24,10 @@ static void move(struct frame *f, const char *where)
         sum_step(&f->packing, &f->contacts, &sum, &why);
     impulses_free(&sum);
     struct projected did = { 0 };
+    f->report.balance.peculiar_change = -energy_peculiar(&f->packing, NULL);
     if (why.status || move_step(&f->packing, &f->contacts, &did, &why)) die_why(&why);
-    if (f->reported && overlap_projects(f->packing.overlap))
-        step_report_projected(&f->report, &did);
+    did.peculiar = energy_peculiar(&f->packing, NULL);
+    if (f->reported) step_report_moved(&f->report, &f->packing, &did);
     f->detected = false, f->stale = true;
 }
 

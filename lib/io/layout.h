@@ -389,6 +389,13 @@ static const struct column layout_gain_balance[] = {
     { 0 },
 };
 
+/* The same where the cell moves */
+static const struct column layout_peculiar_balance[] = {
+    { "peculiar_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar) },
+    { "peculiar_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar_change) },
+    { 0 },
+};
+
 /* The same where bodies that overlap are moved apart */
 static const struct column layout_projection_balance[] = {
     { "projection_work", "J", COLUMN_F64, 1, offsetof(struct report, balance.projection) },

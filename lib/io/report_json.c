@@ -60,6 +60,10 @@ static json_t *balance(const struct report *r)
         json_object_set_new(j, "projection", json_number(b->projection));
         json_object_set_new(j, "projection_angular_momentum", json_numbers(b->spun, 3));
     }
+    if (r->sheared) {
+        json_object_set_new(j, "peculiar", json_number(b->peculiar));
+        json_object_set_new(j, "peculiar_change", json_number(b->peculiar_change));
+    }
     json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
     json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
     return j;

@@ -18,6 +18,7 @@ static const struct {
     { layout_bond_balance, offsetof(struct report, tied) },
     { layout_gain_balance, offsetof(struct report, may_gain) },
     { layout_projection_balance, offsetof(struct report, projected) },
+    { layout_peculiar_balance, offsetof(struct report, sheared) },
 };
 enum { PARTS = sizeof parts / sizeof parts[0] };
 

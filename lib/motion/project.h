@@ -28,10 +28,11 @@ struct displaced {
     double im; /* 1/kg; 0: it does not move */
 };
 
-/* What the moves of a step have done, velocities being what they were */
+/* What the moves of a step have done, velocities being what they were, and the energy after them */
 struct projected {
-    double work;    /* J: against gravity, - sum m g . dx */
-    double spin[3]; /* N m s: of angular momentum, sum m dx x v */
+    double work;     /* J: against gravity, - sum m g . dx */
+    double spin[3];  /* N m s: of angular momentum, sum m dx x v */
+    double peculiar; /* J: energy_peculiar(), which the caller finds */
 };
 
 /* Of a packing of which several processes have a part each, by contacts that each is in one of: what is asked

@@ -80,7 +80,8 @@ struct step_makers {
     /* The balances of the step */
     int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
                    const struct impulses *sum, struct balance *b, struct why *why);
-    /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done */
+    /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done, and the energy
+       then */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct projected *did, struct why *why);
     /* Which bodies go through something: once the step is made, and before the first one and before substeps */
@@ -100,8 +101,8 @@ int step_balance_whole(struct step_makers *m, const struct packing *p, const str
                        const struct impulses *sum, struct balance *b, struct why *why);
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
                           struct projected *did, struct why *why);
-/* What bodies that have been moved apart add to the report */
-void step_report_projected(struct report *rep, const struct projected *did);
+/* What the report's balance has after the motion */
+void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did);
 
 /* Parts of it. */
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
