@@ -1,8 +1,10 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
+#include "bodies/energy.h"
 #include "cli/cli.h"
 #include "cli/tool_filter.h"
 #include "motion/move.h"
 #include "motion/sum_step.h"
+#include "solve/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 
@@ -21,7 +23,11 @@ static void move(struct frame *f, const char *where)
     if (f->packing.sums.n && !impulses_init(&sum, &f->packing, &f->contacts, false, &why))
         sum_step(&f->packing, &f->contacts, &sum, &why);
     impulses_free(&sum);
-    if (why.status || move_step(&f->packing, &f->contacts, &why)) die_why(&why);
+    struct projected did = { 0 };
+    f->report.balance.peculiar_change = -energy_peculiar(&f->packing, NULL);
+    if (why.status || move_step(&f->packing, &f->contacts, &did, &why)) die_why(&why);
+    did.peculiar = energy_peculiar(&f->packing, NULL);
+    if (f->reported) step_report_moved(&f->report, &f->packing, &did);
     f->detected = false, f->stale = true;
 }
 

@@ -618,10 +618,23 @@ static double read_dt(void)
     return adapts ? 0 : x;
 }
 
+/* Without --dt: an automatic dt adapts. */
+static void take_tolerance(const struct packing *p)
+{
+    if (dt || !(p->tolerance > 0)) return;
+    if (processes_size() > 1)
+        warn("dt stays %g s, because an automatic one adapts in a single process only; --dt DT "
+             "sets another",
+             p->dt);
+    else
+        tol = p->tolerance;
+}
+
 /* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
 static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct why why = { 0 };
+    take_tolerance(p);
     if (path && tol > 0 && !p->adapts)
         die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
     if (tol > 0) p->adapts = true;
@@ -629,7 +642,7 @@ static void set_dt(struct packing *p, double asked, const char *path)
     if (path && asked != packing_whole_dt(p))
         die_usage("--dt: %s has %g s, and a trajectory has one: use -o FILE for another", path,
                   packing_whole_dt(p));
-    if (!path) p->adapts = false;
+    if (!path) p->adapts = false, p->tolerance = 0;
     memory_scale(&p->memory, asked / p->dt);
     p->halved = 0;
     packing_set_dt(p, asked);

@@ -254,7 +254,7 @@ static int set_dt(struct nsd_run *r, const char *text, struct why *why)
         return why->status;
     }
     memory_scale(&p->memory, x / was.dt);
-    r->tol = 0, p->adapts = false;
+    r->tol = 0, p->adapts = false, p->tolerance = 0;
     return 0;
 }
 
@@ -323,8 +323,9 @@ static int adapt(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;
     double had = p->dt;
-    if (!(r->tol > 0)) return 0;
-    if (adapt_step(p, r->tol, &r->ahead, why)) return why->status;
+    const double tol = r->tol > 0 ? r->tol : p->tolerance;
+    if (!(tol > 0)) return 0;
+    if (adapt_step(p, tol, &r->ahead, why)) return why->status;
     r->o.solve.local.newton_abs *= p->dt / had;
     return 0;
 }

@@ -33,7 +33,7 @@ struct nsd_run {
     struct options options;
     struct step_opt o;     /* what they come to; of the dt that the step begins with */
     bool chosen;           /* o is that of the options */
-    double tol;            /* radii: of dt auto; 0: dt does not adapt */
+    double tol;            /* radii: of dt auto:TOL; 0: the document's, if its dt is automatic */
     bool contacts, forces; /* what is saved */
     struct asked asked;
     struct kept first, before; /* what measures remember */

@@ -13,4 +13,10 @@ struct energy {
 /* Bodies without mass count for the fastest alone. */
 struct energy energy_of(const struct packing *p);
 
+/* J: of translation, by the peculiar velocities v - L (x - origin) in a cell whose edges move at L e; of bodies with
+   own[n], NULL: of all. The image of a body has the same. */
+double energy_peculiar(const struct packing *p, const bool *own);
+/* Is it another than that of the velocities, or may it be at some time? */
+bool energy_has_peculiar(const struct packing *p);
+
 #endif

@@ -224,6 +224,7 @@ int packing_copy(struct packing *to, const struct packing *p, struct why *why)
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
+    to->tolerance = p->tolerance;
     to->overlap = p->overlap;
     to->seed = p->seed, to->pulls_most = p->pulls_most;
     if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, why) ||

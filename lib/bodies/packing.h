@@ -39,10 +39,11 @@ struct packing {
     double t, dt; /* s; t = t0 + (step - step0) dt, which no step adds up: packing_time() */
     double t0;    /* s: the time at step0, from which the time is counted with this dt */
     int64_t step0;
-    bool adapts;    /* dt is of this step: that of the document, halved so many times */
-    int32_t halved; /* 0 .. HALVED_MOST */
-    double theta;   /* of the theta-method; 1/2 is the paper's midpoint */
-    vec3 g;         /* m/s^2 */
+    bool adapts;      /* dt is of this step: that of the document, halved so many times */
+    int32_t halved;   /* 0 .. HALVED_MOST */
+    double tolerance; /* radii: TOL of an automatic dt [motion/adapt.h]; 0: dt is not automatic */
+    double theta;     /* of the theta-method; 1/2 is the paper's midpoint */
+    vec3 g;           /* m/s^2 */
     uint64_t seed;
     enum overlap overlap;
 

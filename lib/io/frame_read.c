@@ -143,6 +143,21 @@ static int read_overlap(struct source *doc, struct packing *p, struct why *why)
     return p->overlap ? 0 : why_set(why, EX_DATAERR, "/nsd@overlap: no such treatment of overlap");
 }
 
+/* Whether dt is automatic; a document need not say it. */
+static int read_tolerance(struct source *doc, struct packing *p, struct why *why)
+{
+    double tolerance = 0;
+    struct why none = { 0 };
+    if (source_attribute(doc, "/nsd", LAYOUT_TOLERANCE,
+                         (struct numbers){ COLUMN_F64, -1, &tolerance }, &none))
+        return 0;
+    if (!(tolerance > 0 && tolerance <= 1))
+        return why_set(why, EX_DATAERR,
+                       "/nsd@" LAYOUT_TOLERANCE ": not a number above 0 and at most 1");
+    p->tolerance = tolerance, p->adapts = true;
+    return 0;
+}
+
 static int read_parameters(struct source *doc, struct packing *p, struct why *why)
 {
     double g[3] = { 0 };
@@ -155,7 +170,7 @@ static int read_parameters(struct source *doc, struct packing *p, struct why *wh
         return why->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
-    if (read_overlap(doc, p, why)) return why->status;
+    if (read_overlap(doc, p, why) || read_tolerance(doc, p, why)) return why->status;
     p->scene = source_text(doc, "/nsd/scene", NULL, why);
     return why->status;
 }

@@ -48,7 +48,9 @@ static int write_parameters(hid_t file, const struct frame *f, struct why *why)
         h5_attr(file, "/nsd", "theta", h5_scalar(H5T_NATIVE_DOUBLE, &p->theta), why) ||
         h5_attr(file, "/nsd", "gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), why) ||
         h5_attr(file, "/nsd", "seed", h5_scalar(H5T_NATIVE_INT64, &seed), why) ||
-        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)))
+        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], why)) ||
+        (p->tolerance > 0 &&
+         h5_attr(file, "/nsd", LAYOUT_TOLERANCE, h5_scalar(H5T_NATIVE_DOUBLE, &p->tolerance), why)))
         return why->status;
     const double origin[2] = { p->t0, (double)p->step0 };
     if ((p->t0 != 0 || p->step0) &&

@@ -296,6 +296,8 @@ static const struct column layout_found[] = {
  * The group of the solver's reports. Not among H5MD's /observables: readers take each member of that
  * for an element with a value in every frame. LAYOUT_REPORT_0_1: where it was until nsd 0.1.
  */
+/* Radii: TOL of an automatic time step; of /nsd, only of documents that have one */
+#define LAYOUT_TOLERANCE "time_step_tolerance"
 /* Where the time step adapts, each frame's: [F], s */
 #define LAYOUT_TIME_STEP "/nsd/time_step/value"
 
@@ -384,6 +386,21 @@ static const struct column layout_bond_balance[] = {
 /* The same where impacts may gain energy */
 static const struct column layout_gain_balance[] = {
     { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
+    { 0 },
+};
+
+/* The same where the cell moves */
+static const struct column layout_peculiar_balance[] = {
+    { "peculiar_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar) },
+    { "peculiar_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar_change) },
+    { 0 },
+};
+
+/* The same where bodies that overlap are moved apart */
+static const struct column layout_projection_balance[] = {
+    { "projection_work", "J", COLUMN_F64, 1, offsetof(struct report, balance.projection) },
+    { "projection_angular_momentum", "N m s", COLUMN_F64, 3,
+      offsetof(struct report, balance.spun) },
     { 0 },
 };
 

@@ -39,8 +39,9 @@ json_t *json_err(const struct err *e)
     return j;
 }
 
-static json_t *balance(const struct balance *b, bool tied, bool may_gain)
+static json_t *balance(const struct report *r)
 {
+    const struct balance *b = &r->balance;
     json_t *j = json_object();
     json_object_set_new(j, "kinetic", json_number(b->kinetic));
     json_object_set_new(j, "change", json_number(b->change));
@@ -49,12 +50,20 @@ static json_t *balance(const struct balance *b, bool tied, bool may_gain)
     json_object_set_new(j, "drives", json_number(b->drives));
     json_object_set_new(j, "loads", json_number(b->loads));
     json_object_set_new(j, "dissipation", json_number(b->dissipation));
-    if (tied) {
+    if (r->tied) {
         json_object_set_new(j, "bond_change", json_number(b->bond_change));
         json_object_set_new(j, "bond_energy", json_number(b->bond_energy));
         json_object_set_new(j, "broken", json_number(b->broken));
     }
-    if (may_gain) json_object_set_new(j, "gained", json_number(b->gained));
+    if (r->may_gain) json_object_set_new(j, "gained", json_number(b->gained));
+    if (r->projected) {
+        json_object_set_new(j, "projection", json_number(b->projection));
+        json_object_set_new(j, "projection_angular_momentum", json_numbers(b->spun, 3));
+    }
+    if (r->sheared) {
+        json_object_set_new(j, "peculiar", json_number(b->peculiar));
+        json_object_set_new(j, "peculiar_change", json_number(b->peculiar_change));
+    }
     json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
     json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
     return j;
@@ -76,7 +85,7 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "gave_up", json_integer(r->gave_up));
     if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
     if (r->substeps > 1) json_object_set_new(j, "substeps", json_integer(r->substeps));
-    if (r->balanced) json_object_set_new(j, "balance", balance(&r->balance, r->tied, r->may_gain));
+    if (r->balanced) json_object_set_new(j, "balance", balance(r));
     return j;
 }
 

@@ -15,7 +15,7 @@ json_t *json_err(const struct err *err);
 /*
  * step, time, method, the keys of json_err, criterion, eps, sweeps, converged, newton, safeguarded,
  * gave_up; and where it is known balance { kinetic, change, potential, gravity, drives, loads, dissipation,
- * momentum, impulse } [motion/balance.h]
+ * and where they are known the terms of bonds, gained, projection, projection_angular_momentum, peculiar, peculiar_change; momentum, impulse } [motion/balance.h]
  */
 json_t *json_report(const struct report *report);
 /* steps, and for each row { value, step, bodies: [...], fails }: bodies by their ids, walls by their names, or as "wall 3" */

@@ -10,6 +10,28 @@
 
 enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
 
+/* Terms that the balances of some packings have, and where a report says that it has them */
+static const struct {
+    const struct column *columns;
+    size_t flag; /* of a bool in struct report */
+} parts[] = {
+    { layout_bond_balance, offsetof(struct report, tied) },
+    { layout_gain_balance, offsetof(struct report, may_gain) },
+    { layout_projection_balance, offsetof(struct report, projected) },
+    { layout_peculiar_balance, offsetof(struct report, sheared) },
+};
+enum { PARTS = sizeof parts / sizeof parts[0] };
+
+static bool *part_flag(struct report *rep, int k)
+{
+    return (bool *)((char *)rep + parts[k].flag);
+}
+
+static bool part_is_there(const struct report *rep, int k)
+{
+    return *(const bool *)((const char *)rep + parts[k].flag);
+}
+
 /* The reports whose numbers in these columns are there: a killed writer's may differ. */
 static void count_rows(struct report_rows *r, const struct column *columns)
 {
@@ -36,8 +58,7 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     count_rows(r, layout_report);
     count_rows(r, layout_velocity);
     count_rows(r, layout_balance);
-    count_rows(r, layout_bond_balance);
-    count_rows(r, layout_gain_balance);
+    for (int k = 0; k < PARTS; k++) count_rows(r, parts[k].columns);
     r->solves = account_rows_count(source, r->solves);
     if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
@@ -109,17 +130,17 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
     if (balanced && read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), why))
         return why->status;
-    snprintf(time, sizeof time, "%s/broken/value", r->group);
-    bool tied = balanced && source_has(r->source, time);
-    if (tied && read_table(r, at, RECORDS(layout_bond_balance, n, r->ahead.row), why))
-        return why->status;
-    snprintf(time, sizeof time, "%s/impact_gain/value", r->group);
-    bool may_gain = balanced && source_has(r->source, time);
-    if (may_gain && read_table(r, at, RECORDS(layout_gain_balance, n, r->ahead.row), why))
-        return why->status;
-    for (int64_t i = 0; i < n; i++)
-        r->ahead.row[i].balanced = balanced, r->ahead.row[i].tied = tied,
-        r->ahead.row[i].may_gain = may_gain;
+    bool has[PARTS];
+    for (int k = 0; k < PARTS; k++) {
+        snprintf(time, sizeof time, "%s/%s/value", r->group, parts[k].columns[0].name);
+        has[k] = balanced && source_has(r->source, time);
+        if (has[k] && read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), why))
+            return why->status;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        r->ahead.row[i].balanced = balanced;
+        for (int k = 0; k < PARTS; k++) *part_flag(&r->ahead.row[i], k) = has[k];
+    }
     r->ahead.n = n;
     return 0;
 }
@@ -177,8 +198,14 @@ static int write_balance(struct table_write *s, const struct report *rep, bool f
                          struct why *why)
 {
     if (write_table(s, layout_balance, rep, first, why)) return why->status;
-    if (rep->tied && write_table(s, layout_bond_balance, rep, first, why)) return why->status;
-    return rep->may_gain ? write_table(s, layout_gain_balance, rep, first, why) : 0;
+    for (int k = 0; k < PARTS; k++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", LAYOUT_REPORT, parts[k].columns[0].name);
+        // a trajectory has the terms of its first report in all of them, 0 where there is no such term
+        bool has = first ? part_is_there(rep, k) : table_write_grows(s, path);
+        if (has && write_table(s, parts[k].columns, rep, first, why)) return why->status;
+    }
+    return 0;
 }
 
 int report_rows_write(struct table_write *s, const struct report *rep, struct why *why)

@@ -31,7 +31,7 @@ static const char CUT_OFF[] = "has been cut off by another program";
 struct common_part {
     int dim;
     int64_t n;
-    double dt, theta;
+    double dt, theta, tolerance;
     bool adapts;
     enum overlap overlap;
     uint32_t
@@ -439,6 +439,7 @@ static struct common_part shared_of(const struct frame *f)
     struct common_part o = { .dim = p->dim,
                              .dt = packing_whole_dt(p),
                              .theta = p->theta,
+                             .tolerance = p->tolerance,
                              .adapts = p->adapts,
                              .overlap = p->overlap };
     o.pours = p->pours, o.removals = p->removals;
@@ -465,6 +466,9 @@ static int check_same(const struct writer *s, const struct frame *f, struct why 
     if (p.adapts != q.adapts)
         return why_set(why, EX_DATAERR,
                        "frames with a time step of their own and others in one trajectory");
+    if (p.tolerance != q.tolerance)
+        return why_set(why, EX_DATAERR,
+                       "frames with an automatic time step and others in one trajectory");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
         return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
     if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");

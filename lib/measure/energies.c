@@ -17,6 +17,7 @@ static const struct quantity quantities[] = {
     { "friction", "J", 1,
       "part of dissipated by tangential velocities and by rolling and pivoting" },
     { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
+    { "peculiar", "J", 1, "kinetic energy of translation relative to the flow of the cell" },
     { 0 },
 };
 
@@ -52,15 +53,20 @@ static int add_step(double **at, const struct snapshot *s, double *stored, struc
 static int energies_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
-    double kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
+    struct cell_flow flow;
+    double peculiar = 0, kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
     if (!at) return why->status;
+    cell_flow_init(&flow, &p->cell, p->cell.edge, p->cell.rate);
     for (int64_t i = 0; i < p->n; i++) {
+        vec3 w = flow.changes ? v3_sub(p->v[i], cell_flow_gain(&flow, p->x[i])) : p->v[i];
         int times = snapshot_body(s, i) ? region_holds(&s->region, p->x[i]) : 0;
         kinetic += times * 0.5 * p->mass[i] * v3_dot(p->v[i], p->v[i]);
+        peculiar += times * 0.5 * p->mass[i] * v3_dot(w, w);
         rotation += times * 0.5 * top_energy2(p, i, p->q[i], p->w[i]);
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     double *step = at + 5, stored = 0;
+    at[9] = peculiar;
     const char *lacks = NULL;
     if (!s->s || (!s->s->found && s->s->n))
         lacks = "the document has no solved contacts";

@@ -2,6 +2,7 @@
 #include "motion/balance.h"
 
 #include "bodies/contact_law.h"
+#include "bodies/energy.h"
 #include "bodies/freedom.h"
 #include "bodies/top.h"
 
@@ -233,6 +234,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     *b = (struct balance){ 0 };
     if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
     add_bodies(b, p, sum, of, mean);
+    if (energy_has_peculiar(p)) b->peculiar_change = -energy_peculiar(p, of);
     add_freedoms(b, p, sum);
     add_contacts(b, p, s, sum, mean);
     add_ties(b, p, s);

@@ -19,10 +19,15 @@
  *
  *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
  *
+ * Bodies that are moved apart after the step [motion/project.h] are lifted without a velocity, which gravity is not:
+ *
+ *     U+ - U- = projection - gravity,    U = - sum m g . x, with theta = 1/2
+ *
  * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
  * weight, dt sum m g, by forces from outside and by the impulse of boundaries, fixed bodies and the cell's flow. Where
  * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
- * another velocity.
+ * another velocity; the energy of the peculiar velocities is the same. balance_step() leaves -T'- in peculiar_change, to
+ * which the end of the step adds T'+.
  *
  * An impact under Newton's law with friction may gain energy [Kane 1984]: a rod that strikes a floor at an angle and
  * whose tip reverses its slip. gained is what impacts have gained, the pairs of which approached with restitution and
@@ -44,7 +49,13 @@ struct balance {
     /* J, where pairs are tied [bodies/contact_law.h]: of what is stored, in the step; what is stored then; what
        broken bonds and joining liquid have given up, in the step */
     double bond_change, bond_energy, broken;
-    double gained;      /* J: by impacts, in the step; a part of -dissipation */
+    double gained; /* J: by impacts, in the step; a part of -dissipation */
+    double
+        projection; /* J: against gravity, by moving bodies apart after the step; where that is done */
+    double spun[3]; /* N m s: of angular momentum, by that */
+    /* J, where the cell moves: of translation, by the velocities relative to its flow [bodies/energy.h], after the
+       step; and its change in the step */
+    double peculiar, peculiar_change;
     double momentum[3]; /* N s: of the bodies, after the step */
     double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
 };

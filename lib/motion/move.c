@@ -160,12 +160,12 @@ int move_by(struct packing *p, const struct contacts *s, const struct impulses *
     return room_check_growth(p, why);
 }
 
-int move_step(struct packing *p, const struct contacts *s, struct why *why)
+int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct why *why)
 {
     struct impulses sum;
     if (!impulses_init(&sum, p, s, false, why) && !move_by(p, s, &sum, why) &&
         overlap_projects(p->overlap))
-        project_apart(p, s, why);
+        project_apart(p, s, did, why);
     impulses_free(&sum);
     return why->status;
 }

@@ -11,10 +11,11 @@
 #define NSD_MOVE_H
 
 #include "motion/impulse.h"
+#include "motion/project.h"
 
 /* The bodies and the freedoms move, by the contacts' reactions, and bodies apart where the packing
-   needs it [motion/project.h]; step and t advance. Returns 0 or EX_SOFTWARE. */
-int move_step(struct packing *p, const struct contacts *s, struct why *why);
+   needs it [motion/project.h], did, or NULL: what that has done; step and t advance. Returns 0 or EX_SOFTWARE. */
+int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct why *why);
 
 /* The same where the sums of the reactions are there already; bodies are not moved apart. */
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,

@@ -7,6 +7,7 @@
 #include "motion/levels.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
     PER_THREAD = 2048, /* contacts or bodies that are worth a thread */
@@ -161,6 +162,20 @@ static void displace(struct packing *p, const struct displacements *o)
     team_share(team_size(), p->n, PER_THREAD, shift_some, &y);
 }
 
+/* What has moved the bodies from x[n] to where they are; own[n] or NULL: those that count */
+static struct projected projected_from(const vec3 *x, const struct packing *p, const bool *own)
+{
+    struct projected did = { 0 };
+    for (int64_t i = 0; i < p->n; i++) {
+        double m = !own || own[i] ? p->mass[i] : 0;
+        vec3 d = v3_sub(p->x[i], x[i]), spin = v3_cross(d, p->v[i]);
+        if (!(m > 0)) continue;
+        did.work -= m * v3_dot(p->g, d);
+        did.spin[0] += m * spin.x, did.spin[1] += m * spin.y, did.spin[2] += m * spin.z;
+    }
+    return did;
+}
+
 /* Sweeps over the parts */
 struct relaxing {
     const struct packing *p;
@@ -214,17 +229,20 @@ static bool relax_in_threads(struct relaxing *y)
     return shared;
 }
 
-int project_apart(struct packing *p, const struct contacts *s, struct why *why)
+int project_apart(struct packing *p, const struct contacts *s, struct projected *did,
+                  struct why *why)
 {
-    return project_shared(p, s, NULL, why);
+    return project_shared(p, s, NULL, did, why);
 }
 
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
-                   struct why *why)
+                   struct projected *did, struct why *why)
 {
+    vec3 *was = did ? malloc(((size_t)p->n + 1) * sizeof *was) : NULL;
     struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
     struct projected_contact *part = malloc(((size_t)s->n + 1) * sizeof *part);
-    bool room = part && o.d && !freedoms_init(&o.freedoms, p, p->cell.edge, false, why);
+    bool room =
+        part && o.d && (was || !did) && !freedoms_init(&o.freedoms, p, p->cell.edge, false, why);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
     if (!room) share = NULL; // the caller ends the others, who wait
     bool more = room && parts_make(p, s, &o, part);
@@ -239,8 +257,11 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
         more = sweep(&all);
         if (share) more = share->after_sweep(share->with, o.d, more);
     }
+    if (did) *did = (struct projected){ 0 };
+    if (moves && did) memcpy(was, p->x, (size_t)p->n * sizeof *was);
     if (moves) displace(p, &o);
-    free(part), free(o.d), free(o.z);
+    if (moves && did) *did = projected_from(was, p, share ? share->own : NULL);
+    free(was), free(part), free(o.d), free(o.z);
     freedoms_free(&o.freedoms);
     return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies apart");
 }

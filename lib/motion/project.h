@@ -28,10 +28,18 @@ struct displaced {
     double im; /* 1/kg; 0: it does not move */
 };
 
+/* What the moves of a step have done, velocities being what they were, and the energy after them */
+struct projected {
+    double work;     /* J: against gravity, - sum m g . dx */
+    double spin[3];  /* N m s: of angular momentum, sum m dx x v */
+    double peculiar; /* J: energy_peculiar(), which the caller finds */
+};
+
 /* Of a packing of which several processes have a part each, by contacts that each is in one of: what is asked
    of the others */
 struct project_share {
     void *with;
+    const bool *own;     /* [bodies] that count here */
     const double *brake; /* [contacts] by which a contact's step is shortened, at least 1 */
     /* Is it so in any process? */
     bool (*any)(void *with, bool here);
@@ -40,9 +48,10 @@ struct project_share {
     bool (*after_sweep)(void *with, struct displaced *d, bool more);
 };
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
-                   struct why *why);
+                   struct projected *did, struct why *why);
 
-/* The bodies after their step by these contacts. Returns 0 or EX_SOFTWARE. */
-int project_apart(struct packing *p, const struct contacts *s, struct why *why);
+/* The bodies after their step by these contacts; did, or NULL: what that has done. Returns 0 or EX_SOFTWARE. */
+int project_apart(struct packing *p, const struct contacts *s, struct projected *did,
+                  struct why *why);
 
 #endif

@@ -55,6 +55,8 @@ struct report {
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
     bool may_gain;          /* and of impacts that gain: where they may */
+    bool projected;         /* and of moving bodies apart: where the overlap rule does */
+    bool sheared;           /* and of the peculiar velocities: where the cell moves */
     struct balance balance; /* of the step that the reactions make */
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;

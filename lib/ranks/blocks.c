@@ -1,6 +1,7 @@
 /* ranks/blocks.c: every rank its own contacts, an exchange a sweep [ranks/blocks.h]. */
 #include "ranks/blocks.h"
 
+#include "bodies/energy.h"
 #include "ranks/answers.h"
 
 #include "motion/move.h"
@@ -286,17 +287,35 @@ static bool after_sweep(void *with, struct displaced *d, bool more)
     return in_any(with, more);
 }
 
-void blocks_move_apart(struct blocks *b, const struct contacts *s)
+/* The bodies of this rank */
+static bool *own_of(const struct subdomain *y)
+{
+    bool *own = comm_new(y->comm, y->p.n, sizeof *own);
+    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
+    return own;
+}
+
+static void project_here(struct blocks *b, const struct contacts *s, const bool *own,
+                         struct projected *did)
 {
     struct comm *t = b->part->comm;
     struct why why = { 0 };
-    subdomain_refresh(b->part);
-    if (!overlap_projects(b->part->p.overlap)) return;
     struct apart a = { b, letters(t, b->touched, 3) };
-    const struct project_share share = { &a, b->slower, in_any, after_sweep };
-    if (project_shared(&b->part->p, s, &share, &why)) comm_fail(t, why.status, why.text);
+    const struct project_share share = { &a, own, b->slower, in_any, after_sweep };
+    if (project_shared(&b->part->p, s, &share, did, &why)) comm_fail(t, why.status, why.text);
     letters_free(t, a.since);
     subdomain_refresh(b->part);
+}
+
+void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projected *did)
+{
+    const struct packing *p = &b->part->p;
+    bool *own = did ? own_of(b->part) : NULL;
+    subdomain_refresh(b->part);
+    if (overlap_projects(p->overlap)) project_here(b, s, own, did);
+    if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, own);
+    if (did) add(&b->exchange, (double *)did, sizeof *did / sizeof(double)); // it has nothing else
+    free(own);
 }
 
 void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
@@ -304,8 +323,7 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
 {
     struct subdomain *y = b->part;
     struct why why = { 0 };
-    bool *own = comm_new(y->comm, y->p.n, sizeof *own);
-    for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
+    bool *own = own_of(y);
     if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
     free(own);
     add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else

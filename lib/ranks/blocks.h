@@ -14,6 +14,7 @@
 #define NSD_BLOCKS_H
 
 #include "motion/balance.h"
+#include "motion/project.h"
 #include "problem/exchange.h"
 #include "problem/problem.h"
 #include "ranks/subdomain.h"
@@ -40,8 +41,8 @@ void blocks_add_impulses(struct blocks *b, struct impulses *sum);
 void blocks_balance(struct blocks *b, const struct contacts *s, const struct impulses *sum,
                     struct balance *told);
 /* After the motion: copies become what the bodies are, and bodies that overlap are moved apart, where the packing
-   needs it. */
-void blocks_move_apart(struct blocks *b, const struct contacts *s);
+   needs it; did, or NULL: what that has done, in all ranks */
+void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projected *did);
 void blocks_free(struct blocks *b);
 
 #endif

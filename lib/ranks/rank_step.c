@@ -599,10 +599,10 @@ static void agree_by_all(struct step_makers *m, struct report *rep)
 }
 
 static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
-                             struct why *why)
+                             struct projected *did, struct why *why)
 {
     (void)p, (void)why;
-    blocks_move_apart(&((struct by_all *)m)->blocks, s);
+    blocks_move_apart(&((struct by_all *)m)->blocks, s, did);
     return 0;
 }
 

@@ -441,13 +441,13 @@ static int name_wall(const struct scene *s, struct why *why)
     return why->status;
 }
 
-/* The dt of a scene that leaves it to us */
+/* The dt of a scene that leaves it to us, which adapts from then on */
 static int set_dt(struct packing *p, const struct scene *s, struct why *why)
 {
     struct time_step t;
     if (s->dt > 0) return 0;
     time_step_of(&t, s, p);
-    p->dt = t.best;
+    p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : why_set(why, EX_DATAERR,

@@ -12,9 +12,9 @@
 
 #define LASTING                                                                                    \
     (2 * OVERLAP_NEAR) /* of the smallest radius: what an acceleration may bring in a step */
-#define PASSING 0.05   /* of it: what a body may move before an impact */
-#define TURN    0.02   /* rad a step */
-#define PERIOD  200    /* steps a period */
+#define PASSING TIME_STEP_TOLERANCE /* of it: what a body may move before an impact */
+#define TURN    0.02                /* rad a step */
+#define PERIOD  200                 /* steps a period */
 /* Solid fractions of what has fallen, by dimension: how far the highest grains fall */
 static const double SETTLED[4] = { 0, 0, 0.8, 0.6 };
 /* To see how far, each horizontal direction is cut into so many parts at most, of so many of the largest

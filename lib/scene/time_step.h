@@ -55,6 +55,9 @@ struct time_step_limit {
 };
 extern const struct time_step_limit time_step_limit[LIMITS];
 
+/* Radii: what an impact may overlap in a step of the suggested dt, and TOL of a dt that is "auto" */
+#define TIME_STEP_TOLERANCE 0.05
+
 struct time_step {
     double radius;    /* m: the smallest; of a grain that is no ball, by how thin it is */
     double x[LIMITS]; /* the quantities; 0: no limit */

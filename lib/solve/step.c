@@ -1,6 +1,7 @@
 /* solve/step.c: a step from one state of a packing to the next [solve/step.h]. */
 #include "solve/step.h"
 
+#include "bodies/energy.h"
 #include "bodies/wrap.h"
 #include "detect/crossing.h"
 #include "detect/detect.h"
@@ -100,6 +101,7 @@ static int begin(struct step_makers *m,
 static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
 {
     rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    rep->projected = rep->sheared = false;
     return rep->balanced;
 }
 
@@ -126,7 +128,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                                       .rho_factor = o->solve.method->rho,
                                       .order = o->order };
     if (problem_prepare_delassus(&p, W, &form, why)) return why->status;
-    rep->balanced = rep->tied = rep->may_gain = false;
+    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
@@ -229,10 +231,24 @@ int step_balance_whole(struct step_makers *m, const struct packing *p, const str
 }
 
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct why *why)
+                          struct projected *did, struct why *why)
 {
     (void)m;
-    return overlap_projects(p->overlap) ? project_apart(p, s, why) : 0;
+    if (overlap_projects(p->overlap) && project_apart(p, s, did, why)) return why->status;
+    if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, NULL);
+    return 0;
+}
+
+void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did)
+{
+    struct balance *b = &rep->balance;
+    rep->projected = rep->balanced && overlap_projects(p->overlap);
+    rep->sheared = rep->balanced && energy_has_peculiar(p);
+    if (rep->projected) {
+        b->projection = did->work, b->potential += did->work;
+        for (int k = 0; k < 3; k++) b->spun[k] = did->spin[k];
+    }
+    if (rep->sheared) b->peculiar = did->peculiar, b->peculiar_change += did->peculiar;
 }
 
 static bool report_is_finite(const struct report *rep)
@@ -262,12 +278,14 @@ static int move(struct step_makers *m, struct packing *p, const struct contacts 
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
+    struct projected did = { 0 };
     if (impulses_init(&sum, p, s, false, why)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
     if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
     foresee(m, p, &sum, rep);
     if (report_made(rep) && !sum_step(p, s, &sum, why) && !move_by(p, s, &sum, why))
-        m->move_apart(m, p, s, why);
+        m->move_apart(m, p, s, rep->balanced ? &did : NULL, why);
+    if (rep->balanced) step_report_moved(rep, p, &did);
 end:
     impulses_free(&sum);
     return why->status;

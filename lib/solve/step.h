@@ -9,6 +9,7 @@
 #include "detect/swift.h"
 #include "motion/balance.h"
 #include "motion/impulse.h"
+#include "motion/project.h"
 #include "problem/plan.h"
 #include "solve/solver.h"
 #include "solve/substeps.h"
@@ -85,9 +86,10 @@ struct step_makers {
     /* rep->unsolved */
     void (*find_unsolved)(struct step_makers *m, const struct packing *p, const struct contacts *s,
                           struct report *rep);
-    /* Bodies that overlap are moved apart, where the packing needs it. */
+    /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done, and the energy
+       then */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
-                      struct why *why);
+                      struct projected *did, struct why *why);
     /* Which bodies go through something: once the step is made, and before the first one and before substeps */
     int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
                  struct report *rep, struct why *why);
@@ -106,7 +108,9 @@ void step_unsolved_whole(struct step_makers *m, const struct packing *p, const s
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        const struct impulses *sum, struct balance *b, struct why *why);
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct why *why);
+                          struct projected *did, struct why *why);
+/* What the report's balance has after the motion */
+void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did);
 
 /* Parts of it. */
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy

@@ -143,7 +143,9 @@ static void add_balance(struct balance *to, const struct balance *b)
     to->change += b->change, to->gravity += b->gravity, to->drives += b->drives;
     to->loads += b->loads, to->dissipation += b->dissipation;
     to->bond_change += b->bond_change, to->broken += b->broken, to->gained += b->gained;
-    for (int k = 0; k < 3; k++) to->impulse[k] += b->impulse[k];
+    to->projection += b->projection;
+    to->peculiar = b->peculiar, to->peculiar_change += b->peculiar_change;
+    for (int k = 0; k < 3; k++) to->impulse[k] += b->impulse[k], to->spun[k] += b->spun[k];
     to->kinetic = b->kinetic, to->potential = b->potential, to->bond_energy = b->bond_energy;
     for (int k = 0; k < 3; k++) to->momentum[k] = b->momentum[k];
 }

@@ -179,6 +179,36 @@ with h5py.File('$tmp/h5md.h5', 'r+') as f:
     ok 'constant edges as H5MD has them are read' nsd-step -n 2 "$tmp/h5md.h5"
 fi
 
+# ---- the energy of the peculiar velocities ----
+
+# One disc: v is constant, and w_x = 1 - G w_y t, whatever image it is
+jq -nc '{ dt: 1e-2, dim: 2, gravity: [0, 0], cell: { lengths: [1, 1], gradient: [[0, 2], [0, 0]] },
+    bodies: [{ x: [0.5, 0.5], v: [1, 0.7], radius: 0.01, mass: 2 }] }' | nsd-gen - >"$tmp/lone.h5"
+nsd-step -n 500 -o "$tmp/crosses.h5" "$tmp/lone.h5" 2>/dev/null
+balances() { nsd-info "$1" | jq -c 'select(.balance)'; }
+is "a disc that crosses a sheared border: the peculiar energy is that of the closed form" \
+    "$(balances "$tmp/crosses.h5" | jq -s 'map(.balance.peculiar - (0.49 + (1 - 1.4 * .time | . * .)) | fabs) | max < 1e-11')" true
+is "the kinetic energy jumps" "$(balances "$tmp/crosses.h5" | jq -s '. as $b | any(range(1; length); $b[.].balance.kinetic - $b[. - 1].balance.kinetic | fabs > 3)')" true
+is "nsd-stat has it" "$(nsd-stat -m energy "$tmp/crosses.h5" | jq -s 'map(.energy.peculiar)')" \
+    "$(balances "$tmp/crosses.h5" | jq -s '[.[].balance.peculiar]')"
+sums() # LOG: of the changes of the peculiar energy over the steps, less the change of the energy, in parts of it
+{
+    jq -n '[inputs.balance | select(.)] | (.[-1].peculiar - .[0].peculiar - (.[1:] | map(.peculiar_change) | add) | fabs) / .[-1].peculiar' "$1"
+}
+jq '.bodies[0].count = 100 | .cell.lengths = [0.5, 0.5] | .cell.gradient[2].t = 1.5' scenes/shear.json | nsd-gen - |
+    nsd-step -n 1600 --every 1600 --log="$tmp/sheared.log" -o "$tmp/sheared.h5" 2>/dev/null
+like "discs under compression and shear: its changes add up to it" "$(sums "$tmp/sheared.log" | jq '. < 1e-11')" true
+is "nsd-move puts it into the report" "$(nsd-cat --last "$tmp/sheared.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')" \
+    "$(nsd-step -n 1 "$tmp/sheared.h5" 2>/dev/null | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')"
+if have_ranks; then
+    ranks 2 nsd-step -n 50 --order block --log="$tmp/ranks.log" -o "$tmp/ranks.h5" "$tmp/sheared.h5" 2>/dev/null
+    like "two processes: so they do" "$(sums "$tmp/ranks.log" | jq '. < 1e-11')" true
+else
+    skip "two processes" "no MPI"
+fi
+is "a cell at rest has no such term" "$(jq -nc '{ dt: 1e-2, dim: 2, cell: { lengths: [1, 1] }, bodies: [{ x: [0.5, 0.5], radius: 0.01 }] }' | nsd-gen - |
+    nsd-step -n 1 2>/dev/null | balances - | jq '.balance | has("peculiar")')" false
+
 # ---- pictures ----
 
 nsd-view --svg --bare -o "$tmp/shown.svg" "$tmp/dense.h5" 2>/dev/null

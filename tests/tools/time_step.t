@@ -5,6 +5,7 @@
 
 step() { nsd-step "$@" 2>/dev/null; }
 checked() { jq -nc "$1" | nsd-gen --check - 2>/dev/null | jq -c "$2"; }
+holds() { jq -e -n "$@" >/dev/null; } # a jq program that says true
 near() { ok "$1" eval "jq -n -e '(($2) / ($3) - 1 | fabs) < 1e-9'"; }
 limit() { echo ".limits[] | select(.limit == \"$1\").dt"; }
 root="$PWD"
@@ -119,6 +120,52 @@ step -n 3 -o fixed.h5 first.h5
 is "without --dt the last one stays" "$(dts fixed.h5 | sort -u)" "$(dts first.h5 | tail -n 1)"
 step --until 0.4 --dt auto:0.01 --every 0.05s -o kept.h5 start.h5
 is "--every in seconds" "$(nsd-info kept.h5 | jq -c 'select(.step) | .time * 100 | floor' | jq -sc .)" '[5,10,15,20,25,30,35,40]'
+
+# ---- one that a scene leaves to nsd, which adapts ----
+
+# a gate that opens after the start: the suggestion cannot know the fall
+jq -nc '{dt: "auto", e_n: 0.3, mu: 0.3, bodies: [range(3) as $i | {x: [0.004 * $i, 0, 0.101], radius: 2e-3}],
+    walls: [{point: [0, 0, 0], normal: [0, 0, 1]}, {disc: {center: [0, 0, 0.099], normal: [0, 0, 1], radius: 0.03}, until: 0.05}]}' >gate.json
+# a gas that a wall compresses to a quarter, and so heats; a ball that is struck may strike another one in the same step,
+# which the rule does not know: less than 0.1, from which on a run fails
+jq -nc '{dt: "auto", dim: 2, gravity: [0, 0], e_n: 1, bodies: [range(20) as $i |
+        {x: [0.004 + 0.009 * ($i % 5), 0.005 + 0.02 * ($i / 5 | floor)], radius: 1e-3, v: [(if $i % 2 == 0 then 0.5 else -0.5 end), 0.3]}],
+    walls: [{point: [0, 0], normal: [0, 1]}, {point: [0, 0], normal: [1, 0]}, {point: [0.05, 0], normal: [-1, 0]},
+        {point: [0, 0.1], normal: [0, -1], drives: [{along: [0, 1], speed: -1, until: 0.075}]}]}' >gas.json
+declare -A most=([gate]=0.05 [gas]=0.1)
+for scene in gate gas; do
+    nsd-gen $scene.json >$scene.h5
+    first=$(dts $scene.h5)
+    step --until 0.25 -o $scene-auto.h5 $scene.h5
+    step --until 0.25 --dt "$first" -o $scene-fixed.h5 $scene.h5
+    ok "$scene, dt auto: no overlap is larger than ${most[$scene]} of a radius" holds "$(deepest $scene-auto.h5) <= ${most[$scene]}"
+    ok "$scene, its first dt: overlaps are larger than 0.1" holds "$(deepest $scene-fixed.h5) > 0.1"
+    is "$scene: the document says that dt is automatic" "$(nsd-info $scene-auto.h5 | jq -s '.[0].time_step_tolerance')" 0.05
+    is "$scene: with --dt it is not" "$(nsd-info $scene-fixed.h5 | jq -s '.[0].time_step_tolerance')" null
+done
+step --until 0.25 --dt auto:0.05 -o given.h5 gate.h5
+ok "auto is --dt auto:0.05" cmp <(nsd-info -p given.h5) <(nsd-info -p gate-auto.h5)
+step --until 0.25 -j 2 -o threads.h5 gate.h5
+ok "auto: two threads give the same bytes" cmp gate-auto.h5 threads.h5
+step --until 0.19 -o first.h5 gate.h5
+nsd-cat --last first.h5 | step --until 0.25 -o rest.h5
+ok "auto: a run that resumes gives the same bits" cmp <(nsd-info -p --last gate-auto.h5) <(nsd-info -p --last rest.h5)
+step --until 0.25 -i first.h5
+ok "also in place" cmp <(nsd-info -p gate-auto.h5) <(nsd-info -p first.h5)
+is "nsd-move keeps it" "$(nsd-detect gate.h5 | nsd-solve 2>/dev/null | nsd-move | nsd-info - | jq -s '.[0].time_step_tolerance')" 0.05
+if have_ranks; then
+    like "several processes say that dt stays" "$(ranks 2 nsd-step -n 1 -o mpi.h5 gate.h5 2>&1)" 'dt stays 0.00063 s'
+else
+    skip "several processes, dt auto" "no MPI"
+fi
+if have_h5py; then
+    foreign gate.h5 set.h5
+    for bad in 0 -1 2 'float("nan")'; do
+        cp set.h5 bad.h5 && /usr/bin/python3 -c "import h5py
+h5py.File('bad.h5', 'r+')['nsd'].attrs['time_step_tolerance'] = $bad"
+        refuses 65 "a tolerance of $bad is refused" nsd-step bad.h5
+    done
+fi
 
 # a ball at rest: forces are by the dt of each step
 jq -nc '{dt: 1e-3, bodies: [{x: [0, 0, 0.01], radius: 0.01, mass: 1}, {x: [1, 0, 0.3], radius: 0.01, v: [0, 0, -3]}], walls: [{point: [0, 0, 0], normal: [0, 0, 1]}]}' |

@@ -431,14 +431,14 @@ static void test_W(const struct place *where, int dim)
     size_t size = (size_t)(s.n * dim) + 4;
     double *free_u = calloc(size, 8), *u = calloc(size, 8), *r = calloc(size, 8),
            *v = calloc(size, 8), *zero = calloc(size, 8), worst = 0, worst_q = 0;
-    must(packing_copy(&q, &p, &why) || move_step(&q, &s, &why), &why);
+    must(packing_copy(&q, &p, &why) || move_step(&q, &s, NULL, &why), &why);
     contact_velocities(&q, &p, &s, free_u);
     packing_free(&q);
     for (int64_t k = 0; k < s.n * dim; k++) worst_q = fmax(worst_q, fabs(W->q[k] - free_u[k]));
     for (int64_t k = 0; k < s.n * dim; k++) {
         double one = p.mass[0], largest = 0, off = 0;
         s.found[k / dim].r[k % dim] = r[k] = one;
-        must(packing_copy(&q, &p, &why) || move_step(&q, &s, &why), &why);
+        must(packing_copy(&q, &p, &why) || move_step(&q, &s, NULL, &why), &why);
         contact_velocities(&q, &p, &s, u);
         delassus_apply(W, r, zero, v);
         for (int64_t i = 0; i < s.n * dim; i++) {
@@ -494,7 +494,7 @@ static void test_balance(const struct place *where, int dim, double e)
         back = fmax(back, largest_difference(&p, &was));
         for (int32_t j = 0; j < p.walls; j++)
             back = fmax(back, fabs(p.wall[j].load.travel - was.wall[j].load.travel) / 1e-3);
-        must(move_step(&p, &s, &why), &why);
+        must(move_step(&p, &s, NULL, &why), &why);
         packing_free(&was);
     }
     ok(energy < 1e-13, "%dD, e %g, %s: energy is balanced in 50 steps (%.1e)", dim, e, where->name,

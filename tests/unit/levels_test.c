@@ -87,7 +87,7 @@ static void test_threads(int side, bool shuffled)
     for (int threads = 1; threads <= 4; threads++) {
         memcpy(p.x, start, size);
         team_set_size(threads);
-        must(project_apart(&p, &s, &why), &why);
+        must(project_apart(&p, &s, NULL, &why), &why);
         if (threads == 1) memcpy(one, p.x, size), moved = memcmp(one, start, size) != 0;
         same = same && !memcmp(one, p.x, size);
     }

@@ -197,7 +197,7 @@ static quat spin(double dt, double t, double *energy, double *momentum, int *fli
     double E = energy_of(&p).kinetic, side = 1;
     *energy = *momentum = 0, *flips = 0;
     for (int64_t k = 0; k < (int64_t)(t / dt + 0.5); k++) {
-        move_step(&p, &none, &why);
+        move_step(&p, &none, NULL, &why);
         vec3 now = top_momentum(&p, 0, p.q[0], p.w[0]);
         *energy = fmax(*energy, fabs(energy_of(&p).kinetic / E - 1));
         *momentum = fmax(*momentum, v3_norm(v3_sub(now, L)) / v3_norm(L));
@@ -244,7 +244,7 @@ static void tops_turn(void)
     vec3 I = top_moments(&p, 0), L0 = top_momentum(&p, 0, p.q[0], p.w[0]);
     double rate = v3_norm(L0) / I.x;
     vec3 axis = v3_scale(1 / v3_norm(L0), L0), end;
-    for (int k = 0; k < 100; k++) move_step(&p, &none, &why);
+    for (int k = 0; k < 100; k++) move_step(&p, &none, NULL, &why);
     end = quat_turn(p.q[0], v3(0, 0, 1));
     vec3 want = quat_turn(quat_rotation(v3_scale(10 * rate, axis)), v3(0, 0, 1));
     ok(v3_norm(v3_sub(end, want)) < 1e-11, "a symmetric top precesses exactly: off by %.2g",
@@ -257,7 +257,7 @@ static void tops_turn(void)
     struct packing was;
     packing_copy(&was, &p, &why);
     contacts_alloc_found(&none);
-    move_step(&p, &none, &why), move_back(&p, &none, &why);
+    move_step(&p, &none, NULL, &why), move_back(&p, &none, &why);
     ok(v3_norm(v3_sub(p.w[0], was.w[0])) < 1e-13 && apart(p.q[0], was.q[0]) < 1e-14,
        "a step back undoes a step");
     contacts_free(&none);
@@ -378,7 +378,7 @@ static void steps_keep_momentum(bool rounded)
             spin_before =
                 v3_axpy(spin_before, p.mass[i], v3_cross(p.x[i], p.v[i])); // before the step
         }
-        step_solve(&p, &s, &o, &r, &why), move_step(&p, &s, &why);
+        step_solve(&p, &s, &o, &r, &why), move_step(&p, &s, NULL, &why);
         for (int i = 0; i < 2; i++) {
             after = v3_axpy(after, p.mass[i], p.v[i]);
             spin_after = v3_add(spin_after, top_momentum(&p, i, p.q[i], p.w[i]));

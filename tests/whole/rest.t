@@ -156,6 +156,48 @@ step -n 1 "$tmp/deep.h5" >"$tmp/first.h5"
 ok "what overlaps deeply is moved by a tenth of its radius in a step, and not more" \
     holds "$(nsd-info -p "$tmp/first.h5" | jq -s 'map(select(.id == 1)) | .[-1].x[2] - 0.011') | . > 0.0009 and . < 0.0011"
 
+# ---- what a projection does is in the balance ----
+
+balances() { nsd-info "$1" | jq 'select(.balance).balance'; }
+jq -n '{ dt: 1e-4, overlap: true, bodies: [{ x: [0, 0, 0.00999], radius: 0.01, mass: 0.5 }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | scene sunk
+step -n 3 --overlap project "$tmp/sunk.h5" >"$tmp/risen.h5"
+ok "a ball that begins 1e-5 m deep in a floor is lifted to the slop: m g times that" \
+    holds "$(balances "$tmp/risen.h5" | jq -s 'map(.projection) | add') / (0.5 * 9.81 * (1e-5 - 9.81e-8 - 1e-8)) - 1 | fabs < 1e-9"
+is "nsd-move puts it into the report of nsd-solve" \
+    "$(nsd-detect --overlap project "$tmp/sunk.h5" | nsd-solve 2>/dev/null | nsd-move | nsd-info - | jq -c 'select(.balance).balance')" \
+    "$(step -n 1 --overlap project "$tmp/sunk.h5" | nsd-info - | jq -c 'select(.balance).balance')"
+is "where nothing is moved there is no such term" \
+    "$(step -n 1 --overlap push "$tmp/sunk.h5" | nsd-info - | jq 'select(.balance).balance | has("projection")')" false
+if have_h5py; then
+    nsd-step -n 2 --overlap project "$tmp/sunk.h5" 2>/dev/null >"$tmp/newer.h5"
+    tail -c +513 "$tmp/newer.h5" >"$tmp/older.h5" # without its checksum
+    /usr/bin/python3 -c 'import h5py, sys
+solver = h5py.File(sys.argv[1], "r+")["nsd/solver"]
+del solver["projection_work"], solver["projection_angular_momentum"]' "$tmp/older.h5"
+    nsd-step -n 2 -i "$tmp/older.h5" 2>/dev/null
+    is "a document of an earlier version, without the term, has a balance in all frames once it is continued" \
+        "$(balances "$tmp/older.h5" | jq -s -c 'map(has("projection"))')" "[false,false,false,false]"
+fi
+jq '.walls[0].drives[0].from = 0 | .walls[0].drives[0].amplitude = 1.5e-3' scenes/shaken.json | scene shaken
+# The mechanical energy that is missing over all steps of a log, and the work of the projection, in parts of that of the drives
+misfit()
+{
+    jq -n -c '[inputs.balance | select(.)] | (map(.drives | fabs) | add) as $w | def E: .kinetic + .potential;
+        [((.[-1] | E) - (.[0] | E) - (.[1:] | map(.loads + .drives - .dissipation + .projection) | add) | fabs) / $w,
+            (map(.projection) | add) / $w]' "$1"
+}
+step -n 400 --every 400 --log="$tmp/shaken.log" "$tmp/shaken.h5" >"$tmp/x.h5"
+ok "a vibrated bed: energy is balanced from its first step to its last, of which the projection is a part" \
+    holds "$(misfit "$tmp/shaken.log") | .[0] < 1e-13 and .[1] > 1e-4"
+jq -n '{ dt: 1e-3, gravity: [0, 0, 0], mu: 0.5, bodies: [{ x: [0, 0, 0], radius: 0.01, mass: 1, v: [1, 0, 0] },
+    { x: [0.0205, 0.01, 0], radius: 0.01, mass: 1 }] }' | scene oblique
+step -n 10 --overlap project "$tmp/oblique.h5" >"$tmp/oblique-after.h5"
+angular() { jq -s 'map(select(.x) | .x[0] * .v[1] - .x[1] * .v[0] + 4e-5 * .w[2]) | add'; } # of balls of 1 kg and 0.01 m, N m s
+ok "an oblique impact: the angular momentum changes by what the projection adds" \
+    holds "($(nsd-info -p --last "$tmp/oblique-after.h5" | angular) - $(nsd-info -p "$tmp/oblique.h5" | angular)) as \$more |
+        $(balances "$tmp/oblique-after.h5" | jq -s 'map(.projection_angular_momentum[2]) | add') | . > 1e-6 and (\$more / . - 1 | fabs < 1e-9)"
+
 # ---- a ball that rests on a slope, in the notch of two others ----
 
 jq -n --argjson r $radius '{ dim: 2, dt: 1e-4, mu: 0.6, gravity: [0.98, -9.76], bodies: [{ x: [0, $r], radius: $r, fixed: true },
