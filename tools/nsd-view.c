@@ -84,7 +84,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "plain", &plain, .help = "omit the marks that show rotations" },
     { CLI_TEXT, 0, "size", &size, "WxH", .help = "set the size in pixels [longer side 900]" },
     { CLI_TEXT, 0, "camera", &camera, "AZ,EL",
-      .help = "view from AZ degrees about the vertical, EL above the horizon; 3D [30,15]" },
+      .help = "view from azimuth AZ and elevation EL, degrees; 3D [30,15]" },
     { CLI_TEXT, 0, "up", &upwards, "X,Y[,Z]",
       .help = "draw this direction upwards [against gravity; else z, in 2D y]" },
     { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
