@@ -27,7 +27,7 @@ ok "by a torque about the origin: the weight where the block is, before its midd
 is "a floor that rests has no power" "$(of power)" 0
 is "a plane has no area, and why says so" "$(jq -c '[.area[0], .pressure[0]]' "$tmp/slid")" '[null,null]'
 ok "--wear in place of the scene's coefficient" near "$(stat --last -m sums --wear 5e-12 "$tmp/slid.h5" | jq '.sums.wear[0]')" 160e-12 1e-6
-is "and where it is given it is not advised" "$(stat --last -m sums --wear 5e-12 "$tmp/slid.h5" | jq -r .why.sums)" "infinite walls have no area"
+is "and where it is given it is not advised" "$(stat --last -m sums --wear 5e-12 "$tmp/slid.h5" | jq -r .why.sums)" "a wall without ends has no area, unless it is a plane between others upright to it or across a periodic cell"
 jq -n "$block | del(.walls[0].wear)" | nsd-gen - | step -n 1 | stat -m sums | jq -c '[.sums.wear[0], .why.sums != null]' >"$tmp/none"
 is "and without either null" "$(cat "$tmp/none")" '[null,true]'
 
@@ -166,7 +166,7 @@ is "the motion is that of a run without sums" "$(nsd-info --last -p "$tmp/with.h
 nsd-gen 50 | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/hand0.h5"
 step -n 1 "$tmp/each.h5" >"$tmp/one.h5"
 nsd-cat --last "$tmp/each.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/hand.h5"
-is "a step by hand adds to them" "$(stat -m sums "$tmp/hand.h5")" "$(stat -m sums "$tmp/one.h5")"
+is "a step by hand adds to them" "$(stat -m sums "$tmp/hand.h5")" "$(stat -m sums "$tmp/one.h5" | jq -c 'del(.unconverged)')"
 # a run continued by its scene: the edges gone, what the run does about overlaps
 echo '{ "dt": 1e-3, "mu": 0.3, "cell": { "lengths": [0.3, 0.3, 1], "repeats": [true, true, false] }, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }],
     "bodies": [{ "count": 20, "radius": 0.02, "v": [0.7, 0.2, 0], "box": { "x": [0, 0.3], "y": [0, 0.3], "z": [0, 0.4] } }] }' | nsd-gen - >"$tmp/slides.h5"

@@ -21,8 +21,8 @@ path()
     cat "$tmp/$1.json"
 }
 down='[[0.005, 0, 0], [0, 0.005, 0], [0, 0, -0.01]]'
-mean=$(path mean 0.5 1600 "{\"gradient\": $down, \"stress\": {\"mean\": 1}}")
-heavy=$(path heavy 0.5 1600 "{\"gradient\": $down, \"stress\": {\"mean\": 1, \"mass\": 60}}")
+mean=$(path mean 0.5 2600 "{\"gradient\": $down, \"stress\": {\"mean\": 1}}")
+heavy=$(path heavy 0.5 2600 "{\"gradient\": $down, \"stress\": {\"mean\": 1, \"mass\": 60}}")
 side=$(path side 0.5 1600 '{"gradient": [[0, 0, 0], [0, 0, 0], [0, 0, -0.01]], "stress": {"target": [[1, null, null], [null, 1, null], [null, null, null]]}}')
 smooth=$(path smooth 0 800 "{\"gradient\": $down, \"stress\": {\"mean\": 1}}")
 diag "mean $mean" "heavy $heavy" "side $side" "smooth $smooth"
