@@ -111,7 +111,7 @@ stops "one that does not end after the run" 'while read -r l; do echo "{}"; done
 stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is not JSON'
 for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which does not exist' \
     '{"forces":{"0":[0,0,1],"00":[0,0,2]}}:body .00.' '{"forces":{"+1":[0,0,1]}}:body .+1.' '{"forces":{" 1":[0,0,1]}}:body . 1.' \
-    '{"forces":{"":[0,0,1]}}:body ..' '{"boundaries":{"00":{"force":1}}}:boundaries: no wall is named .00.' \
+    '{"forces":{"":[0,0,1]}}:body ..' '{"boundaries":{"00":{"force":1}}}:no wall is named .00.' \
     '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces, and there are 2' \
     '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
     '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"boundaries":{"roof":{"force":1}}}:no wall is named .roof.' '{"boundaries":{"-1":{"force":1}}}:no wall is named .-1.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
