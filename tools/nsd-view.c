@@ -25,7 +25,7 @@ static const char *output, *range, *size, *camera = "30,15", *upwards, *box, *ba
                                           *cut, *only, *table, *wanted, *solid_names,
                                           *surface_range;
 static int surface = SURFACE_NAME;
-static struct solid solid;
+static struct solid_walls solid;
 
 static struct cli_choice colour_choice(int k)
 {

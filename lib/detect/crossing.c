@@ -1,6 +1,6 @@
 #include "detect/crossing.h"
 
-static const double GRAZE = 1e-2; /* of the sum of radii: how deep a path must go into the other */
+static const double CROSSING_GRAZE = 1e-2; /* of the sum of radii: how deep a path must go into the other */
 
 static double size_of(const struct fast *b)
 {
@@ -18,7 +18,7 @@ static bool through_ball(const struct counting *o, double radii, vec3 from, vec3
 {
     const double w2 = v3_dot(way, way), s = -v3_dot(from, way) / w2;
     const vec3 end = v3_add(from, way), nearest = v3_axpy(from, s, way);
-    const double deep = (1 - GRAZE) * radii;
+    const double deep = (1 - CROSSING_GRAZE) * radii;
     return s > 0 && s < 1 && v3_dot(from, from) >= radii * radii &&
            (o->beyond || v3_dot(end, end) >= radii * radii) &&
            v3_dot(nearest, nearest) < deep * deep;

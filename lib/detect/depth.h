@@ -10,16 +10,7 @@
 
 #include "bodies/contact.h"
 #include "bodies/packing.h"
-
-/* Radii: as deep as a run fails for [solve/account.h]; what an impact leaves for a step is less */
-#define DEPTH_WEDGED 0.1
-
-struct depth {
-    double deepest;    /* radii; 0: nothing overlaps */
-    int32_t pair[2];   /* the ids of a and b there; boundary w is -1-w */
-    int64_t wedged;    /* bodies */
-    int32_t wedged_id; /* the first of them */
-};
+#include "problem/report.h"
 
 /* Of contacts whose gaps are known. counts[i]: whether body i counts, which several processes have; NULL:
    all do. Returns 0 or EX_SOFTWARE. */

@@ -9,7 +9,7 @@
    less makes meetings exact that nearly coincide, as long as QUARTER of the substeps left suffice for all of the path.
    At least several times the gap at which an impact is one already [bodies/overlap.h]. */
 static const double CALM_LEAST = 0.01, CALM_MOST = 0.05, QUARTER = 0.25;
-static const double GRAZE = 1e-6;  /* of the sum of radii: bodies that overlap by less go past */
+static const double IMPACT_GRAZE = 1e-6;  /* of the sum of radii: bodies that overlap by less go past */
 static const double DEEPER = 1e-5; /* of the thickness: what overlaps already meets by more */
 static const double TOUCH = 1e-4;  /* of the thickness: cores with this gap meet */
 static const double SLIVER = 1e-3; /* of a substep in which bodies meet: no substep is shorter */
@@ -38,7 +38,7 @@ static double meet_balls(const struct path *o, vec3 d, double radii)
         const double come = sqrt(d2) - v3_norm(v3_axpy(d, s, o->w));
         return come > DEEPER * o->thin ? 0 : INFINITY;
     }
-    const double deep = (1 - GRAZE) * radii, root2 = b * b - w2 * (d2 - radii * radii);
+    const double deep = (1 - IMPACT_GRAZE) * radii, root2 = b * b - w2 * (d2 - radii * radii);
     if (!(d2 - b * b / w2 < deep * deep)) return INFINITY;
     return (d2 - radii * radii) / (sqrt(root2) - b);
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 /* r < 0: glass */
-static struct rgb own_of(const struct solid *s, int32_t boundary, int32_t face)
+static struct rgb own_of(const struct solid_walls *s, int32_t boundary, int32_t face)
 {
     return s ? s->colour[s->faces.first[boundary] + face] : (struct rgb){ -1, 0, 0 };
 }

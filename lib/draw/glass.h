@@ -28,7 +28,7 @@ struct glass {
 struct glass_opt {
     struct extent region;
     vec3 toward;               /* unit vector to the viewer */
-    const struct solid *solid; /* those that are solid; NULL: none */
+    const struct solid_walls *solid; /* those that are solid; NULL: none */
     bool glass;                /* the others, too */
 };
 

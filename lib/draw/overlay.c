@@ -250,7 +250,7 @@ static void draw_classes(cairo_t *cr, const struct view *v, const struct packing
 }
 
 /* What the colours of solid boundaries show: their names, or numbers */
-static void draw_solid(cairo_t *cr, const struct solid *s, const struct paint *paint, double x,
+static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct paint *paint, double x,
                        double y, double end)
 {
     const struct surface_meaning *m = &surface_meaning[s->by];

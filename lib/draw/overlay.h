@@ -19,7 +19,7 @@ struct overlay {
     bool bonds;    /* a line for each bond, its colour the intensity; and for each liquid bridge */
     bool legend;   /* a strip below: the palette, a length, the time */
     double force;  /* N: of the widest line; 0: the largest of the frame */
-    const struct solid *solid; /* in the legend, too; NULL: none */
+    const struct solid_walls *solid; /* in the legend, too; NULL: none */
 };
 
 /* Lines and areas from now on have this colour. */

@@ -20,15 +20,15 @@ const struct surface_meaning surface_meaning[SURFACE_COUNT] = {
 static const unsigned colours[] = { 0xc9b27a, 0x8fa3b8, 0xc08a6e, 0x96a77e, 0x8a8f98, 0xa88fae };
 enum { COLOURS = sizeof colours / sizeof colours[0] };
 
-void solid_free(struct solid *s)
+void solid_free(struct solid_walls *s)
 {
     wall_faces_free(&s->faces);
     free(s->colour);
-    *s = (struct solid){ 0 };
+    *s = (struct solid_walls){ 0 };
 }
 
 /* The number that a face shows; NaN where its area has no end */
-static double value_of(const struct solid *s, const struct packing *p, int32_t wall, int32_t face)
+static double value_of(const struct solid_walls *s, const struct packing *p, int32_t wall, int32_t face)
 {
     const struct face_sums *x = &p->sums.face[s->faces.first[wall] + face];
     double area = face_of_area(p, wall, face), span = p->t - p->sums.since;
@@ -50,7 +50,7 @@ static const char *name_of(const struct chosen *c, const struct packing *p, int3
 }
 
 /* The row of the legend for a face, by its name, or the number of its wall */
-static int legend_row(struct solid *s, const struct chosen *c, const struct packing *p,
+static int legend_row(struct solid_walls *s, const struct chosen *c, const struct packing *p,
                       int32_t wall, int32_t face)
 {
     char name[NAME_BYTES + 12];
@@ -67,7 +67,7 @@ static int legend_row(struct solid *s, const struct chosen *c, const struct pack
     return s->named++;
 }
 
-static void set_range(struct solid *s, const struct packing *p, const struct chosen *c)
+static void set_range(struct solid_walls *s, const struct packing *p, const struct chosen *c)
 {
     if (!isnan(s->lo)) return;
     s->lo = 0, s->hi = -INFINITY;
@@ -78,18 +78,18 @@ static void set_range(struct solid *s, const struct packing *p, const struct cho
         }
 }
 
-static struct rgb palette_colour(const struct solid *s, const struct paint *paint, double x)
+static struct rgb palette_colour(const struct solid_walls *s, const struct paint *paint, double x)
 {
     double t = (x - s->lo) / (s->hi - s->lo);
     if (isnan(x) || isnan(t)) return rgb_of(0xb8b8b8);
     return paint->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 
-int solid_init(struct solid *s, const struct packing *p, const struct solid_opt *o, struct why *why)
+int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o, struct why *why)
 {
     const enum solid_by by = o->by;
     struct chosen c;
-    *s = (struct solid){ .by = by, .lo = o->lo, .hi = o->hi };
+    *s = (struct solid_walls){ .by = by, .lo = o->lo, .hi = o->hi };
     if (chosen_init(&c, p, "--solid", o->list, why)) return why->status;
     if (by != SURFACE_NAME && !p->sums.n)
         why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");

@@ -18,7 +18,7 @@ extern const struct surface_meaning surface_meaning[SURFACE_COUNT];
 
 enum { SOLID_NAMES = 8 }; /* that a legend has, at most */
 
-struct solid {
+struct solid_walls {
     struct wall_faces faces;
     struct rgb *colour; /* [faces.n]; r < 0: it is not drawn solid */
     enum solid_by by;
@@ -36,8 +36,8 @@ struct solid_opt {
 };
 
 /* Returns 0, EX_DATAERR (an unknown name, no sums) or EX_SOFTWARE with nothing to free. */
-int solid_init(struct solid *s, const struct packing *p, const struct solid_opt *o,
+int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o,
                struct why *why);
-void solid_free(struct solid *s);
+void solid_free(struct solid_walls *s);
 
 #endif

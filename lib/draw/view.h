@@ -28,7 +28,7 @@ struct view {
     int32_t follow; /* its id */
     bool glass;     /* boundaries are half-transparent, not lines alone [draw/glass.h] */
     const struct chosen *only; /* bodies that are drawn, and what joins them; NULL: all */
-    const struct solid *solid; /* boundaries that are solid instead; NULL: none */
+    const struct solid_walls *solid; /* boundaries that are solid instead; NULL: none */
     float pale;                /* 0 to 1: how much bodies are mixed with the background */
     int width, height;         /* pixels; 0: chosen */
     int samples;               /* a pixel is the mean of samples x samples */

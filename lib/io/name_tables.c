@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HOME "/nsd/names"
-static const char text_path[] = HOME "/text";
+#define NAMES_HOME "/nsd/names"
+static const char text_path[] = NAMES_HOME "/text";
 
 int name_tables_write(struct table_write *s, const struct packing *p, struct why *why)
 {
@@ -24,7 +24,7 @@ int name_tables_write(struct table_write *s, const struct packing *p, struct why
     }
     s->growing = false;
     if (!h5_write_text(s->file, text_path, text, why) && names->rows)
-        table_write_columns(s, HOME, "", RECORDS(layout_names, names->rows, names->row), 0, why);
+        table_write_columns(s, NAMES_HOME, "", RECORDS(layout_names, names->rows, names->row), 0, why);
     s->growing = growing;
     free(text);
     return why->status;
@@ -32,7 +32,7 @@ int name_tables_write(struct table_write *s, const struct packing *p, struct why
 
 static int read_rows(struct source *r, struct packing *p, struct why *why)
 {
-    const char *path = HOME "/boundary";
+    const char *path = NAMES_HOME "/boundary";
     uint64_t shape[4];
     if (!source_has(r, path)) return 0;
     if (source_shape(r, path, shape) != 1 || shape[0] > NAMED_MOST)
@@ -41,7 +41,7 @@ static int read_rows(struct source *r, struct packing *p, struct why *why)
     p->names.row = calloc((size_t)shape[0] + 1, sizeof *p->names.row);
     if (!p->names.row) return why_set(why, EX_SOFTWARE, "no memory for the names");
     p->names.rows = (int32_t)shape[0];
-    return table_read_columns(r, HOME, "", 0, RECORDS(layout_names, p->names.rows, p->names.row),
+    return table_read_columns(r, NAMES_HOME, "", 0, RECORDS(layout_names, p->names.rows, p->names.row),
                               why);
 }
 

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define HOME  "/nsd/outside"
-#define LASTS HOME "/lasting"
+#define EXTERNAL_HOME  "/nsd/outside"
+#define LASTS EXTERNAL_HOME "/lasting"
 
 /* ---- to a document ---- */
 
@@ -33,9 +33,9 @@ static int write_boundaries(struct table_write *s, const struct packing *p, stru
         x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
         if (p->outside.push) push[w] = p->outside.push[w];
     }
-    if (!table_write_rows(s, row_of(HOME "/point", 3, shape, x, "m"), why) &&
-        !table_write_rows(s, row_of(HOME "/velocity", 3, shape, x + n, "m s-1"), why))
-        table_write_rows(s, row_of(HOME "/push", 2, shape, push, "N, N m"), why);
+    if (!table_write_rows(s, row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), why) &&
+        !table_write_rows(s, row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), why))
+        table_write_rows(s, row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), why);
     free(x), free(push);
     return why->status;
 }
@@ -49,13 +49,13 @@ static int write_forces(struct table_write *s, const struct packing *p, bool any
     if (!none) return why_set(why, EX_SOFTWARE, "no memory for forces");
     const vec3 *force = any && p->outside.force ? p->outside.force : none;
     const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
-    if (!table_write_span(s, HOME "/body", s->forces, n, why) &&
+    if (!table_write_span(s, EXTERNAL_HOME "/body", s->forces, n, why) &&
         !table_write_rows(s,
-                          (struct dataset){ HOME "/body/force", COLUMN_F64, 2, shape,
+                          (struct dataset){ EXTERNAL_HOME "/body/force", COLUMN_F64, 2, shape,
                                             CHUNK_CONTACTS, force, "N" },
                           why))
         table_write_rows(s,
-                         (struct dataset){ HOME "/body/torque", COLUMN_F64, 2, shape,
+                         (struct dataset){ EXTERNAL_HOME "/body/torque", COLUMN_F64, 2, shape,
                                            CHUNK_CONTACTS, torque, "N m" },
                          why);
     free(none);
@@ -66,9 +66,9 @@ static int write_forces(struct table_write *s, const struct packing *p, bool any
 static int write_words(struct table_write *s, const struct outside *o, struct why *why)
 {
     const hsize_t length = (hsize_t)o->length;
-    if (table_write_span(s, HOME "/answer", s->words, o->length, why) ||
+    if (table_write_span(s, EXTERNAL_HOME "/answer", s->words, o->length, why) ||
         table_write_rows(s,
-                         (struct dataset){ HOME "/answer/text", COLUMN_I8, 1, &length,
+                         (struct dataset){ EXTERNAL_HOME "/answer/text", COLUMN_I8, 1, &length,
                                            CHUNK_CONTACTS, o->length ? o->words : "", NULL },
                          why))
         return why->status;
@@ -91,7 +91,7 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
     else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, why) &&
              !table_write_rows(
                  s, row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), why) &&
-             !table_write_span(s, HOME "/lasting", s->lasting, n, why) &&
+             !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, why) &&
              !table_write_rows(s,
                                (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
                                                  CHUNK_CONTACTS, o->force ? o->force : none, "N" },
@@ -114,9 +114,9 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
     if (!f->distributed && write_lasting(s, p, why)) return why->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
-    if (table_write_number(s, HOME "/step", COLUMN_I64, &p->step, NULL, why) ||
-        table_write_rows(s, row_of(HOME "/gravity", 2, row, g, "m s-2"), why) ||
-        table_write_rows(s, row_of(HOME "/friction", 2, pairs, p->mu, NULL), why) ||
+    if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, why) ||
+        table_write_rows(s, row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), why) ||
+        table_write_rows(s, row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), why) ||
         write_boundaries(s, p, why) || write_forces(s, p, forces, why))
         return why->status;
     return write_words(s, o, why);
@@ -129,16 +129,16 @@ static int read_boundaries(struct source *s, int64_t row, struct packing *p, str
     size_t n = (size_t)p->walls;
     vec3 *x = calloc(2 * n + 1, sizeof *x);
     if (!x) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
-    if (!source_rows(s, HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, why) &&
-        !source_rows(s, HOME "/velocity", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n,
+    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, why) &&
+        !source_rows(s, EXTERNAL_HOME "/velocity", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n,
                      why) &&
         !outside_alloc_push(&p->outside, p->walls, why))
-        source_rows(s, HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, p->outside.push,
+        source_rows(s, EXTERNAL_HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, p->outside.push,
                     why);
     bool any = false;
     for (size_t w = 0; w < n && !why->status; w++) {
         if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
-            why_set(why, EX_DATAERR, HOME ": the motion of wall %zu is not finite", w);
+            why_set(why, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite", w);
         p->wall[w].x = x[w], p->wall[w].v = x[n + w];
         any = any || p->outside.push[w] != 0;
     }
@@ -153,9 +153,9 @@ static int read_span(struct source *s, const char *name, int64_t row, int64_t mo
 {
     const struct slab number = { COLUMN_I64, row, 1, 1 };
     char path[80];
-    snprintf(path, sizeof path, HOME "/%s/start", name);
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s/start", name);
     if (source_rows(s, path, number, &span->start, why)) return why->status;
-    snprintf(path, sizeof path, HOME "/%s/count", name);
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s/count", name);
     if (source_rows(s, path, number, &span->count, why)) return why->status;
     if (span->start >= 0 && span->count >= 0 && span->count <= most) return 0;
     return why_set(why, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
@@ -169,14 +169,14 @@ static int read_forces(struct source *s, int64_t row, struct packing *p, struct 
     const int64_t start = span.start, count = span.count;
     if (count != p->n)
         return why_set(why, EX_DATAERR,
-                       HOME "/body/count: forces of %lld bodies, and there are %lld",
+                       EXTERNAL_HOME "/body/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
     if (outside_alloc(&p->outside.force, p->n, why) ||
         outside_alloc(&p->outside.torque, p->n, why) ||
-        source_rows(s, HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
+        source_rows(s, EXTERNAL_HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
                     p->outside.force, why))
         return why->status;
-    if (source_rows(s, HOME "/body/torque", (struct slab){ COLUMN_F64, start, count, 3 },
+    if (source_rows(s, EXTERNAL_HOME "/body/torque", (struct slab){ COLUMN_F64, start, count, 3 },
                     p->outside.torque, why))
         return why->status;
     outside_measure(&p->outside, p->mass, p->n);
@@ -230,15 +230,15 @@ static int read_words(struct source *s, int64_t row, struct outside *o, struct w
 {
     uint64_t shape[4];
     struct span span = { 0, 0 };
-    if (source_shape(s, HOME "/answer/text", shape) != 1)
-        return why_set(why, EX_DATAERR, HOME "/answer/text: not of one dimension");
+    if (source_shape(s, EXTERNAL_HOME "/answer/text", shape) != 1)
+        return why_set(why, EX_DATAERR, EXTERNAL_HOME "/answer/text: not of one dimension");
     if (read_span(s, "answer", row, (int64_t)shape[0], &span, why) || !span.count)
         return why->status;
     const int64_t start = span.start, count = span.count;
     if (!(o->words = malloc((size_t)count)))
         return why_set(why, EX_SOFTWARE, "no memory for the answer");
     o->length = o->room = count;
-    return source_rows(s, HOME "/answer/text", (struct slab){ COLUMN_I8, start, count, 1 },
+    return source_rows(s, EXTERNAL_HOME "/answer/text", (struct slab){ COLUMN_I8, start, count, 1 },
                        o->words, why);
 }
 
@@ -246,10 +246,10 @@ int outside_tables_read(struct source *s, struct packing *p, struct why *why)
 {
     double g[3];
     if (read_lasting(s, p, why)) return why->status;
-    int64_t row = table_read_row_at(s, HOME "/step", p->step, why);
+    int64_t row = table_read_row_at(s, EXTERNAL_HOME "/step", p->step, why);
     if (why->status || row < 0) return why->status;
-    if (source_rows(s, HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, why) ||
-        source_rows(s, HOME "/friction",
+    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, why) ||
+        source_rows(s, EXTERNAL_HOME "/friction",
                     (struct slab){ COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds }, p->mu,
                     why) ||
         read_boundaries(s, row, p, why) || read_forces(s, row, p, why) ||
@@ -260,6 +260,6 @@ int outside_tables_read(struct source *s, struct packing *p, struct why *why)
     for (int32_t a = 0; a < p->kinds; a++)
         for (int32_t b = 0; b < a; b++)
             if (p->mu[a * p->kinds + b] != p->mu[b * p->kinds + a])
-                return why_set(why, EX_DATAERR, HOME "/friction: not symmetric");
+                return why_set(why, EX_DATAERR, EXTERNAL_HOME "/friction: not symmetric");
     return 0;
 }

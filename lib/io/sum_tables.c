@@ -7,21 +7,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define HOME "/particles/boundary/sums"
+#define SUMS_HOME "/particles/boundary/sums"
 
 enum { FEW = 64 /* faces: a chunk has many frames of these, else one */ };
 
 static void path_of(const struct column *c, char path[80])
 {
-    snprintf(path, 80, HOME "/%s/value", c->name);
+    snprintf(path, 80, SUMS_HOME "/%s/value", c->name);
 }
 
 int sum_tables_write_static(struct table_write *s, const struct packing *p, struct why *why)
 {
     if (!p->sums.n) return 0;
     s->sums_since = p->sums.since;
-    if (h5_group(s->file, HOME, why)) return why->status;
-    return h5_attr(s->file, HOME, "since", h5_scalar(H5T_NATIVE_DOUBLE, &p->sums.since), why);
+    if (h5_group(s->file, SUMS_HOME, why)) return why->status;
+    return h5_attr(s->file, SUMS_HOME, "since", h5_scalar(H5T_NATIVE_DOUBLE, &p->sums.since), why);
 }
 
 /* May the trajectory take a frame with sums, or without? They are there from its first frame on, or in none. */
@@ -59,7 +59,7 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct why 
                          why);
         free(row);
     }
-    return why->status ? why->status : table_write_clocks(s, HOME, layout_sums, p->step, p->t, why);
+    return why->status ? why->status : table_write_clocks(s, SUMS_HOME, layout_sums, p->step, p->t, why);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *why)
@@ -90,6 +90,6 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct why *
     }
     free(row);
     if (why->status) return why->status;
-    return source_attribute(r, HOME, "since", (struct numbers){ COLUMN_F64, -1, &p->sums.since },
+    return source_attribute(r, SUMS_HOME, "since", (struct numbers){ COLUMN_F64, -1, &p->sums.since },
                             why);
 }

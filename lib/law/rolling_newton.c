@@ -16,7 +16,7 @@ static void residual(const struct rolling *q, bool hat, struct point *y)
     rolling_velocity(q, y->x, y->u);
     predict(q, q->rho, y->x, y->u, hat, y->tau);
     double rn = hat ? cone_top(q, y->tau, y->at_limit) : fmax(y->tau[0], 0);
-    for (int i = 0; i < ROLLING_PARTS; i++) y->at_limit[i] = part(y->tau, i) > q->mu[i] * rn;
+    for (int i = 0; i < ROLLING_PARTS; i++) y->at_limit[i] = rolling_part(y->tau, i) > q->mu[i] * rn;
     limit(q, y->tau, rn, y->p);
     for (int i = 0; i < ROLLING; i++) y->Z[i] = y->x[i] - y->p[i];
     y->z2 = dot(y->Z, y->Z, ROLLING);
@@ -34,7 +34,7 @@ static void slope_of_prediction(const struct rolling *q, bool hat, const struct 
     for (int i = 0; i < ROLLING; i++)
         for (int j = 0; j < ROLLING; j++) T[i][j] = (i == j) - q->rho * W[i][j];
     for (int i = 0; hat && i < ROLLING_PARTS; i++) {
-        double length = part(y->u, i);
+        double length = rolling_part(y->u, i);
         for (int l = first_of[i]; length > 0 && l < first_of[i] + size_of[i]; l++)
             for (int j = 0; j < ROLLING; j++)
                 T[0][j] -= q->rho * q->mu[i] * y->u[l] / length * W[l][j];
@@ -50,14 +50,14 @@ static void slope_of_projection(const struct rolling *q, bool hat, const struct 
     if (!(y->p[0] > 0)) return;
     for (int i = 0; i < ROLLING_PARTS && hat; i++) {
         if (!y->at_limit[i]) continue;
-        double length = part(y->tau, i);
+        double length = rolling_part(y->tau, i);
         all += q->mu[i] * q->mu[i];
         for (int j = first_of[i]; j < first_of[i] + size_of[i]; j++)
             top[j] = q->mu[i] * y->tau[j] / length;
     }
     for (int j = 0; j < ROLLING; j++) P[0][j] = top[j] / all;
     for (int i = 0; i < ROLLING_PARTS; i++) {
-        double length = part(y->tau, i), s = q->mu[i] * y->p[0] / length;
+        double length = rolling_part(y->tau, i), s = q->mu[i] * y->p[0] / length;
         for (int l = first_of[i]; l < first_of[i] + size_of[i]; l++) {
             if (!y->at_limit[i]) {
                 P[l][l] = 1;

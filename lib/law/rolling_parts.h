@@ -17,7 +17,7 @@ static inline double dot(const double *a, const double *b, int n)
 }
 
 /* |.| of part i */
-static inline double part(const double x[ROLLING], int i)
+static inline double rolling_part(const double x[ROLLING], int i)
 {
     const double *y = x + first_of[i];
     return size_of[i] == 1 ? fabs(y[0]) : sqrt(dot(y, y, 2));
@@ -31,7 +31,7 @@ static inline double part(const double x[ROLLING], int i)
 static inline double cone_top(const struct rolling *q, const double tau[ROLLING], bool at_limit[3])
 {
     double t[ROLLING_PARTS], best = 0;
-    for (int i = 0; i < ROLLING_PARTS; i++) t[i] = part(tau, i);
+    for (int i = 0; i < ROLLING_PARTS; i++) t[i] = rolling_part(tau, i);
     for (int set = 0; set < 1 << ROLLING_PARTS; set++) {
         double top = tau[0], all = 1;
         for (int i = 0; i < ROLLING_PARTS; i++)
@@ -48,7 +48,7 @@ static inline void limit(const struct rolling *q, const double tau[ROLLING], dou
 {
     p[0] = rn;
     for (int i = 0; i < ROLLING_PARTS; i++) {
-        double t = part(tau, i), most = q->mu[i] * rn, s = t > most ? most / t : 1;
+        double t = rolling_part(tau, i), most = q->mu[i] * rn, s = t > most ? most / t : 1;
         for (int j = first_of[i]; j < first_of[i] + size_of[i]; j++) p[j] = s * tau[j];
     }
 }
@@ -57,7 +57,7 @@ static inline void limit(const struct rolling *q, const double tau[ROLLING], dou
 static inline double slip_of(const struct rolling *q, const double u[ROLLING])
 {
     double sum = 0;
-    for (int i = 0; i < ROLLING_PARTS; i++) sum += q->mu[i] * part(u, i);
+    for (int i = 0; i < ROLLING_PARTS; i++) sum += q->mu[i] * rolling_part(u, i);
     return sum;
 }
 

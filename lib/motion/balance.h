@@ -40,25 +40,7 @@
 #define NSD_BALANCE_H
 
 #include "motion/impulse.h"
-
-struct balance {
-    double kinetic;   /* J: after the step; of the bodies and of what loads move */
-    double change;    /* J: of kinetic, in the step */
-    double potential; /* J: - sum m g . x, after the step, of the bodies */
-    double gravity, drives, loads, dissipation; /* J: in the step */
-    /* J, where pairs are tied [bodies/contact_law.h]: of what is stored, in the step; what is stored then; what
-       broken bonds and joining liquid have given up, in the step */
-    double bond_change, bond_energy, broken;
-    double gained; /* J: by impacts, in the step; a part of -dissipation */
-    double
-        projection; /* J: against gravity, by moving bodies apart after the step; where that is done */
-    double spun[3]; /* N m s: of angular momentum, by that */
-    /* J, where the cell moves: of translation, by the velocities relative to its flow [bodies/energy.h], after the
-       step; and its change in the step */
-    double peculiar, peculiar_change;
-    double momentum[3]; /* N s: of the bodies, after the step */
-    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
-};
+#include "problem/report.h"
 
 /* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
    given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */

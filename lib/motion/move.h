@@ -11,6 +11,7 @@
 #define NSD_MOVE_H
 
 #include "motion/impulse.h"
+#include "problem/report.h"
 #include "motion/project.h"
 
 /* The bodies and the freedoms move, by the contacts' reactions, and bodies apart where the packing
@@ -21,21 +22,6 @@ int move_step(struct packing *p, const struct contacts *s, struct projected *did
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
             struct why *why);
 
-/* What would be infinite or no number after a step, for which the step is not made; the first found */
-struct endless {
-    enum endless_what {
-        ENDLESS_NOTHING,
-        ENDLESS_POSITION,
-        ENDLESS_VELOCITY,
-        ENDLESS_SPIN,
-        ENDLESS_ENERGY,
-        ENDLESS_WALL,
-        ENDLESS_CELL,
-        ENDLESS_REPORT
-    } what;
-    int32_t id; /* of the body; a wall w is -1-w */
-};
-extern const char *const endless_name[];
 /* After move_by() with these sums; what is reported of the step is not looked at. */
 struct endless endless_after(const struct packing *p, const struct impulses *sum);
 

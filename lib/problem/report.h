@@ -5,9 +5,8 @@
 #ifndef NSD_REPORT_H
 #define NSD_REPORT_H
 
-#include "detect/depth.h"
-#include "motion/balance.h"
-#include "motion/move.h"
+#include "bodies/contact.h"
+#include "bodies/packing.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -45,6 +44,54 @@ struct err {
     int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
     double stray;   /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
+
+/* Radii: as deep as a run fails for [solve/account.h]; what an impact leaves for a step is less */
+#define DEPTH_WEDGED 0.1
+
+
+/* How deep bodies are in one another */
+struct depth {
+    double deepest;    /* radii; 0: nothing overlaps */
+    int32_t pair[2];   /* the ids of a and b there; boundary w is -1-w */
+    int64_t wedged;    /* bodies */
+    int32_t wedged_id; /* the first of them */
+};
+
+/* Energy and momentum over a step [motion/balance.h] */
+struct balance {
+    double kinetic;   /* J: after the step; of the bodies and of what loads move */
+    double change;    /* J: of kinetic, in the step */
+    double potential; /* J: - sum m g . x, after the step, of the bodies */
+    double gravity, drives, loads, dissipation; /* J: in the step */
+    /* J, where pairs are tied [bodies/contact_law.h]: of what is stored, in the step; what is stored then; what
+       broken bonds and joining liquid have given up, in the step */
+    double bond_change, bond_energy, broken;
+    double gained; /* J: by impacts, in the step; a part of -dissipation */
+    double
+        projection; /* J: against gravity, by moving bodies apart after the step; where that is done */
+    double spun[3]; /* N m s: of angular momentum, by that */
+    /* J, where the cell moves: of translation, by the velocities relative to its flow [bodies/energy.h], after the
+       step; and its change in the step */
+    double peculiar, peculiar_change;
+    double momentum[3]; /* N s: of the bodies, after the step */
+    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
+};
+
+/* What would be infinite or no number after a step, for which the step is not made; the first found */
+struct endless {
+    enum endless_what {
+        ENDLESS_NOTHING,
+        ENDLESS_POSITION,
+        ENDLESS_VELOCITY,
+        ENDLESS_SPIN,
+        ENDLESS_ENERGY,
+        ENDLESS_WALL,
+        ENDLESS_CELL,
+        ENDLESS_REPORT
+    } what;
+    int32_t id; /* of the body; a wall w is -1-w */
+};
+extern const char *const endless_name[];
 
 struct report {
     char method[16];

@@ -9,7 +9,7 @@
 
 enum {
     SAMPLE = 16384,            /* contacts that decide where to cut, at most */
-    CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread */
+    SPLIT_CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread */
 };
 
 struct division {
@@ -83,11 +83,11 @@ int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing 
     bool room = top && y.shared;
     if (room) {
         choose_cut(&y, top);
-        team_share(team_size(), n, CONTACTS_PER_THREAD, cut_some, &y);
+        team_share(team_size(), n, SPLIT_CONTACTS_PER_THREAD, cut_some, &y);
         for (int64_t c = 0; c < n; c++)
             for (int k = 0; k < 2 && zone[c] == ZONE_BORDER && body[c][k] >= 0; k++)
                 y.shared[body[c][k]] = true;
-        team_share(team_size(), n, CONTACTS_PER_THREAD, find_rim, &y);
+        team_share(team_size(), n, SPLIT_CONTACTS_PER_THREAD, find_rim, &y);
     }
     free(top), free(y.shared);
     return room ? 0 : -1;

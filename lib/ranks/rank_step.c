@@ -1,4 +1,5 @@
 /* ranks/rank_step.c: one time step of all ranks [ranks/rank_step.h]. */
+#include "detect/depth.h"
 #include "ranks/rank_step.h"
 
 #include "bodies/freedom.h"

@@ -7,7 +7,10 @@
 #ifndef NSD_ACCOUNT_H
 #define NSD_ACCOUNT_H
 
+#include "bodies/names.h"
 #include "problem/report.h"
+
+#include <stddef.h>
 
 enum account_row {
     ACCOUNT_OVERLAP,

@@ -1,6 +1,7 @@
 /* solve/step.c: a step from one state of a packing to the next [solve/step.h]. */
 #include "solve/step.h"
 
+#include "detect/depth.h"
 #include "bodies/energy.h"
 #include "bodies/wrap.h"
 #include "detect/crossing.h"
