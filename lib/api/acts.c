@@ -14,13 +14,13 @@ void acts_free(struct acts *a)
     *a = (struct acts){ 0 };
 }
 
-static int no_memory(struct why *why)
+static int control_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for forces");
 }
 
 /* Arrays of n bodies, all zero; false: none, and nothing to free */
-static bool make(struct acts *a, int64_t n)
+static bool control_make(struct acts *a, int64_t n)
 {
     size_t room = (size_t)n + 1;
     bool good = (a->id = calloc(room, sizeof *a->id));
@@ -44,14 +44,14 @@ int acts_copy(struct acts *to, const struct acts *from, int32_t walls, struct wh
 {
     size_t n = (size_t)from->n;
     *to = (struct acts){ 0 };
-    if (from->id && !make(to, from->n)) return no_memory(why);
+    if (from->id && !control_make(to, from->n)) return control_no_memory(why);
     if (from->id) memcpy(to->id, from->id, n * sizeof *to->id);
     for (int t = 0; t < ACTS_TERMS; t++) {
         to->pushes[t] = from->pushes[t], to->twists[t] = from->twists[t];
         if (from->id) memcpy(to->force[t], from->force[t], n * sizeof *to->force[t]);
         if (from->id) memcpy(to->torque[t], from->torque[t], n * sizeof *to->torque[t]);
         if (!from->push[t]) continue;
-        if (!make_push(&to->push[t], walls)) return acts_free(to), no_memory(why);
+        if (!make_push(&to->push[t], walls)) return acts_free(to), control_no_memory(why);
         memcpy(to->push[t], from->push[t], (size_t)walls * sizeof *to->push[t]);
     }
     return 0;
@@ -75,7 +75,7 @@ int acts_arrays(struct acts *a, const struct packing *p, struct why *why)
 {
     struct acts now = { 0 };
     if (a->id && a->n == p->n && !memcmp(a->id, p->id, (size_t)p->n * sizeof *p->id)) return 0;
-    if (!make(&now, p->n)) return no_memory(why);
+    if (!control_make(&now, p->n)) return control_no_memory(why);
     memcpy(now.id, p->id, (size_t)p->n * sizeof *p->id);
     for (int64_t j = 0; a->id && j < a->n; j++) {
         int64_t i = acts_row(p, a->id[j]);
@@ -114,7 +114,7 @@ static bool add_both(vec3 *sum, const vec3 *lasting, const vec3 *once, int64_t n
 
 /* sum[n] = x, whose squares over those of mass[n] are at most *most^2; are all squares finite? In one pass: it costs what
    memory takes */
-static bool copy(vec3 *sum, const vec3 *x, const double *mass, int64_t n, double *most)
+static bool acts_copy_first(vec3 *sum, const vec3 *x, const double *mass, int64_t n, double *most)
 {
     int bad = 0;
     double most2 = 0;
@@ -146,7 +146,7 @@ static int sum_terms(vec3 **sum, vec3 *const term[ACTS_TERMS], const bool may[AC
     if (outside_alloc(sum, n, why)) return why->status;
     const vec3 *x = term[is[ACTS_LASTING] ? ACTS_LASTING : ACTS_ONCE], *y = term[ACTS_ONCE];
     const bool both = is[ACTS_LASTING] && is[ACTS_ONCE];
-    of->finite = both ? add_both(*sum, x, y, n) : copy(*sum, x, p->mass, n, &of->most);
+    of->finite = both ? add_both(*sum, x, y, n) : acts_copy_first(*sum, x, p->mass, n, &of->most);
     if (both) of->most = -1;
     return 0;
 }
@@ -272,7 +272,7 @@ int acts_push(struct acts *a, const struct packing *p, int64_t wall, double forc
     if (!isfinite(force))
         return why_set(why, EX_DATAERR, "the force of boundary %lld is not finite",
                        (long long)wall);
-    if (!make_push(&a->push[term], p->walls)) return no_memory(why);
+    if (!make_push(&a->push[term], p->walls)) return control_no_memory(why);
     a->push[term][wall] = force;
     return 0;
 }
@@ -327,7 +327,7 @@ int acts_gravity(struct packing *p, vec3 g, struct why *why)
     return 0;
 }
 
-static int32_t kind_of(const struct packing *p, const char *name, struct why *why)
+static int32_t control_kind_of(const struct packing *p, const char *name, struct why *why)
 {
     for (int32_t k = 0; k < p->kinds; k++)
         if (!strcmp(p->kind_name[k], name)) return k;
@@ -337,7 +337,7 @@ static int32_t kind_of(const struct packing *p, const char *name, struct why *wh
 
 int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why)
 {
-    int32_t k = kind_of(p, a, why), l = k < 0 ? -1 : kind_of(p, b, why);
+    int32_t k = control_kind_of(p, a, why), l = k < 0 ? -1 : control_kind_of(p, b, why);
     if (l < 0) return why->status;
     if (!(mu >= 0 && isfinite(mu)))
         return why_set(why, EX_DATAERR, "a friction of %g is not a finite number of at least 0",

@@ -24,7 +24,7 @@ json_t *answer_parse(const char *line, size_t length, struct why *why)
     return NULL;
 }
 
-static int wrong(struct why *why, const char *what)
+static int reply_wrong(struct why *why, const char *what)
 {
     return why_set(why, EX_DATAERR, "the answer's %s", what);
 }
@@ -44,7 +44,7 @@ static bool vector(const json_t *j, int dim, vec3 *x)
 }
 
 /* A number that is a key, written in one way only, so that no two keys are the same number: at least 0; -1: it is none */
-static int64_t whole(const char *text)
+static int64_t reply_whole(const char *text)
 {
     int64_t n = 0;
     if (text[0] == '0' && text[1]) return -1;
@@ -73,9 +73,9 @@ static const struct {
 enum { KEYS = sizeof known / sizeof *known };
 
 /* What an answer has of each body: the first of them */
-enum part { FORCES, TORQUES, VELOCITIES, SPINS, PARTS };
+enum reply_part { FORCES, TORQUES, VELOCITIES, SPINS, PARTS };
 
-static int set(struct acts *acts, enum part part, struct packing *p, int64_t i, const json_t *j,
+static int reply_set(struct acts *acts, enum reply_part part, struct packing *p, int64_t i, const json_t *j,
                struct why *why)
 {
     vec3 x;
@@ -89,7 +89,7 @@ static int set(struct acts *acts, enum part part, struct packing *p, int64_t i, 
 }
 
 /* Of all bodies in their order, or of those with these ids */
-static int set_all(const json_t *j, struct acts *acts, enum part part, struct packing *p,
+static int set_all(const json_t *j, struct acts *acts, enum reply_part part, struct packing *p,
                    struct why *why)
 {
     const char *id;
@@ -99,15 +99,15 @@ static int set_all(const json_t *j, struct acts *acts, enum part part, struct pa
         return why_set(why, EX_DATAERR, "the answer has %zu %s, and there are %lld bodies",
                        json_array_size(j), known[part].key, (long long)p->n);
     for (size_t i = 0; json_is_array(j) && i < json_array_size(j); i++)
-        if (set(acts, part, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
+        if (reply_set(acts, part, p, (int64_t)i, json_array_get(j, i), why)) return why->status;
     json_object_foreach((json_t *)j, id, x)
     {
-        int64_t number = whole(id), i = number < 0 ? -1 : acts_row(p, (int32_t)number);
+        int64_t number = reply_whole(id), i = number < 0 ? -1 : acts_row(p, (int32_t)number);
         if (i < 0)
             return why_set(why, EX_DATAERR,
                            "the answer has %s of body '%.40s', which does not exist",
                            known[part].key, id);
-        if (set(acts, part, p, i, x, why)) return why->status;
+        if (reply_set(acts, part, p, i, x, why)) return why->status;
     }
     return 0;
 }
@@ -118,14 +118,14 @@ static int set_boundary(const json_t *j, struct acts *acts, struct packing *p, i
     const char *key;
     json_t *x;
     vec3 v;
-    if (!json_is_object(j)) return wrong(why, "boundaries have velocity and force");
+    if (!json_is_object(j)) return reply_wrong(why, "boundaries have velocity and force");
     json_object_foreach((json_t *)j, key, x)
     {
         if (!strcmp(key, "velocity")) {
-            if (!vector(x, p->dim, &v)) return wrong(why, "velocity is a vector [x, y, z]");
+            if (!vector(x, p->dim, &v)) return reply_wrong(why, "velocity is a vector [x, y, z]");
             acts_velocity(p, wall, v, why);
         } else if (!strcmp(key, "force")) {
-            if (!json_is_number(x)) return wrong(why, "force of a boundary is a number");
+            if (!json_is_number(x)) return reply_wrong(why, "force of a boundary is a number");
             acts_push(acts, p, wall, json_number_value(x), ACTS_LASTING, why);
         } else {
             why_set(why, EX_DATAERR, "the answer's boundaries have no '%.40s'", key);
@@ -142,7 +142,7 @@ static int set_boundaries(const json_t *j, struct acts *acts, struct packing *p,
     json_object_foreach((json_t *)j, key, x)
     {
         const int32_t name = names_find(&p->names, key, strlen(key));
-        int64_t wall = whole(key); // a name is no number
+        int64_t wall = reply_whole(key); // a name is no number
         for (int32_t k = 0; name >= 0 && k < p->names.rows && !why->status; k++) {
             const struct named *r = &p->names.row[k];
             if (r->name == name && !r->count) set_boundary(x, acts, p, wall = r->boundary, why);
@@ -164,7 +164,7 @@ static int set_frictions(const json_t *j, struct packing *p, struct why *why)
                      *mu = json_array_get(x, 2);
         if (json_array_size(x) != 3 || !json_is_string(a) || !json_is_string(b) ||
             !json_is_number(mu))
-            return wrong(why, "friction is [[KIND, KIND, mu], ...]");
+            return reply_wrong(why, "friction is [[KIND, KIND, mu], ...]");
         if (acts_friction(p, json_string_value(a), json_string_value(b), json_number_value(mu),
                           why))
             return why->status;
@@ -188,7 +188,7 @@ int answer_check(const json_t *answer, struct why *why)
         if ((known[k].array && json_is_array(x)) || (known[k].object && json_is_object(x)) ||
             (known[k].boolean && json_is_boolean(x)))
             continue;
-        if (known[k].boolean) return wrong(why, "stop is true or false");
+        if (known[k].boolean) return reply_wrong(why, "stop is true or false");
         return why_set(why, EX_DATAERR, "the answer's %s is %s", key,
                        k < PARTS         ? "an array, or an object by ids"
                        : known[k].object ? "an object by their numbers"
@@ -199,7 +199,7 @@ int answer_check(const json_t *answer, struct why *why)
 }
 
 /* What an answer may change, as it was: an answer that is refused has changed nothing. */
-struct before {
+struct reply_before {
     vec3 *v, *w, g;
     struct wall *wall;
     double *mu;
@@ -207,14 +207,14 @@ struct before {
     struct acts acts;
 };
 
-static void forget(struct before *b)
+static void reply_forget(struct reply_before *b)
 {
     free(b->v), free(b->w), free(b->wall), free(b->mu);
     acts_free(&b->acts);
 }
 
 /* *to = a copy, where the answer has this key; false: no memory */
-static bool copy(void *to, const json_t *answer, const char *key, const void *from, size_t bytes)
+static bool reply_copy(void *to, const json_t *answer, const char *key, const void *from, size_t bytes)
 {
     void **copy = to;
     if (!json_object_get(answer, key) || !bytes) return true;
@@ -222,20 +222,20 @@ static bool copy(void *to, const json_t *answer, const char *key, const void *fr
     return *copy;
 }
 
-static int remember(struct before *b, const json_t *answer, const struct acts *acts,
+static int reply_remember(struct reply_before *b, const json_t *answer, const struct acts *acts,
                     const struct packing *p, struct why *why)
 {
     const size_t n = (size_t)p->n, walls = (size_t)p->walls, kinds = (size_t)p->kinds;
-    *b = (struct before){ .g = p->g, .steered = p->outside.steered };
-    if (copy(&b->v, answer, "velocities", p->v, n * sizeof *b->v) &&
-        copy(&b->w, answer, "angular_velocities", p->w, n * sizeof *b->w) &&
-        copy(&b->wall, answer, "boundaries", p->wall, walls * sizeof *b->wall) &&
-        copy(&b->mu, answer, "friction", p->mu, kinds * kinds * sizeof *b->mu))
+    *b = (struct reply_before){ .g = p->g, .steered = p->outside.steered };
+    if (reply_copy(&b->v, answer, "velocities", p->v, n * sizeof *b->v) &&
+        reply_copy(&b->w, answer, "angular_velocities", p->w, n * sizeof *b->w) &&
+        reply_copy(&b->wall, answer, "boundaries", p->wall, walls * sizeof *b->wall) &&
+        reply_copy(&b->mu, answer, "friction", p->mu, kinds * kinds * sizeof *b->mu))
         return acts_copy(&b->acts, acts, p->walls, why);
     return why_set(why, EX_SOFTWARE, "no memory for an answer");
 }
 
-static void restore(struct before *b, struct acts *acts, struct packing *p)
+static void reply_restore(struct reply_before *b, struct acts *acts, struct packing *p)
 {
     struct acts none = { 0 };
     if (b->v) memcpy(p->v, b->v, (size_t)p->n * sizeof *b->v);
@@ -248,7 +248,7 @@ static void restore(struct before *b, struct acts *acts, struct packing *p)
 }
 
 /* All that the answer has but stop */
-static int apply(const json_t *answer, struct acts *acts, struct packing *p, struct why *why)
+static int reply_apply_keys(const json_t *answer, struct acts *acts, struct packing *p, struct why *why)
 {
     vec3 g;
     const json_t *boundaries = json_object_get(answer, "boundaries");
@@ -258,10 +258,10 @@ static int apply(const json_t *answer, struct acts *acts, struct packing *p, str
     if (forces && acts_arrays(acts, p, why)) return why->status;
     acts_clear(acts, p->walls);
     for (int k = 0; k < PARTS; k++)
-        if (set_all(json_object_get(answer, known[k].key), acts, (enum part)k, p, why))
+        if (set_all(json_object_get(answer, known[k].key), acts, (enum reply_part)k, p, why))
             return why->status;
     if (boundaries && set_boundaries(boundaries, acts, p, why)) return why->status;
-    if (gravity && !vector(gravity, p->dim, &g)) return wrong(why, "gravity is a vector [x, y, z]");
+    if (gravity && !vector(gravity, p->dim, &g)) return reply_wrong(why, "gravity is a vector [x, y, z]");
     if (gravity && acts_gravity(p, g, why)) return why->status;
     return friction ? set_frictions(friction, p, why) : 0;
 }
@@ -269,10 +269,10 @@ static int apply(const json_t *answer, struct acts *acts, struct packing *p, str
 int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
                  struct why *why)
 {
-    struct before b = { 0 };
+    struct reply_before b = { 0 };
     *stop = json_is_true(json_object_get(answer, "stop"));
     if (answer_check(answer, why) || *stop) return why->status;
-    if (!remember(&b, answer, acts, p, why) && apply(answer, acts, p, why)) restore(&b, acts, p);
-    forget(&b);
+    if (!reply_remember(&b, answer, acts, p, why) && reply_apply_keys(answer, acts, p, why)) reply_restore(&b, acts, p);
+    reply_forget(&b);
     return why->status;
 }

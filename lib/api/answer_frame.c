@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static int no_memory(struct why *why)
+static int answer_frame_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for an answer");
 }
@@ -47,7 +47,7 @@ static int check_boundaries(const struct packing *q, const struct packing *p, st
     return 0;
 }
 
-static int check_same(const struct frame *f, const struct packing *p, struct why *why)
+static int answer_frame_check_same(const struct frame *f, const struct packing *p, struct why *why)
 {
     const struct packing *q = &f->packing;
     if (q->dim != p->dim) return other(why, "dim");
@@ -72,12 +72,12 @@ static int check_same(const struct frame *f, const struct packing *p, struct why
 
 /* ---- what is taken ---- */
 
-static json_t *numbers(vec3 x)
+static json_t *answer_frame_numbers(vec3 x)
 {
     return json_pack("[f, f, f]", x.x, x.y, x.z);
 }
 
-static bool same(vec3 x, vec3 y)
+static bool answer_frame_same(vec3 x, vec3 y)
 {
     return x.x == y.x && x.y == y.y && x.z == y.z;
 }
@@ -89,16 +89,16 @@ static int put_bodies(json_t *answer, const char *name, const struct packing *p,
     json_t *all = NULL;
     char id[20];
     for (int64_t i = 0; to && i < p->n && !why->status; i++) {
-        if (from ? same(to[i], from[i]) : v3_norm(to[i]) == 0) continue;
+        if (from ? answer_frame_same(to[i], from[i]) : v3_norm(to[i]) == 0) continue;
         snprintf(id, sizeof id, "%d", p->id[i]);
         if (!all) all = json_object();
-        if (!all || json_object_set_new(all, id, numbers(to[i]))) no_memory(why);
+        if (!all || json_object_set_new(all, id, answer_frame_numbers(to[i]))) answer_frame_no_memory(why);
     }
     if (why->status) return json_decref(all), why->status;
-    return all && json_object_set_new(answer, name, all) ? no_memory(why) : 0;
+    return all && json_object_set_new(answer, name, all) ? answer_frame_no_memory(why) : 0;
 }
 
-static int put_boundaries(json_t *answer, const struct packing *q, const struct packing *p,
+static int answer_frame_put_boundaries(json_t *answer, const struct packing *q, const struct packing *p,
                           struct why *why)
 {
     json_t *all = NULL;
@@ -106,22 +106,22 @@ static int put_boundaries(json_t *answer, const struct packing *q, const struct 
     for (int32_t w = 0; w < p->walls && !why->status; w++) {
         const vec3 v = q->wall[w].v;
         const double push = q->outside.lasts.push ? q->outside.lasts.push[w] : 0;
-        if (same(v, p->wall[w].v) && push == 0) continue;
+        if (answer_frame_same(v, p->wall[w].v) && push == 0) continue;
         json_t *one = json_object();
         bool good =
-            one && (same(v, p->wall[w].v) || !json_object_set_new(one, "velocity", numbers(v)));
+            one && (answer_frame_same(v, p->wall[w].v) || !json_object_set_new(one, "velocity", answer_frame_numbers(v)));
         good = good && (push == 0 || !json_object_set_new(one, "force", json_real(push)));
         snprintf(number, sizeof number, "%d", w);
         if (!all) all = json_object();
         if (!good || !all) {
             json_decref(one);
-            no_memory(why);
+            answer_frame_no_memory(why);
         } else if (json_object_set_new(all, number, one)) {
-            no_memory(why);
+            answer_frame_no_memory(why);
         }
     }
     if (why->status) return json_decref(all), why->status;
-    return all && json_object_set_new(answer, "boundaries", all) ? no_memory(why) : 0;
+    return all && json_object_set_new(answer, "boundaries", all) ? answer_frame_no_memory(why) : 0;
 }
 
 static int put_frictions(json_t *answer, const struct packing *q, const struct packing *p,
@@ -135,9 +135,9 @@ static int put_frictions(json_t *answer, const struct packing *q, const struct p
             if (!all) all = json_array();
             if (!all || json_array_append_new(
                             all, json_pack("[s, s, f]", p->kind_name[a], p->kind_name[b], mu)))
-                return json_decref(all), no_memory(why);
+                return json_decref(all), answer_frame_no_memory(why);
         }
-    return all && json_object_set_new(answer, "friction", all) ? no_memory(why) : 0;
+    return all && json_object_set_new(answer, "friction", all) ? answer_frame_no_memory(why) : 0;
 }
 
 json_t *answer_of_frame(const struct frame *f, const struct packing *p, struct why *why)
@@ -145,14 +145,14 @@ json_t *answer_of_frame(const struct frame *f, const struct packing *p, struct w
     const struct packing *q = &f->packing;
     const struct lasting *s = &q->outside.lasts;
     json_t *answer = json_object();
-    if (!answer) return no_memory(why), NULL;
-    if (!check_same(f, p, why) && !put_bodies(answer, "forces", p, s->force, NULL, why) &&
+    if (!answer) return answer_frame_no_memory(why), NULL;
+    if (!answer_frame_check_same(f, p, why) && !put_bodies(answer, "forces", p, s->force, NULL, why) &&
         !put_bodies(answer, "torques", p, s->torque, NULL, why) &&
         !put_bodies(answer, "velocities", p, q->v, p->v, why) &&
         !put_bodies(answer, "angular_velocities", p, q->w, p->w, why) &&
-        !put_boundaries(answer, q, p, why) && !put_frictions(answer, q, p, why) &&
-        !same(q->g, p->g) && json_object_set_new(answer, "gravity", numbers(q->g)))
-        no_memory(why);
+        !answer_frame_put_boundaries(answer, q, p, why) && !put_frictions(answer, q, p, why) &&
+        !answer_frame_same(q->g, p->g) && json_object_set_new(answer, "gravity", answer_frame_numbers(q->g)))
+        answer_frame_no_memory(why);
     if (!why->status) return answer;
     json_decref(answer);
     return NULL;

@@ -10,7 +10,7 @@ static vec3 row3(const double *a, int64_t i)
 }
 
 /* Body k of the arrays, as body i */
-static void set(struct packing *p, int64_t i, const struct nsd_bodies *b, int64_t k)
+static void act_set(struct packing *p, int64_t i, const struct nsd_bodies *b, int64_t k)
 {
     double mass = 0, inertia = 0;
     p->radius[i] = b->radius[k];
@@ -54,7 +54,7 @@ static int64_t next_id(const struct nsd_run *r)
     return of_pours > r->next_id ? of_pours : r->next_id;
 }
 
-static int check(const struct nsd_run *r, const struct nsd_bodies *b, struct why *why)
+static int act_check(const struct nsd_run *r, const struct nsd_bodies *b, struct why *why)
 {
     if (!b || b->size < sizeof *b)
         return why_set(why, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
@@ -73,7 +73,7 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct w
     struct packing p;
     struct contacts s;
     const int64_t had = r->f.packing.n, first = next_id(r);
-    if (check(r, b, why) || packing_copy(&p, &r->f.packing, why)) return why->status;
+    if (act_check(r, b, why) || packing_copy(&p, &r->f.packing, why)) return why->status;
     if (contacts_copy(&s, &r->f.contacts)) {
         packing_free(&p);
         return why_set(why, NSD_SOFTWARE, "no memory for the contacts");
@@ -81,7 +81,7 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct w
     if (!add_images(&p, had + b->n, why) && !packing_resize(&p, had + b->n, why)) {
         for (int64_t k = 0; k < b->n; k++) {
             p.id[had + k] = (int32_t)(first + k);
-            set(&p, had + k, b, k);
+            act_set(&p, had + k, b, k);
         }
         packing_check(&p, why);
     }
@@ -101,7 +101,7 @@ int nsd_add(struct nsd_run *r, const struct nsd_bodies *bodies, int32_t *id)
 }
 
 /* row[i]: where body i goes, -1: it is among those that are removed */
-static int find_rows(const struct packing *p, int64_t n, const int32_t *id, int32_t *row,
+static int act_find_rows(const struct packing *p, int64_t n, const int32_t *id, int32_t *row,
                      struct why *why)
 {
     int32_t kept = 0;
@@ -130,7 +130,7 @@ int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
                        (long long)r->f.packing.n);
     int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
     if (!row) return why_set(why, NSD_SOFTWARE, "no memory to remove bodies");
-    if (!find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {
+    if (!act_find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {
         if (contacts_copy(&s, &r->f.contacts))
             why_set(why, NSD_SOFTWARE, "no memory for the contacts");
         else

@@ -32,7 +32,7 @@ static struct why *document_why(const struct nsd_document *d, bool open)
     return why->status ? NULL : why;
 }
 
-static int no_memory(struct why *why)
+static int objects_no_memory(struct why *why)
 {
     return why_set(why, NSD_SOFTWARE, "no memory for a document");
 }
@@ -45,7 +45,7 @@ int nsd_open(struct nsd_document **document, const char *path)
     if (!path || !*path || !strcmp(path, "-"))
         return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
     struct nsd_document *d = calloc(1, sizeof *d);
-    if (!d || !(d->path = strdup(path))) return free(d), no_memory(why);
+    if (!d || !(d->path = strdup(path))) return free(d), objects_no_memory(why);
     d->maker = process_begin();
     process_lock();
     source_open(&d->source, 1, &d->path, why);
@@ -89,7 +89,7 @@ static int put_json(struct nsd_document *d, json_t *j, const char **json, struct
     char *text = j && !why->status ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
     if (why->status) return why->status;
-    if (!text) return no_memory(why);
+    if (!text) return objects_no_memory(why);
     free(d->text);
     *json = d->text = text;
     return 0;
@@ -113,7 +113,7 @@ int nsd_objects(struct nsd_document *d, const char **json)
     if (!why) return NSD_USAGE;
     if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
     json_t *all = json_object();
-    if (!all) no_memory(why);
+    if (!all) objects_no_memory(why);
     for (int64_t k = 0; !why->status && (o = source_object(d->source, k, &path, &shape)); k++) {
         json_t *sizes = json_array(), *known = json_string(path);
         bool good = sizes;
@@ -125,14 +125,14 @@ int nsd_objects(struct nsd_document *d, const char **json)
         else if (!good ||
                  json_object_set_new(all, path,
                                      json_pack("{s:o, s:o}", "type", type_of(o), "shape", sizes)))
-            no_memory(why);
+            objects_no_memory(why);
         json_decref(known);
     }
     return put_json(d, all, json, why);
 }
 
 /* Number k of an attribute; null: it is not finite */
-static json_t *number_of(const struct listed *l, uint64_t k)
+static json_t *objects_number_of(const struct listed *l, uint64_t k)
 {
     double x = NAN;
     int64_t i = 0;
@@ -142,24 +142,24 @@ static json_t *number_of(const struct listed *l, uint64_t k)
 }
 
 /* A text of `most` bytes, or up to its zero; null: it is not UTF-8 */
-static json_t *text_of(const char *text, size_t most)
+static json_t *objects_text_of(const char *text, size_t most)
 {
     json_t *j = json_stringn(text, strnlen(text, most));
     return j ? j : json_null();
 }
 
 /* A scalar, or the list of all its values in their order; NULL: no memory */
-static json_t *values_of(const struct listed *l)
+static json_t *objects_values_of(const struct listed *l)
 {
     const struct object *o = &l->object;
     const bool text = o->kind == OBJECT_TEXT;
     if ((!text && o->kind != OBJECT_NUMBERS) || !o->size) return json_null();
     const uint64_t n = o->data / o->size;
-    if (!o->rank) return !n ? json_null() : text ? text_of(l->data, o->data) : number_of(l, 0);
+    if (!o->rank) return !n ? json_null() : text ? objects_text_of(l->data, o->data) : objects_number_of(l, 0);
     json_t *all = json_array();
     for (uint64_t k = 0; all && k < n; k++) {
         const char *at = (const char *)l->data + k * o->size;
-        if (json_array_append_new(all, text ? text_of(at, o->size) : number_of(l, k)))
+        if (json_array_append_new(all, text ? objects_text_of(at, o->size) : objects_number_of(l, k)))
             return json_decref(all), NULL;
     }
     return all;
@@ -177,10 +177,10 @@ int nsd_attributes(struct nsd_document *d, const char *path, const char **json)
                        source_where(d->source), path);
     unsigned char *bytes = source_attributes(d->source, path, &size, why);
     json_t *all = bytes ? json_object() : NULL;
-    if (bytes && !all) no_memory(why);
+    if (bytes && !all) objects_no_memory(why);
     while (all && !why->status && object_unpack(bytes, size, &at, &l)) {
         json_t *known = json_string(l.path);
-        if (known && json_object_set_new(all, l.path, values_of(&l))) no_memory(why);
+        if (known && json_object_set_new(all, l.path, objects_values_of(&l))) objects_no_memory(why);
         json_decref(known);
     }
     free(bytes);
@@ -190,7 +190,7 @@ int nsd_attributes(struct nsd_document *d, const char *path, const char **json)
 /* ---- numbers and texts ---- */
 
 /* The dataset of that path; NULL with the reason */
-static const struct object *find(const struct nsd_document *d, const char *path,
+static const struct object *objects_find(const struct nsd_document *d, const char *path,
                                  const uint64_t **shape, struct why *why)
 {
     const struct object *o;
@@ -224,7 +224,7 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
     if (!why) return NSD_USAGE;
     if (!out || out->size < sizeof *out)
         return why_set(why, NSD_USAGE, "an array's size is not that of struct nsd_array");
-    const struct object *o = path ? find(d, path, &shape, why) : NULL;
+    const struct object *o = path ? objects_find(d, path, &shape, why) : NULL;
     if (!o) return path ? why->status : why_set(why, NSD_USAGE, "a dataset has a path");
     const int64_t rows = o->rank && o->rank <= OBJECT_RANK ? (int64_t)shape[0] : 1;
     int64_t width = 1, bytes;
@@ -239,10 +239,10 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
         return why_set(why, NSD_DATA, "%.200s: %.100s: it has %lld rows, not %lld from %lld",
                        source_where(d->source), path, (long long)rows, (long long)n,
                        (long long)first);
-    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32) return no_memory(why);
+    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32) return objects_no_memory(why);
     if (source_frame(d->source, why)) return why->status;
     void *data = calloc((size_t)bytes + 1, column_size(type));
-    if (!data) return no_memory(why);
+    if (!data) return objects_no_memory(why);
     const struct slab slab = { type, first, n, width };
     int e = 0;
     if (bytes && o->rank) e = source_rows(d->source, path, slab, data, why);
@@ -267,7 +267,7 @@ int nsd_text(struct nsd_document *d, const char *path, const char **text)
     const uint64_t *shape = NULL;
     if (!why) return NSD_USAGE;
     if (!path || !text) return why_set(why, NSD_USAGE, "a dataset has a path, and a text a place");
-    const struct object *o = find(d, path, &shape, why);
+    const struct object *o = objects_find(d, path, &shape, why);
     if (!o || source_frame(d->source, why)) return why->status;
     char *found =
         o->rank ? source_lines(d->source, path, why) : source_text(d->source, path, NULL, why);

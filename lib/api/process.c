@@ -49,7 +49,7 @@ static void in_child(void)
     pthread_mutex_unlock(&hdf5);
 }
 
-static void watch_forks(void)
+static void process_watch_forks(void)
 {
     pthread_atfork(before_fork, after_fork, in_child);
 }
@@ -58,7 +58,7 @@ pid_t process_begin(void)
 {
     static pthread_once_t watched = PTHREAD_ONCE_INIT;
     guest_set();
-    pthread_once(&watched, watch_forks);
+    pthread_once(&watched, process_watch_forks);
     return getpid();
 }
 

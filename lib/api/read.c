@@ -14,23 +14,23 @@
 /* ---- arrays ---- */
 
 /* What an array is of; those of bodies are the packing's own, those of acts the run's, others are made */
-enum rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES, OF_CELL };
+enum read_rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES, OF_CELL };
 
-struct row {
+struct read_row {
     const char *name, *unit;
-    enum rows rows;
+    enum read_rows rows;
     char type;
     int width;
     size_t at; /* of bodies: the array in struct packing; of acts: in struct acts */
     void (*make)(const struct nsd_run *r, void *out);
 };
 
-static size_t size_of(char type)
+static size_t read_size_of(char type)
 {
     return type == 'd' ? sizeof(double) : type == 'i' ? sizeof(int32_t) : sizeof(int8_t);
 }
 
-static void put3(double *out, int64_t i, vec3 x)
+static void read_put3(double *out, int64_t i, vec3 x)
 {
     out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
 }
@@ -54,14 +54,14 @@ static void contact_bodies(const struct nsd_run *r, void *out)
         }                                                                                          \
     }
 
-OF_EACH_CONTACT(contact_points, put3(out, i, s->c[i].x))
-OF_EACH_CONTACT(contact_normals, put3(out, i, s->c[i].n))
+OF_EACH_CONTACT(contact_points, read_put3(out, i, s->c[i].x))
+OF_EACH_CONTACT(contact_normals, read_put3(out, i, s->c[i].n))
 OF_EACH_CONTACT(contact_gaps, ((double *)out)[i] = s->c[i].gap)
 OF_EACH_CONTACT(contact_frictions, ((double *)out)[i] = s->c[i].mu)
 OF_EACH_CONTACT(contact_forces,
-                put3(out, i, s->found ? branch_force(&r->f.packing, s, i) : v3(0, 0, 0)))
+                read_put3(out, i, s->found ? branch_force(&r->f.packing, s, i) : v3(0, 0, 0)))
 OF_EACH_CONTACT(contact_velocities,
-                put3(out, i, s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
+                read_put3(out, i, s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
 OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].status : 0)
 
 #define OF_EACH_BOUNDARY(name, ...)                                                                \
@@ -74,10 +74,10 @@ OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].st
         }                                                                                          \
     }
 
-OF_EACH_BOUNDARY(boundary_positions, put3(out, i, wall_at(p, w, p->t)))
-OF_EACH_BOUNDARY(boundary_normals, put3(out, i, wall_normal(p, w, p->t)))
-OF_EACH_BOUNDARY(boundary_velocities, put3(out, i, wall_velocity(p, w, wall_at(p, w, p->t))))
-OF_EACH_BOUNDARY(boundary_spins, put3(out, i, wall_spin(p, w)))
+OF_EACH_BOUNDARY(boundary_positions, read_put3(out, i, wall_at(p, w, p->t)))
+OF_EACH_BOUNDARY(boundary_normals, read_put3(out, i, wall_normal(p, w, p->t)))
+OF_EACH_BOUNDARY(boundary_velocities, read_put3(out, i, wall_velocity(p, w, wall_at(p, w, p->t))))
+OF_EACH_BOUNDARY(boundary_spins, read_put3(out, i, wall_spin(p, w)))
 
 /* N: of the bodies on the boundaries; and N m, of that about where they are */
 static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
@@ -90,7 +90,7 @@ static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
         int32_t w = -1 - s->c[i].a;
         vec3 on_b =
             torque ? branch_torque(p, s, i, wall_at(p, &p->wall[w], p->t)) : branch_force(p, s, i);
-        put3(out, w, v3_sub(v3(out[3 * w], out[3 * w + 1], out[3 * w + 2]), on_b));
+        read_put3(out, w, v3_sub(v3(out[3 * w], out[3 * w + 1], out[3 * w + 2]), on_b));
     }
 }
 
@@ -106,17 +106,17 @@ static void boundary_torques(const struct nsd_run *r, void *out)
 
 static void cell_origin(const struct nsd_run *r, void *out)
 {
-    put3(out, 0, r->f.packing.cell.origin);
+    read_put3(out, 0, r->f.packing.cell.origin);
 }
 
 static void cell_edges(const struct nsd_run *r, void *out)
 {
-    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.edge[k]);
+    for (int k = 0; k < 3; k++) read_put3(out, k, r->f.packing.cell.edge[k]);
 }
 
 static void cell_rates(const struct nsd_run *r, void *out)
 {
-    for (int k = 0; k < 3; k++) put3(out, k, r->f.packing.cell.rate[k]);
+    for (int k = 0; k < 3; k++) read_put3(out, k, r->f.packing.cell.rate[k]);
 }
 
 static void cell_repeated(const struct nsd_run *r, void *out)
@@ -128,7 +128,7 @@ static void cell_repeated(const struct nsd_run *r, void *out)
 #define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
 #define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct acts, designator), NULL
 
-static const struct row table[] = {
+static const struct read_row table[] = {
     { "position", "m", BODY3(x) },
     { "orientation", "1", OF_BODIES, 'd', 4, offsetof(struct packing, q), NULL },
     { "velocity", "m s-1", BODY3(v) },
@@ -170,10 +170,10 @@ const char *nsd_array_name(int k)
 }
 
 /* The array, made anew in place of what it was */
-static void *make(struct nsd_run *r, int k, int64_t n, struct why *why)
+static void *read_make(struct nsd_run *r, int k, int64_t n, struct why *why)
 {
-    const struct row *t = &table[k];
-    void *data = calloc((size_t)n * (size_t)t->width + 1, size_of(t->type));
+    const struct read_row *t = &table[k];
+    void *data = calloc((size_t)n * (size_t)t->width + 1, read_size_of(t->type));
     if (!data) return why_set(why, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
     if (n) t->make(r, data);
     free(r->made[k - FIRST_MADE]);
@@ -182,10 +182,10 @@ static void *make(struct nsd_run *r, int k, int64_t n, struct why *why)
 
 static void *data_of(struct nsd_run *r, int k, int64_t n, struct why *why)
 {
-    const struct row *t = &table[k];
+    const struct read_row *t = &table[k];
     const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->acts;
     void *data;
-    if (t->make) return make(r, k, n, why);
+    if (t->make) return read_make(r, k, n, why);
     if (t->rows == OF_ACTS) {
         const bool torque = t->at >= offsetof(struct acts, torque);
         const int term = (int)((t->at - (torque ? offsetof(struct acts, torque)
@@ -207,14 +207,14 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
         return why_set(why, NSD_USAGE, "an array's size is not that of struct nsd_array");
     while (k < ROWS && (!name || strcmp(table[k].name, name) != 0)) k++;
     if (k == ROWS) return why_set(why, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
-    const struct row *t = &table[k];
+    const struct read_row *t = &table[k];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
                 : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
                                            : r->f.packing.n;
     void *data = data_of(r, k, n, why);
     if (!data) return why->status;
-    const int64_t size = (int64_t)size_of(t->type);
+    const int64_t size = (int64_t)read_size_of(t->type);
     *out = (struct nsd_array){ .size = out->size,
                                .data = data,
                                .unit = t->unit,
@@ -228,7 +228,7 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
 
 /* ---- numbers ---- */
 
-static double number(const struct nsd_run *r, const char *name, bool *known)
+static double read_number(const struct nsd_run *r, const char *name, bool *known)
 {
     const struct packing *p = &r->f.packing;
     const struct report *rep = &r->f.report;
@@ -267,7 +267,7 @@ int nsd_number(struct nsd_run *r, const char *name, double *x)
     bool known = false;
     if (!why) return NSD_USAGE;
     if (!name || !x) return why_set(why, NSD_USAGE, "a number has a name and a place");
-    double found = number(r, name, &known);
+    double found = read_number(r, name, &known);
     if (!known) return why_set(why, NSD_USAGE, "there is no number '%.60s'", name);
     *x = found;
     return 0;
@@ -275,7 +275,7 @@ int nsd_number(struct nsd_run *r, const char *name, double *x)
 
 /* ---- JSON ---- */
 
-static int no_memory(struct why *why)
+static int read_no_memory(struct why *why)
 {
     return why_set(why, NSD_SOFTWARE, "no memory for JSON, or a name in it is not UTF-8");
 }
@@ -290,7 +290,7 @@ int nsd_report(struct nsd_run *r, const char **json)
     json_object_set_new(j, "account", json_account(&r->f.account, &r->f.packing.names));
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
-    if (!text) return no_memory(why);
+    if (!text) return read_no_memory(why);
     free(r->text);
     *json = r->text = text;
     return 0;
@@ -317,7 +317,7 @@ int nsd_failure(struct nsd_run *r, const char **text)
 }
 
 /* Adds the name, or null */
-static bool put_name(json_t *list, const char *name)
+static bool read_put_name(json_t *list, const char *name)
 {
     return !json_array_append_new(list, name ? json_string(name) : json_null());
 }
@@ -346,7 +346,7 @@ static bool put_groups(json_t *to, const struct packing *p)
     for (int64_t i = 0; p->group && i < p->n; i++)
         if (p->group[i]) used[p->group[i] - 1] = true;
     for (int32_t k = 0; good && k < p->names.n; k++)
-        if (used[k]) good = put_name(to, p->names.text[k]);
+        if (used[k]) good = read_put_name(to, p->names.text[k]);
     return good;
 }
 
@@ -356,10 +356,10 @@ static json_t *names_of(const struct packing *p)
     json_t *kinds = json_array(), *shapes = json_array(), *walls = json_array(),
            *groups = json_array(), *named = json_object();
     bool good = kinds && shapes && walls && groups && named;
-    for (int32_t k = 0; good && k < p->kinds; k++) good = put_name(kinds, p->kind_name[k]);
-    for (int32_t k = 0; good && k < p->shapes.n; k++) good = put_name(shapes, p->shapes.s[k].name);
+    for (int32_t k = 0; good && k < p->kinds; k++) good = read_put_name(kinds, p->kind_name[k]);
+    for (int32_t k = 0; good && k < p->shapes.n; k++) good = read_put_name(shapes, p->shapes.s[k].name);
     for (int32_t w = 0; good && w < p->walls; w++)
-        good = put_name(walls, names_of_wall(&p->names, w));
+        good = read_put_name(walls, names_of_wall(&p->names, w));
     good = good && put_groups(groups, p) && put_named(named, &p->names);
     json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", kinds, "shapes", shapes,
                             "walls", walls, "groups", groups, "named", named);
@@ -376,7 +376,7 @@ int nsd_names(struct nsd_run *r, const char **json)
     json_t *j = names_of(&r->f.packing);
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
-    if (!text) return no_memory(why);
+    if (!text) return read_no_memory(why);
     free(r->text);
     *json = r->text = text;
     return 0;
@@ -407,7 +407,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     if (!measured_run(t, chosen, &s, why)) {
         FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);
-        if (!(text = text_close(&written, out, &size))) no_memory(why);
+        if (!(text = text_close(&written, out, &size))) read_no_memory(why);
     }
     if (why->status && !strncmp(why->text, "--", 2))
         memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);

@@ -72,7 +72,7 @@ static struct nsd_run *new_run(struct why *why)
 }
 
 /* The run with its packing: what it needs before the first step */
-static int begin(struct nsd_run *r, struct why *why)
+static int run_begin(struct nsd_run *r, struct why *why)
 {
     struct packing *p = &r->f.packing;
     p->events.n = 0; // they belong to the frame that was read
@@ -95,9 +95,9 @@ static struct why *place_for(struct nsd_run **run)
 }
 
 /* What all constructors end with */
-static int done(struct nsd_run **out, struct nsd_run *r, struct why *why)
+static int run_done(struct nsd_run **out, struct nsd_run *r, struct why *why)
 {
-    if (r && !why->status) begin(r, why);
+    if (r && !why->status) run_begin(r, why);
     if (why->status) nsd_close(&r);
     *out = r;
     return why->status;
@@ -123,7 +123,7 @@ int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
     if (!text) return why_set(why, NSD_USAGE, "there is no text of a scene");
     struct nsd_run *r = new_run(why);
     if (r) build(r, text, strlen(text), NULL, folder, why);
-    return done(run, r, why);
+    return run_done(run, r, why);
 }
 
 int nsd_from_scene_file(struct nsd_run **run, const char *path)
@@ -140,7 +140,7 @@ int nsd_from_scene_file(struct nsd_run **run, const char *path)
     if (text && !copy) why_set(why, NSD_SOFTWARE, "%.200s: no memory", path);
     if (text && copy && (r = new_run(why))) build(r, text, n, path, dirname(copy), why);
     free(text), free(copy);
-    return done(run, r, why);
+    return run_done(run, r, why);
 }
 
 int nsd_from_document(struct nsd_run **run, const char *path)
@@ -153,7 +153,7 @@ int nsd_from_document(struct nsd_run **run, const char *path)
     process_lock();
     if (r) document_read_file(&r->f, path, why);
     process_unlock();
-    return done(run, r, why);
+    return run_done(run, r, why);
 }
 
 int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
@@ -165,7 +165,7 @@ int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
     process_lock();
     if (r) document_read(&r->f, document, size, why);
     process_unlock();
-    return done(run, r, why);
+    return run_done(run, r, why);
 }
 
 int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
@@ -230,7 +230,7 @@ static const struct cli_option *option_named(const char *name)
 }
 
 /* "1e-4", "auto:0.01" */
-static int set_dt(struct nsd_run *r, const char *text, struct why *why)
+static int run_set_dt(struct nsd_run *r, const char *text, struct why *why)
 {
     static const char word[] = "auto:";
     struct packing *p = &r->f.packing;
@@ -258,7 +258,7 @@ static int set_dt(struct nsd_run *r, const char *text, struct why *why)
     return 0;
 }
 
-static int set_flag(bool *to, const char *name, const char *value, struct why *why)
+static int run_set_flag(bool *to, const char *name, const char *value, struct why *why)
 {
     const struct cli_option o = { CLI_FLAG, .name = name };
     return option_set(&o, to, value, why);
@@ -266,9 +266,9 @@ static int set_flag(bool *to, const char *name, const char *value, struct why *w
 
 static int set_option(struct nsd_run *r, const char *name, const char *value, struct why *why)
 {
-    if (!strcmp(name, "dt")) return set_dt(r, value, why);
-    if (!strcmp(name, "contacts")) return set_flag(&r->contacts, name, value, why);
-    if (!strcmp(name, "forces")) return set_flag(&r->forces, name, value, why);
+    if (!strcmp(name, "dt")) return run_set_dt(r, value, why);
+    if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, why);
+    if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, why);
     if (asked_has(name)) return asked_set(&r->asked, name, value, why);
     const struct cli_option *o = option_named(name);
     if (!o) return why_set(why, NSD_USAGE, "%.60s: no such option", name);
@@ -331,7 +331,7 @@ static int adapt(struct nsd_run *r, struct why *why)
 }
 
 /* Its contacts are r->spare, its report *rep. */
-static int advance(struct nsd_run *r, struct report *rep, struct why *why)
+static int run_advance(struct nsd_run *r, struct report *rep, struct why *why)
 {
     struct packing *p = &r->f.packing;
     bool changed = false;
@@ -364,7 +364,7 @@ static int step_once(struct nsd_run *r, struct why *why)
     if (undo_take(&r->undo, p, &r->acts, why)) return why->status;
     bool whole = r->undo.whole;
     if (!whole) swap_forces(&p->outside, &r->last);
-    if (advance(r, &rep, why)) {
+    if (run_advance(r, &rep, why)) {
         name_step(r->undo.was.step + 1, why);
         if (!whole) swap_forces(&p->outside, &r->last);
         undo_back(&r->undo, p, &r->acts);

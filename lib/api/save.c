@@ -34,7 +34,7 @@ static bool is_path(const char *path, struct why *why)
 
 /* What is wanted before it: the options, forces of the bodies that there are, and the library's line of history
    unless there is one */
-static int prepare(struct nsd_run *r, struct why *why)
+static int save_prepare(struct nsd_run *r, struct why *why)
 {
     static const char line[] =
         "{\"command\":\"libnsd\",\"version\":\"" NSD_VERSION "\",\"options\":{}}";
@@ -45,18 +45,18 @@ static int prepare(struct nsd_run *r, struct why *why)
 }
 
 /* What the run was before it was to be written */
-struct before {
+struct save_before {
     bool noted;
     size_t length; /* of its history */
 };
 
-static struct before before(const struct nsd_run *r)
+static struct save_before save_before(const struct nsd_run *r)
 {
-    return (struct before){ r->noted, r->f.history ? strlen(r->f.history) : 0 };
+    return (struct save_before){ r->noted, r->f.history ? strlen(r->f.history) : 0 };
 }
 
 /* It could not be: its history is what it was. */
-static int back(struct nsd_run *r, struct before was)
+static int back(struct nsd_run *r, struct save_before was)
 {
     r->noted = was.noted;
     if (r->f.history) r->f.history[was.length] = 0;
@@ -79,8 +79,8 @@ int nsd_save(struct nsd_run *r, const char *path)
     struct writer *out = NULL;
     if (!why) return NSD_USAGE;
     if (!is_path(path, why)) return why->status;
-    const struct before was = before(r);
-    if (prepare(r, why)) return back(r, was);
+    const struct save_before was = save_before(r);
+    if (save_prepare(r, why)) return back(r, was);
     const struct frame f = frame_of(r);
     process_lock();
     if (writer_open(&out, path, WRITER_COPY, why) || writer_frame(out, &f, why))
@@ -175,7 +175,7 @@ static int copy_frames(struct nsd_run *r, struct reader *in, struct why *why)
 }
 
 /* Is there a file at the path that has something in it? */
-static bool is_there(const char *path)
+static bool save_is_there(const char *path)
 {
     struct stat st;
     return !stat(path, &st) && S_ISREG(st.st_mode) && st.st_size > 0;
@@ -199,7 +199,7 @@ static int open_trajectory(struct nsd_run *r, bool goes_on, struct why *why)
 /* The first frame that this run gives to the trajectory at the path */
 static int first_frame(struct nsd_run *r, const char *path, struct why *why)
 {
-    const bool goes_on = is_there(path);
+    const bool goes_on = save_is_there(path);
     const struct packing *p = &r->f.packing;
     if (!(r->path = strdup(path))) return why_set(why, NSD_SOFTWARE, "no memory for a path");
     r->rests = !boundary_tables_move(p) && !p->outside.steered;
@@ -238,8 +238,8 @@ int nsd_append(struct nsd_run *r, const char *path)
                        "nsd_finish() ends it, and another one may begin",
                        path);
     if (r->out && check_motion(r, why)) return why->status;
-    const struct before was = before(r);
-    if (prepare(r, why)) return back(r, was);
+    const struct save_before was = save_before(r);
+    if (save_prepare(r, why)) return back(r, was);
     if (r->out ? next_frame(r, why) : first_frame(r, path, why)) return back(r, was);
     r->f.packing.events.n = 0; // they are written
     return 0;

@@ -10,13 +10,13 @@ void undo_free(struct undo *u)
     *u = (struct undo){ 0 };
 }
 
-static int no_memory(struct why *why)
+static int rollback_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for the state before a step");
 }
 
 /* Memory for the parts of p that a step changes */
-static int make_room(struct undo *u, const struct packing *p, struct why *why)
+static int rollback_make_room(struct undo *u, const struct packing *p, struct why *why)
 {
     size_t n = (size_t)p->n + 1;
     if (!u->x || u->n != p->n || u->walls != p->walls || !u->image != !p->image) {
@@ -31,12 +31,12 @@ static int make_room(struct undo *u, const struct packing *p, struct why *why)
     if (!u->recall || u->room < p->memory.n) {
         int64_t room = p->memory.n + p->memory.n / 2;
         struct recall *more = realloc(u->recall, ((size_t)room + 1) * sizeof *more);
-        if (!more) return undo_free(u), no_memory(why);
+        if (!more) return undo_free(u), rollback_no_memory(why);
         u->recall = more, u->room = room;
     }
     if (u->x && u->v && u->w && u->q && u->wall && u->recall && (u->image || !p->image)) return 0;
     undo_free(u);
-    return no_memory(why);
+    return rollback_no_memory(why);
 }
 
 /* Does a step change more than places and velocities? */
@@ -57,7 +57,7 @@ int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, 
         u->whole = true;
         return 0;
     }
-    if (make_room(u, p, why)) return why->status;
+    if (rollback_make_room(u, p, why)) return why->status;
     memcpy(u->x, p->x, n * sizeof *u->x), memcpy(u->v, p->v, n * sizeof *u->v);
     memcpy(u->w, p->w, n * sizeof *u->w), memcpy(u->q, p->q, n * sizeof *u->q);
     if (p->walls) memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);

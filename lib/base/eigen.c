@@ -8,7 +8,7 @@
 enum { ROUNDS = 8 };
 
 /* Turns rows and columns p and q so that S[p][q] becomes 0. */
-static inline void rotate(int n, double S[EIGEN_MOST][EIGEN_MOST], int p, int q)
+static inline void matrix_rotate(int n, double S[EIGEN_MOST][EIGEN_MOST], int p, int q)
 {
     double h = 0.5 * (S[q][q] - S[p][p]) / S[p][q];
     double t = copysign(1 / (fabs(h) + sqrt(1 + h * h)), h), c = 1 / sqrt(1 + t * t), s = t * c;
@@ -36,7 +36,7 @@ static inline bool settled(int n, double S[EIGEN_MOST][EIGEN_MOST])
 }
 
 /* Pairs one apart, then two apart ..., round the corner */
-static inline double largest(int n, const double *A)
+static inline double eigen_jacobi(int n, const double *A)
 {
     double S[EIGEN_MOST][EIGEN_MOST] = { { 0 } }, most;
     for (int i = 0; i < n; i++)
@@ -45,7 +45,7 @@ static inline double largest(int n, const double *A)
         for (int apart = 1; apart <= n / 2; apart++)
             for (int k = 1; k <= n; k++) {
                 int p = k % n, q = (k + apart) % n;
-                if (S[p][q] != 0) rotate(n, S, p, q);
+                if (S[p][q] != 0) matrix_rotate(n, S, p, q);
             }
     most = S[0][0];
     for (int i = 1; i < n; i++) most = fmax(most, S[i][i]);
@@ -54,5 +54,5 @@ static inline double largest(int n, const double *A)
 
 double eigen_largest(int n, const double *A)
 {
-    return n == 3 ? largest(3, A) : largest(n, A); // contacts' matrices in straight code
+    return n == 3 ? eigen_jacobi(3, A) : eigen_jacobi(n, A); // contacts' matrices in straight code
 }

@@ -17,7 +17,7 @@ void option_words(const struct cli_option *o, char *text, size_t size)
         n += (size_t)snprintf(text + n, size - n, "%s%s", k ? "|" : "", o->choice(k).name);
 }
 
-static int wrong(const struct cli_option *o, struct why *why, const char *text, const char *trouble)
+static int option_wrong(const struct cli_option *o, struct why *why, const char *text, const char *trouble)
 {
     return why_set(why, EX_USAGE, "--%s: '%s' %s", o->name, text, trouble);
 }
@@ -31,13 +31,13 @@ static int set_choice(const struct cli_option *o, int *to, const char *text, str
     return why_set(why, EX_USAGE, "--%s: '%s' is none of %s", o->name, text, words);
 }
 
-static int set_number(const struct cli_option *o, void *to, const char *text, struct why *why)
+static int option_set_number(const struct cli_option *o, void *to, const char *text, struct why *why)
 {
     char *end;
     errno = 0;
     double x = number_read(text, &end);
     if (end == text || *end || !isfinite(x) || isspace((unsigned char)*text))
-        return wrong(o, why, text, "is not a number");
+        return option_wrong(o, why, text, "is not a number");
     bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
     if (open ? !(x > o->min) : !(x >= o->min))
         return why_set(why, EX_USAGE, "--%s: %s must be %s %g", o->name, text,
@@ -45,7 +45,7 @@ static int set_number(const struct cli_option *o, void *to, const char *text, st
     if (o->kind == CLI_BETWEEN ? !(x < o->max) : x > o->max)
         return why_set(why, EX_USAGE, "--%s: %s must be %s %g", o->name, text,
                        o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
-    if (o->kind == CLI_INT && x != floor(x)) return wrong(o, why, text, "is not a whole number");
+    if (o->kind == CLI_INT && x != floor(x)) return option_wrong(o, why, text, "is not a whole number");
     if (o->kind == CLI_INT)
         *(int64_t *)to = (int64_t)x;
     else
@@ -60,7 +60,7 @@ static int set_every(const struct cli_option *o, struct cli_every *e, const char
     double x = number_read(text, &end);
     bool seconds = !strcmp(end, "s");
     if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
-        return wrong(o, why, text, "is neither a number of steps nor, as 0.01s, of seconds");
+        return option_wrong(o, why, text, "is neither a number of steps nor, as 0.01s, of seconds");
     if (seconds ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
         return why_set(why, EX_USAGE, "--%s: %s must be %s", o->name, text,
                        seconds ? "above 0" : "a whole number, at least 1");
@@ -68,10 +68,10 @@ static int set_every(const struct cli_option *o, struct cli_every *e, const char
     return 0;
 }
 
-static int set_flag(const struct cli_option *o, bool *to, const char *text, struct why *why)
+static int option_set_flag(const struct cli_option *o, bool *to, const char *text, struct why *why)
 {
     bool on = !text || !strcmp(text, "true");
-    if (!on && strcmp(text, "false") != 0) return wrong(o, why, text, "is neither true nor false");
+    if (!on && strcmp(text, "false") != 0) return option_wrong(o, why, text, "is neither true nor false");
     *to = (o->kind == CLI_FLAG) == on;
     return 0;
 }
@@ -81,7 +81,7 @@ int option_set(const struct cli_option *o, void *to, const char *text, struct wh
     switch (o->kind) {
     case CLI_FLAG:
     case CLI_UNFLAG:
-        return set_flag(o, to, text, why);
+        return option_set_flag(o, to, text, why);
     case CLI_TEXT:
         *(const char **)to = text;
         return 0;
@@ -90,6 +90,6 @@ int option_set(const struct cli_option *o, void *to, const char *text, struct wh
     case CLI_EVERY:
         return set_every(o, to, text, why);
     default:
-        return set_number(o, to, text, why);
+        return option_set_number(o, to, text, why);
     }
 }

@@ -54,7 +54,7 @@ static void on_signal(int number)
     raise(number);
 }
 
-static void enlist(struct output *o)
+static void output_enlist(struct output *o)
 {
     static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
     pthread_mutex_lock(&list_lock);
@@ -72,7 +72,7 @@ static void enlist(struct output *o)
     pthread_mutex_unlock(&list_lock);
 }
 
-static void unlist(struct output *o)
+static void output_unlist(struct output *o)
 {
     pthread_mutex_lock(&list_lock);
     for (struct output **k = &list; o->listed && *k; k = &(*k)->next)
@@ -119,7 +119,7 @@ bool output_removed(int fd)
 
 /* ---- the new file ---- */
 
-static int failed(const struct output *o, struct why *why, int trouble)
+static int output_failed(const struct output *o, struct why *why, int trouble)
 {
     return why_set(why, EX_IOERR, "%s: %s", o->name, strerror(trouble));
 }
@@ -152,18 +152,18 @@ static int open_beside(struct output *o, struct why *why)
     do {
         if (o->fd >= 0) close(o->fd); // the other writer was done with it in between
         o->fd = open(o->at, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (o->fd < 0) return failed(o, why, errno);
+        if (o->fd < 0) return output_failed(o, why, errno);
         if (output_lock(o->fd, F_OFD_SETLK, o->name, why)) return why->status;
     } while (!is_at(o));
-    if (ftruncate(o->fd, 0)) return failed(o, why, errno);
+    if (ftruncate(o->fd, 0)) return output_failed(o, why, errno);
     take_rights(o);
-    enlist(o);
+    output_enlist(o);
     return 0;
 }
 
 /* Where a file of this name would be made: a link that leads nowhere is followed, too. To be freed; NULL: no
    memory */
-static char *follow(const char *path)
+static char *output_follow(const char *path)
 {
     char *at = strdup(path), link[PATH_MAX];
     for (int k = 0; at && k < LINKS_MOST; k++) {
@@ -193,26 +193,26 @@ static int open_new(struct output *o, const char *path, struct why *why)
     *o = (struct output){ .name = path, .fd = -1, .old = -1 };
     o->target = realpath(path, NULL);
     bool there = o->target && !stat(o->target, &st);
-    if (there && S_ISDIR(st.st_mode)) return failed(o, why, EISDIR);
+    if (there && S_ISDIR(st.st_mode)) return output_failed(o, why, EISDIR);
     if (is_open_already(path) || (there && !S_ISREG(st.st_mode))) {
         free(o->target);
         o->target = NULL;
         bool regular = there && S_ISREG(st.st_mode);
         o->fd = open(path, (regular ? O_RDWR | O_TRUNC : O_WRONLY) | O_CLOEXEC);
-        if (o->fd < 0) return failed(o, why, errno);
+        if (o->fd < 0) return output_failed(o, why, errno);
         o->nameless = output_removed(o->fd);
         return 0;
     }
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
-    if (there && o->old < 0) return failed(o, why, errno);
+    if (there && o->old < 0) return output_failed(o, why, errno);
     if (there && output_lock(o->old, F_OFD_SETLK, o->name, why)) return why->status;
-    if (!there && !(o->target = follow(path))) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!there && !(o->target = output_follow(path))) return why_set(why, EX_SOFTWARE, "no memory");
     return open_beside(o, why);
 }
 
-static void forget(struct output *o)
+static void output_forget(struct output *o)
 {
-    unlist(o);
+    output_unlist(o);
     if (o->fd >= 0 && !o->borrowed) close(o->fd);
     if (o->old >= 0) close(o->old);
     if (o->at != o->target) free(o->at);
@@ -222,16 +222,16 @@ static void forget(struct output *o)
 
 int output_open(struct output *o, const char *path, struct why *why)
 {
-    if (open_new(o, path, why)) forget(o);
+    if (open_new(o, path, why)) output_forget(o);
     return why->status;
 }
 
-static int place(struct output *o, struct why *why)
+static int output_put_in_place(struct output *o, struct why *why)
 {
     if (o->placed || !o->target) return 0;
     if (!is_at(o))
         return why_set(why, EX_IOERR, "%s: another program has removed %s", o->name, o->at);
-    if (rename(o->at, o->target)) return failed(o, why, errno);
+    if (rename(o->at, o->target)) return output_failed(o, why, errno);
     free(o->at);
     o->at = o->target, o->placed = true;
     if (o->old >= 0) close(o->old);
@@ -241,12 +241,12 @@ static int place(struct output *o, struct why *why)
 
 int output_place_for_now(struct output *o, struct why *why)
 {
-    return place(o, why);
+    return output_put_in_place(o, why);
 }
 
 int output_place(struct output *o, struct why *why)
 {
-    if (!place(o, why)) unlist(o);
+    if (!output_put_in_place(o, why)) output_unlist(o);
     return why->status;
 }
 
@@ -262,27 +262,27 @@ int output_close(struct output *o, struct why *why)
     if (!o->nameless && output_removed(o->fd))
         why_set(why, EX_IOERR, "%s: another program has removed it", o->name);
     else if (!why->status && !closes(o->fd))
-        failed(o, why, errno);
+        output_failed(o, why, errno);
     if (why->status || output_place(o, why)) return output_drop(o), why->status;
-    forget(o);
+    output_forget(o);
     return why->status;
 }
 
 void output_drop(struct output *o)
 {
     if (o->listed) remove_one(o);
-    forget(o);
+    output_forget(o);
 }
 
 void output_borrow(struct output *o, int fd, const char *name)
 {
     *o = (struct output){ .name = name, .fd = fd, .old = -1, .borrowed = true };
-    enlist(o);
+    output_enlist(o);
 }
 
 void output_keep(struct output *o)
 {
-    forget(o);
+    output_forget(o);
 }
 
 /* ---- as a stream ---- */
@@ -294,7 +294,7 @@ FILE *output_stream(struct output *o, const char *path, struct why *why)
     FILE *stream = fd < 0 ? NULL : fdopen(fd, "w");
     if (stream) return stream;
     if (fd >= 0) close(fd);
-    failed(o, why, errno);
+    output_failed(o, why, errno);
     output_drop(o);
     return NULL;
 }
@@ -302,7 +302,7 @@ FILE *output_stream(struct output *o, const char *path, struct why *why)
 int output_stream_close(struct output *o, FILE *stream, struct why *why)
 {
     bool bad = ferror(stream);
-    if (fclose(stream)) failed(o, why, errno);
+    if (fclose(stream)) output_failed(o, why, errno);
     if (bad) why_set(why, EX_IOERR, "%s: not written (disk full?)", o->name);
     return output_close(o, why);
 }

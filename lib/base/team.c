@@ -191,16 +191,16 @@ static void forget_workers(void)
     atomic_flag_clear(&busy);
 }
 
-static void watch_forks(void)
+static void team_watch_forks(void)
 {
     pthread_atfork(NULL, NULL, forget_workers);
 }
 
 /* The number of threads that there are: `threads` if they can be had */
-static int gather(int threads)
+static int team_gather(int threads)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, watch_forks);
+    pthread_once(&once, team_watch_forks);
     if (threads > THREADS_MOST) threads = THREADS_MOST;
     while (!team.no_more && team.workers + 1 < threads) {
         pthread_t t;
@@ -219,7 +219,7 @@ static bool watch(void)
 }
 
 /* A work has taken `wall` ns. How many cores have works had? */
-static void judge(int64_t now, int64_t wall)
+static void team_judge(int64_t now, int64_t wall)
 {
     judgement.last = wall;
     if (!team.watched) return;
@@ -239,7 +239,7 @@ void team_do(int threads, team_work *work, void *arg)
 {
     int64_t since = threads > 1 ? clock_now(CLOCK_MONOTONIC) : 0;
     bool mine = threads > 1 && !atomic_flag_test_and_set(&busy);
-    threads = mine && since >= judgement.alone_until ? gather(threads) : 1;
+    threads = mine && since >= judgement.alone_until ? team_gather(threads) : 1;
     if (threads < 2) {
         if (mine) atomic_flag_clear(&busy);
         work(arg, 0, 1);
@@ -252,7 +252,7 @@ void team_do(int threads, team_work *work, void *arg)
     gate_wait(&team.ended, all);
     team.threads = 0;
     now = clock_now(CLOCK_MONOTONIC);
-    judge(now, now - since);
+    team_judge(now, now - since);
     atomic_flag_clear(&busy);
 }
 
@@ -297,7 +297,7 @@ struct most {
     double most;
 };
 
-static void look(void *arg, int64_t first, int64_t end)
+static void team_look_range(void *arg, int64_t first, int64_t end)
 {
     struct most *m = arg;
     double most = m->some(m->arg, first, end);
@@ -309,6 +309,6 @@ static void look(void *arg, int64_t first, int64_t end)
 double team_most(int threads, int64_t n, int64_t least, team_look *some, void *arg)
 {
     struct most m = { some, arg, PTHREAD_MUTEX_INITIALIZER, 0 };
-    team_share(threads, n, least, look, &m);
+    team_share(threads, n, least, team_look_range, &m);
     return m.most;
 }

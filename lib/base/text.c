@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static ssize_t put(void *to, const char *bytes, size_t n)
+static ssize_t text_put(void *to, const char *bytes, size_t n)
 {
     struct text *t = to;
     if (t->size + n + 1 > t->room && !t->lost) {
@@ -22,14 +22,14 @@ static ssize_t put(void *to, const char *bytes, size_t n)
 FILE *text_open(struct text *t)
 {
     *t = (struct text){ 0 };
-    return fopencookie(t, "w", (cookie_io_functions_t){ .write = put });
+    return fopencookie(t, "w", (cookie_io_functions_t){ .write = text_put });
 }
 
 char *text_close(struct text *t, FILE *stream, size_t *size)
 {
     bool bad = !stream || ferror(stream);
     if (stream && fclose(stream)) bad = true;
-    if (!bad && !t->bytes) put(t, "", 0);
+    if (!bad && !t->bytes) text_put(t, "", 0);
     if (bad || t->lost) return free(t->bytes), NULL;
     t->bytes[t->size] = 0;
     *size = t->size;

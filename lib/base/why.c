@@ -8,7 +8,7 @@
 #undef why_set // which is what the analyser takes for it
 
 /* How many bytes the UTF-8 character at s has, with the number in *is; 0: it is none */
-static int character(const unsigned char *s, unsigned *is)
+static int failure_character(const unsigned char *s, unsigned *is)
 {
     int n = *s < 0x80 ? 1 : *s < 0xc2 ? 0 : *s < 0xe0 ? 2 : *s < 0xf0 ? 3 : *s < 0xf5 ? 4 : 0;
     *is = n < 2 ? *s : *s & (0x7fU >> n);
@@ -23,7 +23,7 @@ void why_plain(char *text)
 {
     for (unsigned char *s = (unsigned char *)text; *s;) {
         unsigned is;
-        int n = character(s, &is);
+        int n = failure_character(s, &is);
         bool moves = !n || is < ' ' || (is >= 0x7f && is < 0xa0); // C0, DEL, C1
         for (int k = 0; k < (n ? n : 1); k++, s++)
             if (moves) *s = '?';

@@ -23,7 +23,7 @@ static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, 
 }
 
 /* The contact of bond b; at->q has no half step of balls, whose turning is constant. */
-static struct contact place(const struct packing *p, const struct bond *b,
+static struct contact bond_anchor_place(const struct packing *p, const struct bond *b,
                             const struct positions *at)
 {
     const vec3 *x = at->x;
@@ -64,7 +64,7 @@ static bool is_taken(const struct packing *p, const struct contact *c, const str
 }
 
 /* to = both, in order; those of s that are taken left out. False when memory is short. */
-static bool merge(struct contacts *to, const struct packing *p, const struct contacts *s,
+static bool bond_anchor_merge(struct contacts *to, const struct packing *p, const struct contacts *s,
                   const struct contact *placed, int64_t n)
 {
     int64_t next = 0, from = 0;
@@ -95,9 +95,9 @@ int anchors_place(struct contacts *s, const struct packing *p, const struct posi
         const struct bond *b = &p->bonds.bond[i];
         bool there = b->a >= 0 || wall_there(&p->wall[-1 - b->a], at->t);
         if (!there || !packing_may_meet(p, b->a, b->b)) continue;
-        if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = place(p, b, at);
+        if (bond_anchored(b) && (b->beta > 0 || b->wet)) placed[n++] = bond_anchor_place(p, b, at);
     }
-    if (!placed || !merge(&both, p, s, placed, n)) {
+    if (!placed || !bond_anchor_merge(&both, p, s, placed, n)) {
         free(placed), contacts_free(&both);
         return why_set(why, EX_SOFTWARE, "no memory for the contacts of bonds");
     }

@@ -14,26 +14,26 @@ static const double ALONG = 1e-6, /* 1 - cosine: of normals that are one, */
 static const double WELD = 2e-6;  /* of the reach of a wall: how far parts of a surface are apart */
 
 /* A contact as the body has it that the others are compared for */
-struct hold {
+struct attraction_hold {
     int32_t body, other; /* the other, if it moves too; -1: it does not */
     int64_t i;           /* the contact */
     vec3 n, x;           /* its normal towards the body, and its place where the body is */
     double flush;        /* m */
 };
 
-static bool moves(const struct packing *p, int32_t who)
+static bool attraction_moves(const struct packing *p, int32_t who)
 {
     return who >= 0 && p->mass[who] > 0;
 }
 
 /* Of the movable one of its two bodies, b where both are */
-static struct hold hold_of(const struct packing *p, const struct contacts *s, int64_t i,
+static struct attraction_hold hold_of(const struct packing *p, const struct contacts *s, int64_t i,
                            const vec3 edge[3])
 {
     const struct contact *c = &s->c[i];
-    struct hold h = { .body = c->b, .other = -1, .i = i, .n = c->n, .x = c->x };
-    if (moves(p, c->a) && moves(p, c->b)) h.other = c->a;
-    if (moves(p, c->b))
+    struct attraction_hold h = { .body = c->b, .other = -1, .i = i, .n = c->n, .x = c->x };
+    if (attraction_moves(p, c->a) && attraction_moves(p, c->b)) h.other = c->a;
+    if (attraction_moves(p, c->b))
         h.x = v3_sub(h.x, cell_shift(edge, c->shift));
     else
         h.body = c->a, h.n = v3_scale(-1, c->n);
@@ -46,15 +46,15 @@ static struct hold hold_of(const struct packing *p, const struct contacts *s, in
 }
 
 /* Order: contacts of one body with what does not move, then those of pairs that move */
-static int compare(const void *x, const void *y)
+static int attraction_compare(const void *x, const void *y)
 {
-    const struct hold *a = x, *b = y;
+    const struct attraction_hold *a = x, *b = y;
     if (a->body != b->body) return a->body < b->body ? -1 : 1;
     if (a->other != b->other) return a->other < b->other ? -1 : 1;
     return a->i < b->i ? -1 : a->i > b->i;
 }
 
-static bool in_one_plane(const struct hold *a, const struct hold *b)
+static bool in_one_plane(const struct attraction_hold *a, const struct attraction_hold *b)
 {
     return v3_dot(a->n, b->n) > 1 - ALONG &&
            fabs(v3_dot(a->n, v3_sub(b->x, a->x))) <= fmax(a->flush, b->flush);
@@ -67,7 +67,7 @@ struct flat {
     double x[CORNERS][2]; /* m */
 };
 
-static double cross(const double a[2], const double b[2], const double c[2])
+static double attraction_cross(const double a[2], const double b[2], const double c[2])
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -89,7 +89,7 @@ static void make_hull(struct flat *f)
         for (int k = 0; k < f->n; k++) {
             const double *p = f->x[way ? f->n - 1 - k : k];
             if (way && !k) continue;
-            while (n >= least && cross(hull[n - 2], hull[n - 1], p) <= 0) n--;
+            while (n >= least && attraction_cross(hull[n - 2], hull[n - 1], p) <= 0) n--;
             hull[n][0] = p[0], hull[n++][1] = p[1];
         }
     if (n > 1) n--; // the first again
@@ -111,7 +111,7 @@ static void find_centre(const struct flat *f, double out[2], double *size)
         }
     for (int k = 0; k < 2; k++) out[k] = 0.5 * (f->x[far[0]][k] + f->x[far[1]][k]);
     for (int i = 2; i < f->n; i++) {
-        double part = cross(f->x[0], f->x[i - 1], f->x[i]);
+        double part = attraction_cross(f->x[0], f->x[i - 1], f->x[i]);
         area += part;
         for (int k = 0; k < 2; k++)
             sum[k] += part / 3 * (f->x[i - 1][k] + f->x[i][k] - 2 * f->x[0][k]);
@@ -156,7 +156,7 @@ static void find_weights(int n, double x[][2], const double c[2], double *weight
 struct surface_hold {
     const struct contacts *s;
     const struct packing *p;
-    const struct hold *hold; /* [n] */
+    const struct attraction_hold *hold; /* [n] */
     int n;
     vec3 origin, t1, t2; /* m; of the plane */
 };
@@ -191,7 +191,7 @@ static bool face_of(const struct surface_hold *y, int32_t i, vec3 away, vec3 n, 
 }
 
 /* What is left of a convex polygon on the left of all sides of another, counterclockwise both */
-static void clip(struct flat *f, const struct flat *by)
+static void attraction_clip(struct flat *f, const struct flat *by)
 {
     for (int s = 0; s < by->n; s++) {
         const struct flat was = *f;
@@ -199,7 +199,7 @@ static void clip(struct flat *f, const struct flat *by)
         f->n = 0;
         for (int k = 0; k < was.n && f->n < CORNERS - 1; k++) {
             const double *p = was.x[k], *q = was.x[(k + 1) % was.n];
-            double dp = cross(a, b, p), dq = cross(a, b, q);
+            double dp = attraction_cross(a, b, p), dq = attraction_cross(a, b, q);
             if (dp >= 0) memcpy(f->x[f->n++], p, sizeof *f->x);
             if ((dp >= 0) == (dq >= 0)) continue;
             for (int j = 0; j < 2; j++) f->x[f->n][j] = p[j] + dp / (dp - dq) * (q[j] - p[j]);
@@ -224,7 +224,7 @@ static bool common_face(const struct surface_hold *y, struct flat *f)
     }
     most += FLUSH * packing_smaller_radius(y->p, c);
     cell_predict(&y->p->cell, step_ahead(y->p), edge);
-    const bool b_is = y->hold[0].body == c->b && moves(y->p, c->b);
+    const bool b_is = y->hold[0].body == c->b && attraction_moves(y->p, c->b);
     const vec3 shift = cell_shift(edge, c->shift);
     if (!face_of(y, c->b, b_is ? v3(0, 0, 0) : shift, v3_scale(-1, c->n), most, f)) return false;
     make_hull(f);
@@ -233,7 +233,7 @@ static bool common_face(const struct surface_hold *y, struct flat *f)
         return false;
     make_hull(&of_a);
     if (of_a.n < 3 || f->n < 3) return false;
-    clip(f, &of_a);
+    attraction_clip(f, &of_a);
     return f->n > 2;
 }
 
@@ -268,21 +268,21 @@ static void share_face(const struct surface_hold *y, struct attraction *of)
 }
 
 /* Holds of one body with what does not move, or of one pair that moves; room[n] */
-struct run {
+struct attraction_run {
     const struct contacts *s;
     const struct packing *p;
-    struct hold *hold, *room;
+    struct attraction_hold *hold, *room;
     int64_t n;
 };
 
-static bool of_one_pair(const struct run *y, int64_t i, int64_t j)
+static bool of_one_pair(const struct attraction_run *y, int64_t i, int64_t j)
 {
     const struct contact *c = &y->s->c[y->hold[i].i], *d = &y->s->c[y->hold[j].i];
     return c->a == d->a && c->b == d->b && contact_shaped(y->p, c);
 }
 
 /* How many of hold i's pair are tied, or bonded; balls have each place for itself. */
-static int64_t count_pair(const struct run *y, const struct attraction *of, int64_t i, bool bonded)
+static int64_t count_pair(const struct attraction_run *y, const struct attraction *of, int64_t i, bool bonded)
 {
     int64_t n = 0, k = i;
     while (k > 0 && of_one_pair(y, i, k - 1)) k--;
@@ -294,7 +294,7 @@ static int64_t count_pair(const struct run *y, const struct attraction *of, int6
 }
 
 /* What is in one plane with hold i, into room; returns how many. */
-static int64_t gather(const struct run *y, const struct attraction *of, int64_t i, bool bonded)
+static int64_t attraction_gather(const struct attraction_run *y, const struct attraction *of, int64_t i, bool bonded)
 {
     int64_t n = 0;
     for (int64_t k = 0; k < y->n; k++) {
@@ -306,10 +306,10 @@ static int64_t gather(const struct run *y, const struct attraction *of, int64_t 
 }
 
 /* The pull of hold i and of what is in one plane with it */
-static void share_pull(const struct run *y, struct attraction *of, int64_t i)
+static void share_pull(const struct attraction_run *y, struct attraction *of, int64_t i)
 {
-    const int64_t n = gather(y, of, i, false);
-    const struct hold *h = &y->hold[i];
+    const int64_t n = attraction_gather(y, of, i, false);
+    const struct attraction_hold *h = &y->hold[i];
     bool whole = n > 1 && n <= CORNERS;
     for (int64_t k = 0, in = 0; k < y->n; k++) {
         if (in == n || y->room[in].i != y->hold[k].i) continue;
@@ -343,9 +343,9 @@ static bool passes(const struct packing *p, int32_t w, vec3 x, double radius, do
 }
 
 /* Is hold i with the end of a wall where another wall goes on, which has a place nearer to the body? */
-static bool is_seam(const struct run *y, const struct attraction *of, int64_t i)
+static bool is_seam(const struct attraction_run *y, const struct attraction *of, int64_t i)
 {
-    const struct hold *h = &y->hold[i];
+    const struct attraction_hold *h = &y->hold[i];
     const struct contact *c = &y->s->c[h->i];
     bool seam = false;
     for (int64_t k = 0; c->a < 0 && k < y->n && !seam; k++) {
@@ -358,7 +358,7 @@ static bool is_seam(const struct run *y, const struct attraction *of, int64_t i)
     return seam;
 }
 
-static void share_run(const struct run *y, struct attraction *of)
+static void share_run(const struct attraction_run *y, struct attraction *of)
 {
     for (int64_t i = 0; i < y->n; i++) {
         struct attraction *t = &of[y->hold[i].i];
@@ -372,17 +372,17 @@ static void share_run(const struct run *y, struct attraction *of)
         struct attraction *t = &of[y->hold[i].i];
         if (t->tied && t->among == 0) share_pull(y, of, i);
         if (!t->bonded) continue;
-        double pair = (double)count_pair(y, of, i, true), n = (double)gather(y, of, i, true);
+        double pair = (double)count_pair(y, of, i, true), n = (double)attraction_gather(y, of, i, true);
         t->bonds = pair > n ? pair : n;
     }
 }
 
 /* Does contact i share with others? */
-static bool is_shared(const struct contacts *s, const struct packing *p,
+static bool attraction_is_shared(const struct contacts *s, const struct packing *p,
                       const struct attraction *of, int64_t i)
 {
     const struct contact *c = &s->c[i];
-    bool moves_both = moves(p, c->a) && moves(p, c->b);
+    bool moves_both = attraction_moves(p, c->a) && attraction_moves(p, c->b);
     return (of[i].tied || of[i].bonded) && (!moves_both || contact_shaped(p, c));
 }
 
@@ -392,17 +392,17 @@ int attraction_share(struct attraction *of, const struct contacts *s, const stru
     int64_t n = 0, count = 0;
     vec3 edge[3];
     cell_predict(&p->cell, step_ahead(p), edge);
-    for (int64_t i = 0; i < s->n; i++) of[i].among = of[i].bonds = 0, n += is_shared(s, p, of, i);
-    struct hold *hold = malloc((size_t)(2 * n + 1) * sizeof *hold);
+    for (int64_t i = 0; i < s->n; i++) of[i].among = of[i].bonds = 0, n += attraction_is_shared(s, p, of, i);
+    struct attraction_hold *hold = malloc((size_t)(2 * n + 1) * sizeof *hold);
     if (!hold) return why_set(why, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0; i < s->n; i++)
-        if (is_shared(s, p, of, i)) hold[count++] = hold_of(p, s, i, edge);
-    qsort(hold, (size_t)n, sizeof *hold, compare);
+        if (attraction_is_shared(s, p, of, i)) hold[count++] = hold_of(p, s, i, edge);
+    qsort(hold, (size_t)n, sizeof *hold, attraction_compare);
     for (int64_t i = 0, end; i < n; i = end) {
         for (end = i + 1;
              end < n && hold[end].body == hold[i].body && hold[end].other == hold[i].other;)
             end++;
-        const struct run y = { s, p, hold + i, hold + n, end - i };
+        const struct attraction_run y = { s, p, hold + i, hold + n, end - i };
         share_run(&y, of);
     }
     for (int64_t i = 0; i < s->n; i++) {

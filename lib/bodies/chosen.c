@@ -38,7 +38,7 @@ static bool choose_number(struct chosen *c, const struct packing *p, const char 
     return c->wall[k] = true;
 }
 
-static bool choose(struct chosen *c, const struct packing *p, const char *word, size_t n)
+static bool selection_choose(struct chosen *c, const struct packing *p, const char *word, size_t n)
 {
     int32_t name = names_find(&p->names, word, n);
     if (choose_number(c, p, word, n)) return true;
@@ -78,7 +78,7 @@ int chosen_init(struct chosen *c, const struct packing *p, const char *option, c
     for (const char *s = list; !why->status; s++) {
         size_t n = strcspn(s, ",");
         char all[240];
-        if (!choose(c, p, s, n)) {
+        if (!selection_choose(c, p, s, n)) {
             list_all(p, all, sizeof all);
             why_set(why, EX_DATAERR, "%s: no '%.*s' here, but %s", option,
                     (int)(n > NAME_BYTES ? NAME_BYTES : n), s, all);

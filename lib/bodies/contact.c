@@ -164,19 +164,19 @@ static const char *contact_trouble(const struct contact *c, const struct found *
     return NULL;
 }
 
-static bool not_negative(double x)
+static bool contact_not_negative(double x)
 {
     return x >= 0 && isfinite(x);
 }
 
 static const char *contact_law_trouble(const struct contact_law *t)
 {
-    if (!not_negative(t->pull) || !not_negative(t->offset) || !not_negative(t->jump[0]) ||
+    if (!contact_not_negative(t->pull) || !contact_not_negative(t->offset) || !contact_not_negative(t->jump[0]) ||
         !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
         return "its pull, offset or jump is out of range";
-    if (!not_negative(t->stiff[0]) || !not_negative(t->stiff[1]) || !(t->beta >= 0 && t->beta <= 1))
+    if (!contact_not_negative(t->stiff[0]) || !contact_not_negative(t->stiff[1]) || !(t->beta >= 0 && t->beta <= 1))
         return "its stiffness or beta is out of range";
-    if (!not_negative(t->mu_r) || !not_negative(t->mu_p))
+    if (!contact_not_negative(t->mu_r) || !contact_not_negative(t->mu_p))
         return "mu_r and mu_p must not be negative";
     return t->state >= 0 && t->state < CONTACT_LAW_STATES ? NULL : "its tie has no such state";
 }

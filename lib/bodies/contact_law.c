@@ -74,7 +74,7 @@ bool contact_laws_bond(const struct packing *p, const struct pair_law *l)
 
 /* Is a pair to be bonded in this step if it touches? Not one that is, or whose bond has broken and that has not parted
    since. old: what lasts of the contact, or NULL; broken: bonds_broken() */
-static bool is_due(const struct packing *p, const struct contact *c, const struct bond *old,
+static bool contact_law_is_due(const struct packing *p, const struct contact *c, const struct bond *old,
                    bool broken)
 {
     const struct pair_law *l = law_of(p, c);
@@ -84,11 +84,11 @@ static bool is_due(const struct packing *p, const struct contact *c, const struc
 }
 
 /* Beta and the jump of a bond that there is, or that is made in this step */
-static void set_bond(struct contact_law *t, const struct packing *p, struct contact *c,
+static void contact_law_set_bond(struct contact_law *t, const struct packing *p, struct contact *c,
                      const struct bond *old, const struct attraction *of)
 {
     const struct pair_law *l = law_of(p, c);
-    const bool due = is_due(p, c, old, of->broken);
+    const bool due = contact_law_is_due(p, c, old, of->broken);
     if (due && c->gap <= contact_laws_touch(p, c)) {
         t->beta = l->beta, t->state |= CONTACT_LAW_BONDED;
     } else if (due) {
@@ -113,7 +113,7 @@ static double offset_apart(const struct packing *p, const struct contact *c)
 }
 
 /* Does one surface push the other? */
-static bool pushes(const struct packing *p, const struct contact_law *t, const struct found *f)
+static bool contact_law_pushes(const struct packing *p, const struct contact_law *t, const struct found *f)
 {
     double push[3];
     contact_law_push(p->dt, t, f, push);
@@ -147,7 +147,7 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
         t->state |=
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->among;
-    if (pair_law_adheres(l)) set_bond(t, p, c, old, of);
+    if (pair_law_adheres(l)) contact_law_set_bond(t, p, c, old, of);
     if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
@@ -160,7 +160,7 @@ static bool is_of_pair(const struct contact *c, const struct contact *d)
 }
 
 /* Is the bond of a pair that comes before the contact's? */
-static bool comes_before(const struct bond *x, const struct contact *c)
+static bool contact_law_comes_before(const struct bond *x, const struct contact *c)
 {
     return x->a < c->a || (x->a == c->a && x->b < c->b);
 }
@@ -174,7 +174,7 @@ static struct attraction attraction_of(const struct packing *p, const struct con
     struct attraction t = { .tied = whole_pull(p, c, l, is_wet(p, c, l, old)) > 0 };
     if (shaped) t.broken = bonds_broken(&p->bonds, c->a, c->b, pair);
     if (!pair_law_adheres(l) || anchored) return t;
-    t.bonded = c->gap <= contact_laws_touch(p, c) && (shaped || is_due(p, c, old, false));
+    t.bonded = c->gap <= contact_laws_touch(p, c) && (shaped || contact_law_is_due(p, c, old, false));
     t.bonded = t.bonded || (!shaped && old && old->beta > 0);
     return t;
 }
@@ -188,7 +188,7 @@ int contact_laws_find(struct contacts *s, const struct packing *p, struct why *w
     }
     for (int64_t i = 0, pair = 0, from = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        while (pair < p->bonds.n && comes_before(&p->bonds.bond[pair], c)) pair++;
+        while (pair < p->bonds.n && contact_law_comes_before(&p->bonds.bond[pair], c)) pair++;
         of[i] = attraction_of(p, c, bonds_find(&p->bonds, c, &from), pair);
     }
     int64_t from = 0;
@@ -303,10 +303,10 @@ static struct made made_by_push(const struct packing *p, const struct contacts *
     const struct contact_law *t = &s->law[i];
     const struct pair_law *l = law_of(p, c);
     const bool broken = contact_shaped(p, c) && bonds_broken(&p->bonds, c->a, c->b, pair);
-    if (!pair_law_attracts(l) || !pushes(p, t, &s->found[i])) return (struct made){ false, false };
+    if (!pair_law_attracts(l) || !contact_law_pushes(p, t, &s->found[i])) return (struct made){ false, false };
     return (struct made){ .wet = pair_law_wets(l) && !(t->state & CONTACT_LAW_WET),
                           .bonded = l->beta > 0 && !(t->state & CONTACT_LAW_BONDED) &&
-                                    is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
+                                    contact_law_is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
 }
 
 /* What lasts of contact i; false: nothing does. */
@@ -336,13 +336,13 @@ static int32_t lesser(int32_t x, int32_t y)
 }
 
 /* Has the contact's pair bond i of these? */
-static bool has_bond(const struct contact *c, const struct bonds *s, int64_t i)
+static bool contact_law_has_bond(const struct contact *c, const struct bonds *s, int64_t i)
 {
     return i >= 0 && i < s->n && s->bond[i].a == c->a && s->bond[i].b == c->b;
 }
 
 /* The contacts of a step, where the bonds of the present one's pair begin, and what is kept so far */
-struct keeping {
+struct contact_law_keeping {
     const struct packing *p;
     const struct contacts *s;
     int64_t pair, found; /* found: as of bonds_find() */
@@ -350,7 +350,7 @@ struct keeping {
 };
 
 /* m^2: of the bond that contact i is when the step is over. All that are made of its pair by a push share one area. */
-static double area_of(const struct keeping *y, int64_t i, struct made made)
+static double contact_law_area_of(const struct contact_law_keeping *y, int64_t i, struct made made)
 {
     const struct contact *c = &y->s->c[i];
     const struct contact_law *t = &y->s->law[i];
@@ -366,7 +366,7 @@ static double area_of(const struct keeping *y, int64_t i, struct made made)
 
 /* The place of a bond where there is a shape: that of the old one, or of contact i, with a new key, below
    all of its pair */
-static void anchor(struct bond *b, struct keeping *y, int64_t i, struct made made)
+static void anchor(struct bond *b, struct contact_law_keeping *y, int64_t i, struct made made)
 {
     const struct packing *p = y->p;
     const struct contact *c = &y->s->c[i];
@@ -375,11 +375,11 @@ static void anchor(struct bond *b, struct keeping *y, int64_t i, struct made mad
         b->area = old->area, b->at_a = old->at_a, b->at_b = old->at_b, b->axis = old->axis;
         return;
     }
-    double area = area_of(y, i, made);
+    double area = contact_law_area_of(y, i, made);
     if (!(area > 0)) return;
     int32_t least = 0;
-    if (has_bond(c, &p->bonds, y->pair)) least = lesser(least, p->bonds.bond[y->pair].feature);
-    for (int64_t k = y->kept.n - 1; has_bond(c, &y->kept, k); k--)
+    if (contact_law_has_bond(c, &p->bonds, y->pair)) least = lesser(least, p->bonds.bond[y->pair].feature);
+    for (int64_t k = y->kept.n - 1; contact_law_has_bond(c, &y->kept, k); k--)
         least = lesser(least, y->kept.bond[k].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
     anchor_bond(b, p, c, area, step_ahead(p));
@@ -405,12 +405,12 @@ static bool remember_broken(struct bonds *kept, const struct packing *p, const s
 }
 
 /* Keeps what lasts of contact i; false when memory is short. */
-static bool keep(struct keeping *y, int64_t i)
+static bool contact_law_keep(struct contact_law_keeping *y, int64_t i)
 {
     const struct contact *c = &y->s->c[i];
     const struct contact_law *t = &y->s->law[i];
     struct bond b;
-    while (y->pair < y->p->bonds.n && comes_before(&y->p->bonds.bond[y->pair], c)) y->pair++;
+    while (y->pair < y->p->bonds.n && contact_law_comes_before(&y->p->bonds.bond[y->pair], c)) y->pair++;
     struct made made = made_by_push(y->p, y->s, i, y->pair);
     bool lasts = t->state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED) || made.wet || made.bonded;
     if (!lasts || !bond_of(y->p, y->s, i, made, &b)) return true;
@@ -422,9 +422,9 @@ static bool keep(struct keeping *y, int64_t i)
 
 int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why)
 {
-    struct keeping y = { .p = p, .s = s };
+    struct contact_law_keeping y = { .p = p, .s = s };
     bool good = true;
-    for (int64_t i = 0; good && i < s->n && s->law && s->found; i++) good = keep(&y, i);
+    for (int64_t i = 0; good && i < s->n && s->law && s->found; i++) good = contact_law_keep(&y, i);
     good = good && (!p->shape || remember_broken(&y.kept, p, s));
     if (!good) {
         bonds_free(&y.kept);

@@ -83,7 +83,7 @@ static double *levers_of(const struct packing *p, bool ended, bool *good)
 }
 
 /* m^3, of discs m^2 */
-static double volume_of(const struct packing *p, const vec3 edge[3])
+static double freedom_volume_of(const struct packing *p, const vec3 edge[3])
 {
     double volume = v3_dot(edge[0], v3_cross(edge[1], edge[2]));
     if (p->dim == 2) volume /= v3_norm(edge[2]); // which only closes the cell
@@ -95,7 +95,7 @@ static struct freedom size_freedom(const struct packing *p, const vec3 edge[3], 
 {
     const struct cell *c = &p->cell;
     struct freedom f = { .boundary = SIZE, .mass = c->size_mass };
-    f.force = -p->dim * volume_of(p, edge) * c->mean * cell_factor_at(c, t);
+    f.force = -p->dim * freedom_volume_of(p, edge) * c->mean * cell_factor_at(c, t);
     f.speed = cell_growth(c, step_after(p));
     for (int k = 0; k < p->dim; k++) f.gain[k] = edge[k];
     return f;
@@ -105,7 +105,7 @@ static struct freedom size_freedom(const struct packing *p, const vec3 edge[3], 
 static void face_areas(const struct packing *p, const vec3 edge[3], const vec3 inverse[3],
                        vec3 area[3])
 {
-    double volume = volume_of(p, edge);
+    double volume = freedom_volume_of(p, edge);
     for (int k = 0; k < 3; k++) area[k] = v3_scale(volume, inverse[k]);
 }
 
@@ -151,7 +151,7 @@ static double fastest_of_room(const struct packing *p, bool had, double t)
 }
 
 /* m/s: |had speed| + dt |force|/mass, the most of all that glide */
-static double fastest(const struct packing *p, bool had)
+static double freedom_fastest(const struct packing *p, bool had)
 {
     const double t = middle(p, false);
     double most = 0;
@@ -180,12 +180,12 @@ static double fastest(const struct packing *p, bool had)
 
 double freedoms_speed(const struct packing *p)
 {
-    return fastest(p, true);
+    return freedom_fastest(p, true);
 }
 
 double freedoms_calm(const struct packing *p)
 {
-    return 2 * (packing_most_fall(p) + fastest(p, false));
+    return 2 * (packing_most_fall(p) + freedom_fastest(p, false));
 }
 
 void freedoms_free(struct freedoms *list)

@@ -31,7 +31,7 @@ int memory_copy(struct memory *to, const struct memory *from, struct why *why)
 
 /* What is remembered of the contact with this key, or NULL. *from, 0 at first, is where to look from on:
    contacts are asked for in their order. */
-static const struct recall *find(const struct memory *m, struct contact_key key, int64_t *from)
+static const struct recall *memory_find(const struct memory *m, struct contact_key key, int64_t *from)
 {
     int order = -1;
     while (*from < m->n && (order = contact_key_order(recall_key(&m->recall[*from]), key)) < 0)
@@ -58,7 +58,7 @@ int memory_keep(struct memory *m, const struct contacts *s, struct why *why)
         if (s->found[i].r[0] == 0 || s->found[i].status == STATUS_JAMMED) continue;
         const struct contact_key k = contact_key(c);
         vec3 r = contact_in_space(c, s->found[i].r);
-        double part = trust(r, find(m, k, &from));
+        double part = trust(r, memory_find(m, k, &from));
         vec3 moment = s->moment ? contact_in_space(c, s->moment[i]) : v3(0, 0, 0);
         now.recall[now.n++] = (struct recall){ k.a,
                                                k.b,
@@ -82,7 +82,7 @@ int memory_give(const struct memory *m, struct contacts *s, bool moments, struct
     if (contacts_alloc_found(s) || (moments && contacts_alloc_moment(s)))
         return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
     for (int64_t i = 0, from = 0; i < s->n; i++) {
-        const struct recall *x = find(m, contact_key(&s->c[i]), &from);
+        const struct recall *x = memory_find(m, contact_key(&s->c[i]), &from);
         if (!x) continue;
         in_basis(&s->c[i], x->r, s->found[i].r);
         if (moments) in_basis(&s->c[i], x->m, s->moment[i]);
@@ -90,7 +90,7 @@ int memory_give(const struct memory *m, struct contacts *s, bool moments, struct
     return 0;
 }
 
-static int compare(const void *x, const void *y)
+static int memory_compare(const void *x, const void *y)
 {
     return contact_key_order(recall_key(x), recall_key(y));
 }
@@ -106,8 +106,8 @@ void memory_scale(struct memory *m, double factor)
 void memory_sort(struct memory *m)
 {
     int64_t i = 1; // mostly they are sorted
-    while (i < m->n && compare(&m->recall[i - 1], &m->recall[i]) <= 0) i++;
-    if (i < m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, compare);
+    while (i < m->n && memory_compare(&m->recall[i - 1], &m->recall[i]) <= 0) i++;
+    if (i < m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, memory_compare);
 }
 
 void memory_follow(struct memory *m, const int32_t *row)
@@ -131,7 +131,7 @@ int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct w
             trouble = "no such bodies";
         else if (!v3_finite(x->r) || !v3_finite(x->m))
             trouble = "is not finite";
-        else if (i && compare(x - 1, x) >= 0)
+        else if (i && memory_compare(x - 1, x) >= 0)
             trouble = "not sorted by its bodies, or twice";
         if (trouble)
             return why_set(why, EX_DATAERR, "remembered reaction %lld: %s", (long long)i, trouble);

@@ -10,7 +10,7 @@ void names_free(struct names *s)
     *s = (struct names){ 0 };
 }
 
-static int no_memory(struct why *why)
+static int names_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for names");
 }
@@ -18,19 +18,19 @@ static int no_memory(struct why *why)
 static int add_text(struct names *s, const char *text, size_t n, struct why *why)
 {
     char **more = realloc(s->text, ((size_t)s->n + 1) * sizeof *more);
-    if (!more) return no_memory(why);
+    if (!more) return names_no_memory(why);
     s->text = more;
-    if (!(s->text[s->n] = strndup(text, n))) return no_memory(why);
+    if (!(s->text[s->n] = strndup(text, n))) return names_no_memory(why);
     s->n++;
     return 0;
 }
 
-static int add_row(struct names *s, struct named row, struct why *why)
+static int names_add_row(struct names *s, struct named row, struct why *why)
 {
     // the room doubles: it is used up where the number of rows is a power of two
     if (!(s->rows & (s->rows - 1))) {
         struct named *more = realloc(s->row, 2 * ((size_t)s->rows + 1) * sizeof *more);
-        if (!more) return no_memory(why);
+        if (!more) return names_no_memory(why);
         s->row = more;
     }
     s->row[s->rows++] = row;
@@ -43,7 +43,7 @@ int names_copy(struct names *to, const struct names *from, struct why *why)
     for (int32_t k = 0; k < from->n; k++)
         if (add_text(to, from->text[k], strlen(from->text[k]), why)) goto fail;
     for (int32_t k = 0; k < from->rows; k++)
-        if (add_row(to, from->row[k], why)) goto fail;
+        if (names_add_row(to, from->row[k], why)) goto fail;
     return 0;
 fail:
     names_free(to);
@@ -51,7 +51,7 @@ fail:
 }
 
 /* Bytes of the character at s, of which there are n; 0: no UTF-8, or a character that controls a terminal */
-static size_t character(const unsigned char *s, size_t n)
+static size_t names_character(const unsigned char *s, size_t n)
 {
     size_t length = s[0] < 0x80 ? 1 : s[0] < 0xc2 ? 0 : s[0] < 0xe0 ? 2 : s[0] < 0xf0 ? 3 : 4;
     if (!length || length > n || s[0] > 0xf4 || s[0] < ' ' || s[0] == 0x7f) return 0;
@@ -68,7 +68,7 @@ const char *name_trouble_of_kind(const char *text, size_t n)
     if (!n) return "is empty";
     if (n > NAME_BYTES) return "is longer than 60 bytes";
     for (size_t i = 0, length; i < n; i += length) {
-        if (!(length = character((const unsigned char *)text + i, n - i)))
+        if (!(length = names_character((const unsigned char *)text + i, n - i)))
             return "has a control character, or is not UTF-8";
         if (strchr(",\"\\", text[i])) return "has a comma, a quote or a backslash";
     }
@@ -108,10 +108,10 @@ int names_give(struct names *s, const char *text, int32_t boundary, int32_t firs
     if (names_add(s, text, &name, why)) return why->status;
     if (s->rows == NAMED_MOST)
         return why_set(why, EX_DATAERR, "names of more than %d ranges of faces", NAMED_MOST);
-    return add_row(s, (struct named){ name, boundary, first, count }, why);
+    return names_add_row(s, (struct named){ name, boundary, first, count }, why);
 }
 
-static int compare(const void *a, const void *b)
+static int names_compare(const void *a, const void *b)
 {
     const struct named *x = a, *y = b;
     if (x->name != y->name) return x->name < y->name ? -1 : 1;
@@ -123,7 +123,7 @@ static int compare(const void *a, const void *b)
 void names_settle(struct names *s)
 {
     int32_t n = 0;
-    if (s->rows) qsort(s->row, (size_t)s->rows, sizeof *s->row, compare);
+    if (s->rows) qsort(s->row, (size_t)s->rows, sizeof *s->row, names_compare);
     for (int32_t k = 0; k < s->rows; k++) {
         struct named *last = n ? &s->row[n - 1] : NULL, now = s->row[k];
         bool same = last && last->name == now.name && last->boundary == now.boundary;
@@ -157,7 +157,7 @@ int names_check(const struct names *s, int32_t walls, const struct wall *wall, s
             return why_set(why, EX_DATAERR, "name \"%s\": wall %d has no such faces, it has %d",
                            s->text[r->name], r->boundary, faces);
         bool same = last && last->name == r->name && last->boundary == r->boundary;
-        if (last && (compare(last, r) >= 0 ||
+        if (last && (names_compare(last, r) >= 0 ||
                      (same && (!last->count || r->first < last->first + last->count))))
             return why_set(why, EX_DATAERR, "names: not sorted, or a face twice");
     }

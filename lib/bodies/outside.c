@@ -10,7 +10,7 @@ static void *zeros(int64_t n, size_t size)
     return calloc((size_t)n + 1, size);
 }
 
-static int no_memory(struct why *why)
+static int external_force_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for forces from outside");
 }
@@ -39,13 +39,13 @@ void outside_forget(struct outside *o)
 int outside_alloc(vec3 **to, int64_t n, struct why *why)
 {
     if (!*to) *to = zeros(n, sizeof **to);
-    return *to ? 0 : no_memory(why);
+    return *to ? 0 : external_force_no_memory(why);
 }
 
 static int alloc_push(double **to, int32_t walls, struct why *why)
 {
     if (!*to) *to = zeros(walls, sizeof **to);
-    return *to ? 0 : no_memory(why);
+    return *to ? 0 : external_force_no_memory(why);
 }
 
 int outside_alloc_push(struct outside *o, int32_t walls, struct why *why)

@@ -322,7 +322,7 @@ struct whole packing_whole(const struct packing *p)
 }
 
 /* What is wrong with a column's real numbers of body i, or NULL */
-static const char *number_trouble(const struct body_column *b, const struct packing *p, int64_t i)
+static const char *packing_number_trouble(const struct body_column *b, const struct packing *p, int64_t i)
 {
     const double *x = column_row(&b->column, p, i);
     for (int k = 0; k < b->column.width; k++) {
@@ -355,7 +355,7 @@ enum {
     SPREAD_MOST = 1000
 }; /* boundaries, each of which may bound the face of each that a pressure is on */
 
-static const char *load_trouble(const struct packing *p, const struct wall *w)
+static const char *packing_load_trouble(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
     if (l->way == LOAD_NONE) return NULL;
@@ -436,7 +436,7 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
     if (!v3_finite(w->belt)) return "belt is not finite";
     if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
-    return load_trouble(p, w);
+    return packing_load_trouble(p, w);
 }
 
 /* Is the wall the same after a shift by this edge? */
@@ -482,13 +482,13 @@ static int check_cell(const struct packing *p, struct why *why)
     return 0;
 }
 
-static int check_bodies(const struct packing *p, int64_t first, struct why *why)
+static int packing_check_each_body(const struct packing *p, int64_t first, struct why *why)
 {
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = NULL;
         for (const struct body_column *b = body_columns; b->column.name && !trouble; b++) {
             bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
-            trouble = real ? number_trouble(b, p, i) : NULL;
+            trouble = real ? packing_number_trouble(b, p, i) : NULL;
             if (trouble)
                 return why_set(why, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
                                b->column.name, trouble);
@@ -501,7 +501,7 @@ static int check_bodies(const struct packing *p, int64_t first, struct why *why)
 
 int packing_check_bodies(const struct packing *p, int64_t first, struct why *why)
 {
-    return check_bodies(p, first, why) || check_images(p, first, why) ? why->status : 0;
+    return packing_check_each_body(p, first, why) || check_images(p, first, why) ? why->status : 0;
 }
 
 int packing_check(const struct packing *p, struct why *why)
@@ -528,7 +528,7 @@ int packing_check(const struct packing *p, struct why *why)
         if (p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
         if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
     }
-    if (check_bodies(p, 0, why)) return why->status;
+    if (packing_check_each_body(p, 0, why)) return why->status;
     if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
         return why_set(
             why, EX_DATAERR,

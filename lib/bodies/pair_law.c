@@ -11,24 +11,24 @@ static bool positive(double x)
     return x > 0 && isfinite(x);
 }
 
-static bool not_negative(double x)
+static bool pair_law_not_negative(double x)
 {
     return x >= 0 && isfinite(x);
 }
 
 const char *pair_law_trouble(const struct pair_law *l)
 {
-    if (!not_negative(l->cohesion) || !not_negative(l->range))
+    if (!pair_law_not_negative(l->cohesion) || !pair_law_not_negative(l->range))
         return "cohesion and its range must not be negative";
-    if (!not_negative(l->volume) || !not_negative(l->tension))
+    if (!pair_law_not_negative(l->volume) || !pair_law_not_negative(l->tension))
         return "volume and tension of a bridge must not be negative";
     if (!(l->wetting >= 0 && l->wetting < M_PI / 2))
         return "the wetting angle must lie in [0, pi/2)";
-    if (!not_negative(l->mu_r) || !not_negative(l->mu_p))
+    if (!pair_law_not_negative(l->mu_r) || !pair_law_not_negative(l->mu_p))
         return "mu_r and mu_p must not be negative";
-    if (!not_negative(l->w) || !not_negative(l->eta) || !not_negative(l->area))
+    if (!pair_law_not_negative(l->w) || !pair_law_not_negative(l->eta) || !pair_law_not_negative(l->area))
         return "energy, viscosity and area of a bond must not be negative";
-    if (!not_negative(l->cn) || !not_negative(l->ct) || (l->w > 0 && !positive(l->cn)))
+    if (!pair_law_not_negative(l->cn) || !pair_law_not_negative(l->ct) || (l->w > 0 && !positive(l->cn)))
         return "the stiffness of a bond must be positive";
     if (!(l->beta >= 0 && l->beta <= 1)) return "beta must lie in [0, 1]";
     if (!isfinite(l->made)) return "the time of bonds is not finite";

@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* The first pull of a body with this id, or where it would be */
-static int32_t first_of(const struct drives *d, int32_t id)
+static int32_t external_force_first_of(const struct drives *d, int32_t id)
 {
     int32_t lo = 0, hi = d->n;
     while (lo < hi) {
@@ -19,7 +19,7 @@ static int32_t first_of(const struct drives *d, int32_t id)
 vec3 pulls_on(const struct drives *d, int32_t id, double t, bool turns)
 {
     vec3 sum = v3(0, 0, 0);
-    for (int32_t k = first_of(d, id); k < d->n && d->drive[k].boundary == id; k++) {
+    for (int32_t k = external_force_first_of(d, id); k < d->n && d->drive[k].boundary == id; k++) {
         const struct drive *s = &d->drive[k];
         if (s->turns == turns && t >= s->from && t < s->until)
             sum = v3_axpy(sum, drive_way(d, s, t), s->axis);
@@ -28,7 +28,7 @@ vec3 pulls_on(const struct drives *d, int32_t id, double t, bool turns)
 }
 
 /* N: its size at most */
-static double largest(const struct drives *d, const struct drive *k)
+static double external_force_largest(const struct drives *d, const struct drive *k)
 {
     double most = k->signal == DRIVE_TABLE ? 0 : fabs(k->value);
     for (int32_t i = 0; k->signal == DRIVE_TABLE && i < k->rows; i++)
@@ -41,8 +41,8 @@ double pulls_most(const struct drives *d, int64_t n, const int32_t *id, const do
     double most = 0;
     for (int64_t i = 0; d->n && i < n; i++) {
         double sum = 0;
-        for (int32_t k = first_of(d, id[i]); k < d->n && d->drive[k].boundary == id[i]; k++)
-            if (!d->drive[k].turns) sum += largest(d, &d->drive[k]);
+        for (int32_t k = external_force_first_of(d, id[i]); k < d->n && d->drive[k].boundary == id[i]; k++)
+            if (!d->drive[k].turns) sum += external_force_largest(d, &d->drive[k]);
         if (mass[i] > 0) most = fmax(most, sum / mass[i]);
     }
     return most;

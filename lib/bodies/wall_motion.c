@@ -176,7 +176,7 @@ double wall_force(const struct packing *p, const struct wall *w, double t)
 }
 
 /* m: of its points that bodies may touch from a place */
-static double farthest(const struct packing *p, const struct wall *w, vec3 from)
+static double wall_motion_farthest(const struct packing *p, const struct wall *w, vec3 from)
 {
     double reach = boundary_reach(w), most = 0;
     if (isfinite(reach)) return v3_norm(v3_sub(w->x, from)) + reach;
@@ -218,7 +218,7 @@ static double drives_top_speed(const struct packing *p, const struct wall *w)
     int64_t changes = 0;
     for (int32_t i = 0; i < w->drives; i++) {
         const struct drive *k = &d->drive[w->first_drive + i];
-        double reach = k->turns ? farthest(p, w, k->point) : 1;
+        double reach = k->turns ? wall_motion_farthest(p, w, k->point) : 1;
         if (i < AT_ONCE_MOST) arm[i] = reach;
         all += drive_top_speed(d, k) * reach, changes += 1 + k->rows;
     }

@@ -29,7 +29,7 @@ static char *history;
 static char **arguments;
 static const void *given[OPTIONS]; /* the variables that were set, NULL between */
 
-static void message(const char *format, va_list ap)
+static void cli_message(const char *format, va_list ap)
 {
     char text[MESSAGE];
     vsnprintf(text, sizeof text, format, ap);
@@ -42,7 +42,7 @@ void die(int status, const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(format, ap);
+    cli_message(format, ap);
     va_end(ap);
     if (status == EX_IOERR) __fpurge(stdout); // what comes after a piece that is missing
     exit(status);
@@ -52,7 +52,7 @@ void die_usage(const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(format, ap);
+    cli_message(format, ap);
     va_end(ap);
     fprintf(stderr, "usage: %s [OPTION ...] %s (see --help)\n", tool.name, tool.operands);
     exit(EX_USAGE);
@@ -67,7 +67,7 @@ void warn(const char *format, ...)
 {
     va_list ap;
     va_start(ap, format);
-    message(format, ap);
+    cli_message(format, ap);
     va_end(ap);
 }
 
@@ -143,7 +143,7 @@ bool cli_given(const void *to)
 }
 
 /* The words of a choice, "a|b|c", for --help. */
-static const char *words(const struct cli_option *o)
+static const char *cli_words(const struct cli_option *o)
 {
     static char text[200];
     option_words(o, text, sizeof text);
@@ -155,7 +155,7 @@ static void help_option(const struct cli_option *o)
 {
     char left[240], letter[5] = "    ";
     if (o->letter) snprintf(letter, sizeof letter, "-%c, ", o->letter);
-    const char *arg = o->choice ? words(o) : o->arg ? o->arg : "";
+    const char *arg = o->choice ? cli_words(o) : o->arg ? o->arg : "";
     snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, *arg ? " " : "", arg);
     if (strlen(left) > LEFT - 1)
         printf("  %s\n%*s", left, LEFT + 4, "");
@@ -190,7 +190,7 @@ static bool is_standard_output(const struct cli_option *o, const char *text)
 }
 
 /* Sets the option and returns its value for the history. */
-static json_t *set(const struct cli_option *o, const char *text)
+static json_t *cli_set(const struct cli_option *o, const char *text)
 {
     struct why why = { 0 };
     if (option_set(o, o->to, text, &why)) die_usage("%s", why.text);
@@ -242,7 +242,7 @@ int cli_parse(int argc, char **argv)
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
         if (c == HELP) help();
         if (c == UNPACK) {
-            set(&unpack, optarg);
+            cli_set(&unpack, optarg);
             reader_unpack(1e9 * gigabytes);
             continue;
         }
@@ -258,7 +258,7 @@ int cli_parse(int argc, char **argv)
         for (int i = 0; c < HELP && i < n; i++)
             if (at[i]->letter == c) k = i;
         json_decref(value[k]);
-        value[k] = set(at[k], optarg);
+        value[k] = cli_set(at[k], optarg);
         given[k] = at[k]->to;
         if (!is_standard_output(at[k], optarg)) continue;
         json_decref(value[k]);

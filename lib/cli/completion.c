@@ -24,7 +24,7 @@ static void for_each(void (*each)(const struct cli_option *))
     for (const struct cli_option *o = common; o->kind; o++) each(o);
 }
 
-static void words(const struct cli_option *o)
+static void completion_words(const struct cli_option *o)
 {
     for (int k = 0; o->choice(k).name; k++) printf("%s%s", k ? " " : "", o->choice(k).name);
 }
@@ -46,7 +46,7 @@ static void bash_argument(const struct cli_option *o)
     printf("--%s) ", o->name);
     if (o->choice) {
         printf("words='");
-        words(o);
+        completion_words(o);
         printf("' ;;\n");
     } else {
         printf(o->kind == CLI_TEXT ? "return ;;\n" : "compopt +o default; return ;;\n");
@@ -108,7 +108,7 @@ static void zsh_option(const struct cli_option *o)
         printf(":%s:", o->arg ? o->arg : o->name);
         if (o->choice) {
             printf("(");
-            words(o);
+            completion_words(o);
             printf(")");
         } else if (o->kind == CLI_TEXT) {
             printf("_files");

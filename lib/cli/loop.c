@@ -230,7 +230,7 @@ static vec3 force_on(const struct packing *p, const struct contacts *s, int32_t 
     return sum;
 }
 
-static void put_boundaries(FILE *out, const struct packing *p, const struct contacts *s)
+static void loop_put_boundaries(FILE *out, const struct packing *p, const struct contacts *s)
 {
     const char *mark = "";
     fputs(",\"boundaries\":[", out);
@@ -282,7 +282,7 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
 }
 
 /* The line, and the document behind it; to be freed */
-static char *message(const struct frame *f, const struct contacts *s, struct acts *acts,
+static char *loop_message(const struct frame *f, const struct contacts *s, struct acts *acts,
                      size_t *length, struct why *why)
 {
     const struct packing *p = &f->packing;
@@ -301,7 +301,7 @@ static char *message(const struct frame *f, const struct contacts *s, struct act
         fputs(",\"dt\":", out), print_number(out, p->dt, "null");
         fprintf(out, ",\"bodies\":%" PRId64, p->n);
         put_report(out, s ? f : NULL);
-        if (boundaries) put_boundaries(out, p, s);
+        if (boundaries) loop_put_boundaries(out, p, s);
         if (measures) put_measures(out, f, s, why);
         if (document) fprintf(out, ",\"document\":%zu", size);
         fputs("}\n", out);
@@ -316,7 +316,7 @@ static char *message(const struct frame *f, const struct contacts *s, struct act
 /* ---- a step ---- */
 
 /* For whoever repeats the run */
-static int keep(struct packing *p, const json_t *answer, struct why *why)
+static int loop_keep(struct packing *p, const json_t *answer, struct why *why)
 {
     json_t *j = json_pack("{s:I, s:O}", "step", (json_int_t)p->step + 1, "answer", answer);
     char *text = j ? json_dumps(j, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
@@ -383,11 +383,11 @@ static json_t *take_line(const struct packing *p, struct why *why)
     return whole;
 }
 
-static json_t *ask(const struct frame *f, struct acts *acts, bool first, struct why *why)
+static json_t *loop_ask(const struct frame *f, struct acts *acts, bool first, struct why *why)
 {
     static const unsigned char document_begins = 0x89; // no JSON does
     size_t length = 0;
-    char *begin, *text = message(f, first ? NULL : &f->contacts, acts, &length, why);
+    char *begin, *text = loop_message(f, first ? NULL : &f->contacts, acts, &length, why);
     json_t *answer = NULL;
     if (!why->status && (first || !partner_check_silent(loop.partner, why)) &&
         !partner_write(loop.partner, text, length, timeout, why)) {
@@ -425,9 +425,9 @@ bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why
     if (stop) return false;
     json_t *answer = NULL;
     if (replay) answer = replayed(p->step + 1, first, &trouble);
-    if (command && due) answer = ask(f, acts, first, &trouble);
+    if (command && due) answer = loop_ask(f, acts, first, &trouble);
     if (answer && !trouble.status && !answer_apply(answer, acts, p, &stop, &trouble))
-        keep(p, answer, &trouble);
+        loop_keep(p, answer, &trouble);
     if (replay && !answer) stop = p->step >= loop.last;
     json_decref(answer);
     if (!trouble.status) return !stop;

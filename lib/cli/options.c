@@ -57,7 +57,7 @@ void options_check(void)
 }
 
 /* When there is input: the processes that read it have been started, and have nothing of a driver. */
-static void open_device(void)
+static void options_open_device(void)
 {
     struct why why = { 0 };
     if (options.device && !device && !(device = device_open(options.device, &why))) die_why(&why);
@@ -94,7 +94,7 @@ struct step_opt options_step(double dt, bool foreign)
 {
     mark_given();
     struct step_opt o = options_step_of(&options, dt, foreign);
-    open_device();
+    options_open_device();
     o.solve.device = device;
     return o;
 }

@@ -43,7 +43,7 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int failed(struct why *why, const char *what)
+static int partner_failed(struct why *why, const char *what)
 {
     return why_set(why, EX_UNAVAILABLE, "%s: %s", what, strerror(errno));
 }
@@ -75,11 +75,11 @@ static void be_guard(int life, pid_t group)
 static int start_guard(struct partner *p, struct why *why)
 {
     int life[2];
-    if (pipe2(life, O_CLOEXEC)) return failed(why, "no pipe to the program's guard");
+    if (pipe2(life, O_CLOEXEC)) return partner_failed(why, "no pipe to the program's guard");
     p->guard = fork();
     if (p->guard == 0) close(life[1]), be_guard(life[0], p->pid);
     close(life[0]), p->life = life[1];
-    return p->guard < 0 ? failed(why, "the program's guard cannot be started") : 0;
+    return p->guard < 0 ? partner_failed(why, "the program's guard cannot be started") : 0;
 }
 
 int partner_start(struct partner **out, const char *command, const volatile sig_atomic_t *stop,
@@ -89,14 +89,14 @@ int partner_start(struct partner **out, const char *command, const volatile sig_
     struct partner *p = *out = calloc(1, sizeof *p);
     if (!p) return why_set(why, EX_SOFTWARE, "no memory for a program");
     p->to = p->from = p->life = -1, p->stop = stop;
-    if (pipe2(to, O_CLOEXEC)) return failed(why, "no pipe to the program");
+    if (pipe2(to, O_CLOEXEC)) return partner_failed(why, "no pipe to the program");
     p->to = to[1];
-    if (pipe2(from, O_CLOEXEC)) return close(to[0]), failed(why, "no pipe from the program");
+    if (pipe2(from, O_CLOEXEC)) return close(to[0]), partner_failed(why, "no pipe from the program");
     p->from = from[0];
     p->pid = fork();
     if (p->pid == 0) be_program(to[0], from[1], command);
     close(to[0]), close(from[1]);
-    if (p->pid < 0) return failed(why, "the program cannot be started");
+    if (p->pid < 0) return partner_failed(why, "the program cannot be started");
     setpgid(p->pid, p->pid); // whoever of both comes first
     fcntl(p->to, F_SETFL, O_NONBLOCK), fcntl(p->from, F_SETFL, O_NONBLOCK);
     return start_guard(p, why);
@@ -177,14 +177,14 @@ int partner_write(struct partner *p, const void *bytes, size_t n, double seconds
         if (done > 0) at += done, n -= (size_t)done;
         if (done >= 0 || errno == EINTR) continue;
         if (errno == EPIPE) return ended(p, "input", why);
-        if (errno != EAGAIN) return failed(why, "the program");
+        if (errno != EAGAIN) return partner_failed(why, "the program");
         if (!ready(p, p->to, POLLOUT, &left)) return waited(p, "read nothing", seconds, why);
     }
     return 0;
 }
 
 /* Room for one more piece */
-static bool grow(struct partner *p)
+static bool partner_grow(struct partner *p)
 {
     if (p->room - p->n > PIECE) return true;
     size_t room = p->room + p->room / 2 + 4 * PIECE;
@@ -200,7 +200,7 @@ void partner_expect(struct partner *p, double seconds)
 }
 
 /* What was given leaves the memory. */
-static void forget(struct partner *p)
+static void partner_forget(struct partner *p)
 {
     if (p->taken) memmove(p->text, p->text + p->taken, p->n - p->taken);
     p->n -= p->taken, p->taken = 0;
@@ -209,10 +209,10 @@ static void forget(struct partner *p)
 /* Reads what there is; got: bytes, 0 at the end, -1 where there is nothing yet */
 static int read_piece(struct partner *p, ssize_t *got, struct why *why)
 {
-    if (!grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    if (!partner_grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
     do *got = read(p->from, p->text + p->n, PIECE);
     while (*got < 0 && errno == EINTR);
-    if (*got < 0 && errno != EAGAIN) return failed(why, "the program");
+    if (*got < 0 && errno != EAGAIN) return partner_failed(why, "the program");
     if (*got > 0) p->n += (size_t)*got;
     return 0;
 }
@@ -232,7 +232,7 @@ static int read_more(struct partner *p, struct why *why)
 int partner_check_silent(struct partner *p, struct why *why)
 {
     ssize_t got = 0;
-    forget(p);
+    partner_forget(p);
     if (!p->n && read_piece(p, &got, why)) return why->status;
     if (!p->n) return 0;
     return why_set(why, EX_UNAVAILABLE,
@@ -242,7 +242,7 @@ int partner_check_silent(struct partner *p, struct why *why)
 
 int partner_peek(struct partner *p, char **bytes, size_t n, struct why *why)
 {
-    forget(p);
+    partner_forget(p);
     while (p->n < n)
         if (read_more(p, why)) return why->status;
     *bytes = p->text;
@@ -258,7 +258,7 @@ int partner_bytes(struct partner *p, char **bytes, size_t n, struct why *why)
 
 int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct why *why)
 {
-    forget(p);
+    partner_forget(p);
     for (size_t looked = 0;;) {
         char *stop = p->n > looked ? memchr(p->text + looked, '\n', p->n - looked) : NULL;
         if ((stop ? (size_t)(stop - p->text) : p->n) > most)

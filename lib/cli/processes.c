@@ -24,7 +24,7 @@ bool processes_started(void)
 }
 
 /* PATH-mpi of this program's PATH */
-static bool beside(char path[PATH_MAX])
+static bool processes_beside(char path[PATH_MAX])
 {
     static const char end[] = "-mpi";
     ssize_t n = readlink("/proc/self/exe", path, PATH_MAX - sizeof end);
@@ -38,7 +38,7 @@ bool processes_join(void)
     char path[PATH_MAX] = "nsd-step-mpi";
     int ranks = ranks_started();
     if (ranks < 2) return true;
-    if (beside(path)) execv(path, cli_arguments());
+    if (processes_beside(path)) execv(path, cli_arguments());
     const char *reason = errno == ENOENT ? "is missing" : strerror(errno);
     die(EX_UNAVAILABLE,
         "%d processes were started together, and this nsd-step has no MPI: %.300s %s; install it, "

@@ -2,7 +2,7 @@
 
 static const double CROSSING_GRAZE = 1e-2; /* of the sum of radii: how deep a path must go into the other */
 
-static double size_of(const struct fast *b)
+static double crossing_size_of(const struct fast *b)
 {
     return b->shape ? b->thick : b->radius;
 }
@@ -25,7 +25,7 @@ static bool through_ball(const struct counting *o, double radii, vec3 from, vec3
 }
 
 /* Does b go through a, or a through b? */
-static bool cross(const struct counting *o, const struct fast *a, const struct fast *b)
+static bool crossing_cross(const struct counting *o, const struct fast *a, const struct fast *b)
 {
     const struct packing *p = o->p;
     const struct shape *ha = fast_hull(p, a), *hb = fast_hull(p, b);
@@ -34,17 +34,17 @@ static bool cross(const struct counting *o, const struct fast *a, const struct f
     const double thick = a->thick + b->thick;
     const vec3 none = v3(0, 0, 0);
     if (!(v3_dot(way, way) > thick * thick)) return false;
-    if (!ha && !hb) return through_ball(o, size_of(a) + size_of(b), from, way);
+    if (!ha && !hb) return through_ball(o, crossing_size_of(a) + crossing_size_of(b), from, way);
     if (ha && swift_through_hull(ha, p->dim, a->radius, a->q, from, v3_add(from, way))) return true;
     return hb && swift_through_hull(hb, p->dim, b->radius, b->q, v3_sub(none, from),
                                     v3_sub(none, v3_add(from, way)));
 }
 
-static void count(void *arg, const struct fast *a, const struct fast *b)
+static void crossing_count_pair(void *arg, const struct fast *a, const struct fast *b)
 {
     const struct counting *o = arg;
     if (fast_is_fixed_hull(o->p, a) || fast_is_fixed_hull(o->p, b)) return; // in swift_passed()
-    if (cross(o, a, b)) swift_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
+    if (crossing_cross(o, a, b)) swift_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
 }
 
 int crossing_count(struct passed *s, const struct packing *p, const bool *of,
@@ -52,5 +52,5 @@ int crossing_count(struct passed *s, const struct packing *p, const bool *of,
 {
     struct counting o = { p, window, beyond, s };
     if (!(window.length > 0)) return 0;
-    return fast_pairs(p, of, list, window, count, &o, why);
+    return fast_pairs(p, of, list, window, crossing_count_pair, &o, why);
 }

@@ -4,14 +4,14 @@
 #include <stdlib.h>
 
 /* A body's side of a contact that is too deep, its normal pointing into the body */
-struct side {
+struct depth_side {
     int32_t body;
     vec3 n;
 };
 
 static int by_body(const void *x, const void *y)
 {
-    const struct side *a = x, *b = y;
+    const struct depth_side *a = x, *b = y;
     return (a->body > b->body) - (a->body < b->body);
 }
 
@@ -22,7 +22,7 @@ static double radii(const struct packing *p, const struct contact *c)
 }
 
 /* Whether normals among these sides, of one body, point against each other */
-static bool held(const struct side *s, int64_t n)
+static bool held(const struct depth_side *s, int64_t n)
 {
     for (int64_t i = 1; i < n; i++)
         for (int64_t k = 0; k < i; k++)
@@ -30,7 +30,7 @@ static bool held(const struct side *s, int64_t n)
     return false;
 }
 
-static void count_wedged(struct depth *d, const struct packing *p, struct side *s, int64_t n,
+static void count_wedged(struct depth *d, const struct packing *p, struct depth_side *s, int64_t n,
                          const bool *counts)
 {
     qsort(s, (size_t)n, sizeof *s, by_body);
@@ -57,14 +57,14 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
         d->pair[0] = c->a < 0 ? c->a : p->id[c->a], d->pair[1] = p->id[c->b];
     }
     if (deep < 2) return 0;
-    struct side *side = malloc(2 * (size_t)deep * sizeof *side);
+    struct depth_side *side = malloc(2 * (size_t)deep * sizeof *side);
     if (!side) return why_set(why, EX_SOFTWARE, "no memory for overlaps");
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         if (!(c->gap < 0 && radii(p, c) > DEPTH_WEDGED)) continue;
-        if (p->mass[c->b] > 0) side[n++] = (struct side){ c->b, c->n };
-        if (c->a >= 0 && p->mass[c->a] > 0) side[n++] = (struct side){ c->a, v3_scale(-1, c->n) };
+        if (p->mass[c->b] > 0) side[n++] = (struct depth_side){ c->b, c->n };
+        if (c->a >= 0 && p->mass[c->a] > 0) side[n++] = (struct depth_side){ c->a, v3_scale(-1, c->n) };
     }
     count_wedged(d, p, side, n, counts);
     free(side);

@@ -120,7 +120,7 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
 
 /* Body i and a wall of any other shape. A ball is brought to where the shape is described, and what it touches
    back from there. */
-static bool add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
+static bool detect_add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
                      int64_t i)
 {
     const struct packing *p = o->all.p;
@@ -142,7 +142,7 @@ static bool add_body(struct contacts *out, const struct sought *o, const struct 
     return true;
 }
 
-static bool add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+static bool detect_add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
     const struct packing *p = o->all.p;
     const double most = swift_beside(p, o->wall);
@@ -150,7 +150,7 @@ static bool add_shape(struct contacts *out, const struct sought *o, int64_t firs
     for (int64_t i = first; i < end; i++) {
         if (!packing_may_meet(p, -1 - o->wall, (int32_t)i)) continue;
         int64_t before = out->n;
-        if (!add_body(out, o, &pose, i)) return false;
+        if (!detect_add_body(out, o, &pose, i)) return false;
         if (swift_is(p, i, most) && !swift_meets_wall(out, before, &o->all, o->wall, i))
             return false;
     }
@@ -229,7 +229,7 @@ static int check_crowd(struct neighbours *near, const struct packing *p, int64_t
         (long long)most);
 }
 
-static int detect(struct contacts *out, const struct packing *p, const struct positions *at,
+static int detect_all(struct contacts *out, const struct packing *p, const struct positions *at,
                   double gap, struct neighbours *kept, struct why *why)
 {
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
@@ -249,7 +249,7 @@ static int detect(struct contacts *out, const struct packing *p, const struct po
         bool plane = wall->shape == BOUNDARY_PLANE;
         if (!wall_there(wall, at->t)) continue;
         stored = find_all(out, &o, p->n, plane && !shaped ? PER_THREAD_FLAT : PER_THREAD_CURVED,
-                          plane ? add_plane : add_shape);
+                          plane ? add_plane : detect_add_shape);
     }
     if (!e && stored)
         stored = find_all(out, &o, near->list.n, shaped ? PER_THREAD_CURVED : PER_THREAD_FLAT,
@@ -267,11 +267,11 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
 {
     struct positions at = { .x = x, .q = p->q, .t = t };
     cell_predict(&p->cell, t - p->t, at.edge);
-    return detect(out, p, &at, gap, NULL, why);
+    return detect_all(out, p, &at, gap, NULL, why);
 }
 
 /* What decides which pairs that do not touch the law sees */
-struct sight {
+struct detect_sight {
     bool meets;  /* those that approach, too */
     double calm; /* m/s */
     double near; /* m: what loads may close in a step */
@@ -279,9 +279,9 @@ struct sight {
                     something flies off */
 };
 
-static struct sight sight_of(const struct packing *p)
+static struct detect_sight sight_of(const struct packing *p)
 {
-    return (struct sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
+    return (struct detect_sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
                            0.5 * packing_whole(p).small };
 }
 
@@ -290,7 +290,7 @@ static struct sight sight_of(const struct packing *p)
 static double seeing_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
-    const struct sight o = sight_of(p);
+    const struct detect_sight o = sight_of(p);
     double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     double near = fmin(OVERLAP_NEAR * all.large + o.near, o.most);
@@ -305,7 +305,7 @@ double detect_reach(const struct packing *p, double gap)
 
 /* Whether the law sees a pair with a gap above that of a contact. Where it would rebound from afar, the
    impact waits for the bodies to touch. */
-static bool is_seen(const struct packing *p, const struct sight *o, const struct contact *c)
+static bool is_seen(const struct packing *p, const struct detect_sight *o, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
     if (c->gap <= OVERLAP_NEAR * small) return true;
@@ -320,7 +320,7 @@ static void keep_seen(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
     bool sees = overlap_sees_gaps(p->overlap);
-    const struct sight o = sight_of(p);
+    const struct detect_sight o = sight_of(p);
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->law && contact_law_holds(&s->law[i]);
         bool seen = sees && is_seen(p, &o, &s->c[i]);
@@ -358,7 +358,7 @@ static void predict_some(void *arg, int64_t first, int64_t end)
         y->m->q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
 }
 
-static int predict(struct prediction *m, const struct packing *p, struct why *why)
+static int detect_predict(struct prediction *m, const struct packing *p, struct why *why)
 {
     double ahead = step_ahead(p);
     *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x) };
@@ -378,8 +378,8 @@ int detect_near(struct contacts *out, const struct packing *p, double reach,
                 struct neighbours *kept, struct why *why)
 {
     struct prediction m;
-    if (predict(&m, p, why)) return why->status;
-    int e = detect(out, p, &m.at, reach, kept, why);
+    if (detect_predict(&m, p, why)) return why->status;
+    int e = detect_all(out, p, &m.at, reach, kept, why);
     prediction_free(&m);
     return e;
 }
@@ -388,7 +388,7 @@ int detect_near(struct contacts *out, const struct packing *p, double reach,
 static int add_anchored(struct contacts *s, const struct packing *p, struct why *why)
 {
     struct prediction m;
-    if (predict(&m, p, why)) return why->status;
+    if (detect_predict(&m, p, why)) return why->status;
     int e = anchors_place(s, p, &m.at, why);
     prediction_free(&m);
     return e;

@@ -14,7 +14,7 @@ enum {
     MOVED_MOST = 256   /* corners of a body that is met as an image without memory of its own */
 };
 
-static bool add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
+static bool detect_shapes_add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
                 const int8_t shift[3], const struct place *place)
 {
     const struct packing *p = s->p;
@@ -39,7 +39,7 @@ static struct core moved(struct core c, vec3 away, vec3 *room)
 }
 
 /* Do the balls around two bodies, and those of a clump, come near? */
-static bool apart(const struct core *a, const struct core *b, double ra, double rb, double gap)
+static bool detect_shapes_apart(const struct core *a, const struct core *b, double ra, double rb, double gap)
 {
     vec3 d = v3_sub(b->centre, a->centre);
     double most = ra + rb + gap;
@@ -58,13 +58,13 @@ static bool meet_pair(struct contacts *out, const struct placed *s, const struct
             struct core ca = placed_core(s, a, i), cb = placed_core(s, b, j);
             struct place place[PLACES_MOST];
             if (image) cb = moved(cb, away, room);
-            if (apart(&ca, &cb, as > 1 ? ca.round : p->radius[a], bs > 1 ? cb.round : p->radius[b],
+            if (detect_shapes_apart(&ca, &cb, as > 1 ? ca.round : p->radius[a], bs > 1 ? cb.round : p->radius[b],
                       gap))
                 continue;
             int n = meet_cores(p->dim, &ca, &cb, gap, place);
             for (int k = 0; k < n; k++) {
                 if (!whole) place[k].feature = (i * bs + j) * PLACES_MOST + k;
-                if (!add(out, s, a, b, pair->shift, &place[k])) return false;
+                if (!detect_shapes_add(out, s, a, b, pair->shift, &place[k])) return false;
             }
         }
     return true;
@@ -95,7 +95,7 @@ struct facing {
 };
 
 /* Where x (m) is for the boundary as it is described */
-static vec3 described(const struct facing *o, vec3 x)
+static vec3 detect_shapes_described(const struct facing *o, vec3 x)
 {
     return v3_sub(quat_turn_back(o->pose.q, v3_sub(x, o->pose.shift)), o->wall->x);
 }
@@ -108,7 +108,7 @@ static double reach_of(const struct facing *o)
 
 /* Is the place t of the end of a boundary below a corner, to its weld tolerance? The normal of t is then that of
    the face: two walls may end there in one flat surface. */
-static bool over_face(const struct wall *wall, const struct surface *surface, struct touch *t)
+static bool detect_shapes_over_face(const struct wall *wall, const struct surface *surface, struct touch *t)
 {
     vec3 n = wall->n, d = v3_scale(t->distance, t->n);
     double near = 2 * WELD_USUAL * boundary_reach(wall);
@@ -124,28 +124,28 @@ static bool over_face(const struct wall *wall, const struct surface *surface, st
 static const double SAME_PLACE = 1e-3;
 
 /* A corner c (m, from the wall's point of reference) and the middle of its body */
-struct corner {
+struct detect_shapes_corner {
     const struct wall *wall;
     const struct surface *surface;
     int dim;
     vec3 c, middle;
 };
 
-static bool is_between(const struct corner *o, vec3 a, vec3 b)
+static bool is_between(const struct detect_shapes_corner *o, vec3 a, vec3 b)
 {
     return boundary_between(o->wall, o->dim, o->surface, a, b);
 }
 
 /* Has the corner gone through the boundary at t? Its normal then leads to the middle, and it is at a negative
    distance. */
-static void turn_to_middle(const struct corner *o, struct touch *t)
+static void turn_to_middle(const struct detect_shapes_corner *o, struct touch *t)
 {
     if (v3_dot(t->n, v3_sub(o->middle, v3_axpy(o->c, -t->distance, t->n))) >= 0) return;
     t->n = v3_scale(-1, t->n), t->distance *= -1;
 }
 
 /* Is the corner on the side of the middle at t, or has it gone through there? At an end neither may be. */
-static bool is_before(const struct corner *o, const struct touch *t)
+static bool is_before(const struct detect_shapes_corner *o, const struct touch *t)
 {
     vec3 place = v3_axpy(o->c, -t->distance, t->n);
     return v3_dot(t->n, v3_sub(o->middle, place)) >= 0 || is_between(o, o->middle, o->c);
@@ -153,7 +153,7 @@ static bool is_before(const struct corner *o, const struct touch *t)
 
 /* The corner has gone through a surface: where it is nearest. Of its other places those remain that are seen from
    just before there, turned if it has gone through them, too. Returns how many remain. */
-static int turn_touches(const struct corner *o, struct touch *t, int n, double radius)
+static int turn_touches(const struct detect_shapes_corner *o, struct touch *t, int n, double radius)
 {
     int nearest = 0, kept = 0;
     for (int k = 1; k < n; k++)
@@ -182,13 +182,13 @@ static int near_surface(const struct facing *face, vec3 v, double round,
     const struct packing *p = face->s->p;
     const struct wall *wall = face->wall;
     const struct surface *surface = face->surface;
-    vec3 c = described(face, v), middle = described(face, face->s->x[face->i]);
+    vec3 c = detect_shapes_described(face, v), middle = detect_shapes_described(face, face->s->x[face->i]);
     double r = p->radius[face->i];
     int n = surface ? surface_touches(surface, c, round + face->gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
     struct touch found[TOUCHES_MOST];
     struct grooves grooves;
-    const struct corner o = { wall, surface, p->dim, c, middle };
+    const struct detect_shapes_corner o = { wall, surface, p->dim, c, middle };
     const bool through = surface && n > 0 && is_between(&o, middle, c);
     int kept = 0;
     grooves.n = 0;
@@ -196,7 +196,7 @@ static int near_surface(const struct facing *face, vec3 v, double round,
     for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
         struct touch *t = &touch[kept], *f = &found[k];
         bool end = boundary_ends_at(wall, p->dim, surface, c, f);
-        if (round == 0 && end && !(over_face(wall, surface, f) && is_before(&o, f))) continue;
+        if (round == 0 && end && !(detect_shapes_over_face(wall, surface, f) && is_before(&o, f))) continue;
         if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
             if (through) surface_groove(&grooves, surface, p->dim, f, c, middle);
             continue;
@@ -243,7 +243,7 @@ static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w,
         for (int l = 0; l < n; l++) {
             if (cores > 1) place[l].feature = k * PLACES_MOST + l;
             place[l].x = v3_axpy(place[l].x, -0.5 * place[l].gap, place[l].n); // on the surface
-            if (!add(out, s, -1 - w, (int32_t)i, none, &place[l])) return false;
+            if (!detect_shapes_add(out, s, -1 - w, (int32_t)i, none, &place[l])) return false;
         }
     }
     return true;
@@ -282,7 +282,7 @@ static bool leads_away(const struct rim *r, const struct pose *pose, vec3 n)
 }
 
 /* Is one of place[n] where f is? Of other rims, those beyond the first `corners`, with the same normal */
-static bool is_there(const struct place *place, int corners, int n, const struct place *f,
+static bool detect_shapes_is_there(const struct place *place, int corners, int n, const struct place *f,
                      double near)
 {
     for (int k = 0; k < n; k++) {
@@ -294,11 +294,11 @@ static bool is_there(const struct place *place, int corners, int n, const struct
 }
 
 /* Does the surface go on flat beyond the place x of a rim? Its triangles do not share their corners there. */
-static bool goes_on(const struct facing *o, const struct rim *r, vec3 x, double beyond)
+static bool detect_shapes_goes_on(const struct facing *o, const struct rim *r, vec3 x, double beyond)
 {
     const struct surface *surface = o->surface;
     if (!surface) return false;
-    vec3 c = described(o, x);
+    vec3 c = detect_shapes_described(o, x);
     double step = fmax(beyond, 10 * surface->weld);
     for (int k = 0; k < r->sides; k++)
         if (!surface_is_at(surface, v3_axpy(c, -step, r->into[k]), NULL, 2 * surface->weld))
@@ -312,7 +312,7 @@ static int meet_rims(const struct facing *o, const struct core *c, struct place 
     const struct packing *p = o->s->p;
     struct rims rims;
     double near = SAME_PLACE * p->radius[o->i];
-    vec3 at = described(o, c->centre);
+    vec3 at = detect_shapes_described(o, c->centre);
     const int corners = count;
     rims_near(&rims, o->wall, p->dim, o->surface, at, reach_of(o));
     for (int k = 0; k < rims.n; k++) {
@@ -328,8 +328,8 @@ static int meet_rims(const struct facing *o, const struct core *c, struct place 
             struct place *f = &found[l];
             if (!leads_away(r, &o->pose, f->n)) continue;
             f->x = v3_axpy(f->x, -0.5 * f->gap, f->n); // on the rim
-            if (is_there(place, corners, count, f, near)) continue;
-            if (goes_on(o, r, f->x, near)) continue;
+            if (detect_shapes_is_there(place, corners, count, f, near)) continue;
+            if (detect_shapes_goes_on(o, r, f->x, near)) continue;
             int end = p->dim == 2 ? 0 : meet_end(f);
             f->feature = end >= 0 && !cut[end] ? RIM_KEY | RIM_END | r->corner[end]
                                                : RIM_KEY | (r->key % (RIM_END / 4) * 4 + l);
@@ -379,6 +379,6 @@ bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32
     if (cores == 1 && !plane && (c.hull || c.n == 2)) count = meet_rims(&o, &c, place, count);
     if (cores == 1 && plane) count = meet_few(place, count);
     for (int k = 0; k < count; k++)
-        if (!add(out, s, -1 - w, (int32_t)i, none, &place[k])) return false;
+        if (!detect_shapes_add(out, s, -1 - w, (int32_t)i, none, &place[k])) return false;
     return true;
 }

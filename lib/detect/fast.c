@@ -33,7 +33,7 @@ static double least_thickness(const struct packing *p)
 }
 
 /* May any body be fast? Without a branch for each, for mostly none is. */
-static bool may_be(const struct packing *p)
+static bool fast_pairs_may_be(const struct packing *p)
 {
     const double least = least_thickness(p), scale = p->dt * p->dt / (least * least);
     bool any = false;
@@ -45,7 +45,7 @@ static bool may_be(const struct packing *p)
 int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct why *why)
 {
     *list = (struct fast_list){ 0 };
-    if (!may_be(p)) return 0;
+    if (!fast_pairs_may_be(p)) return 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (of && !of[i]) continue;
         if (!is_fast(p, i, p->shape ? swift_thickness(p, i) : p->radius[i])) continue;
@@ -71,43 +71,43 @@ const struct shape *fast_hull(const struct packing *p, const struct fast *b)
 }
 
 /* What a path of a body covers */
-struct box {
+struct fast_pairs_box {
     vec3 lo, hi; /* m */
 };
 
-static struct box box_of(const struct fast *b, struct window window)
+static struct fast_pairs_box fast_pairs_box_of(const struct fast *b, struct window window)
 {
     const vec3 from = fast_from(window, b), to = v3_axpy(from, window.length, b->v);
     const vec3 r = v3(b->radius, b->radius, b->radius);
-    return (struct box){ v3_sub(v3_min(from, to), r), v3_add(v3_max(from, to), r) };
+    return (struct fast_pairs_box){ v3_sub(v3_min(from, to), r), v3_add(v3_max(from, to), r) };
 }
 
-static bool apart(const struct box *a, const struct box *b)
+static bool fast_pairs_apart(const struct fast_pairs_box *a, const struct fast_pairs_box *b)
 {
     return a->hi.x < b->lo.x || b->hi.x < a->lo.x || a->hi.y < b->lo.y || b->hi.y < a->lo.y ||
            a->hi.z < b->lo.z || b->hi.z < a->lo.z;
 }
 
 /* Of all of them */
-static struct box box_of_all(const struct packing *p, const bool *of, struct window window)
+static struct fast_pairs_box box_of_all(const struct packing *p, const bool *of, struct window window)
 {
-    struct box all = { v3(INFINITY, INFINITY, INFINITY), v3(-INFINITY, -INFINITY, -INFINITY) };
+    struct fast_pairs_box all = { v3(INFINITY, INFINITY, INFINITY), v3(-INFINITY, -INFINITY, -INFINITY) };
     for (int64_t i = 0; i < p->n; i++) {
         if (of && !of[i]) continue;
         const struct fast b = { .radius = p->radius[i], .x = p->x[i], .v = p->v[i] };
-        const struct box box = box_of(&b, window);
+        const struct fast_pairs_box box = fast_pairs_box_of(&b, window);
         all.lo = v3_min(all.lo, box.lo), all.hi = v3_max(all.hi, box.hi);
     }
     return all;
 }
 
-static double along(int axis, vec3 x)
+static double fast_pairs_along(int axis, vec3 x)
 {
     return axis == 0 ? x.x : axis == 1 ? x.y : x.z;
 }
 
 /* The one along which it is longest: sorted along it, the fewest paths are side by side. */
-static int longest_axis(const struct box *b)
+static int longest_axis(const struct fast_pairs_box *b)
 {
     const vec3 d = v3_sub(b->hi, b->lo);
     return d.x >= d.y && d.x >= d.z ? 0 : d.y >= d.z ? 1 : 2;
@@ -117,12 +117,12 @@ static int longest_axis(const struct box *b)
 struct placed_path {
     const struct fast *of;
     vec3 x, v;
-    struct box box;
+    struct fast_pairs_box box;
     double lo,
         most; /* m: of the box, along the sweep's axis; no path that begins before it reaches farther */
 };
 
-static int by_place(const void *a, const void *b)
+static int fast_pairs_by_place(const void *a, const void *b)
 {
     const struct placed_path *x = a, *y = b;
     if (x->lo != y->lo) return x->lo < y->lo ? -1 : 1;
@@ -130,7 +130,7 @@ static int by_place(const void *a, const void *b)
 }
 
 /* With the images in the cells around that come into the box, sorted along an axis; NULL: no memory */
-static struct placed_path *with_images(const struct packing *p, const struct box *here, int axis,
+static struct placed_path *with_images(const struct packing *p, const struct fast_pairs_box *here, int axis,
                                        struct window window, const struct fast_list *list,
                                        int64_t *n)
 {
@@ -147,15 +147,15 @@ static struct placed_path *with_images(const struct packing *p, const struct box
                     struct fast image = list->of[i];
                     image.x = v3_add(image.x, cell_shift(p->cell.edge, shift));
                     image.v = v3_add(image.v, cell_shift(p->cell.rate, shift));
-                    const struct box box = box_of(&image, window);
-                    if (apart(&box, here)) continue;
+                    const struct fast_pairs_box box = fast_pairs_box_of(&image, window);
+                    if (fast_pairs_apart(&box, here)) continue;
                     all[(*n)++] = (struct placed_path){
-                        &list->of[i],       image.x, image.v, box, along(axis, box.lo),
-                        along(axis, box.hi)
+                        &list->of[i],       image.x, image.v, box, fast_pairs_along(axis, box.lo),
+                        fast_pairs_along(axis, box.hi)
                     };
                 }
     if (!all) return NULL;
-    qsort(all, (size_t)*n, sizeof *all, by_place);
+    qsort(all, (size_t)*n, sizeof *all, fast_pairs_by_place);
     for (int64_t k = 1; k < *n; k++) all[k].most = dmax(all[k - 1].most, all[k].most);
     return all;
 }
@@ -184,18 +184,18 @@ int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *
 {
     int64_t images;
     if (!list->n) return 0;
-    const struct box here = box_of_all(p, of, window);
+    const struct fast_pairs_box here = box_of_all(p, of, window);
     const int axis = longest_axis(&here);
     struct placed_path *all = with_images(p, &here, axis, window, list, &images);
     if (!all) return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
     for (int64_t i = 0; i < p->n && images; i++) {
         if (of && !of[i]) continue;
         const struct fast b = body_of(p, i);
-        const struct box box = box_of(&b, window);
-        for (int64_t k = first_beyond(all, images, along(axis, box.lo));
-             k < images && all[k].lo <= along(axis, box.hi); k++) {
+        const struct fast_pairs_box box = fast_pairs_box_of(&b, window);
+        for (int64_t k = first_beyond(all, images, fast_pairs_along(axis, box.lo));
+             k < images && all[k].lo <= fast_pairs_along(axis, box.hi); k++) {
             const struct placed_path *path = &all[k];
-            if (apart(&path->box, &box) || path->of->id == b.id ||
+            if (fast_pairs_apart(&path->box, &box) || path->of->id == b.id ||
                 (b.fast && path->of->id < b.id) || (path->of->mass == 0 && b.mass == 0) ||
                 p->inert[path->of->kind * p->kinds + b.kind] != 0)
                 continue;

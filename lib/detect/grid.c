@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-static int level_of(double r, double rmax)
+static int grid_level_of(double r, double rmax)
 {
     int level = ilogb(rmax / r);
     return level < LEVELS ? level : LEVELS - 1;
@@ -54,7 +54,7 @@ bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at,
     double rmax = 0, top[LEVELS] = { 0 };
     for (int64_t i = 0; i < p->n; i++) rmax = dmax(rmax, p->radius[i]);
     for (int64_t i = 0; i < p->n; i++) {
-        int l = level_of(p->radius[i], rmax);
+        int l = grid_level_of(p->radius[i], rmax);
         g[l].n++;
         top[l] = dmax(top[l], p->radius[i]);
     }
@@ -67,7 +67,7 @@ bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at,
         g[l].n = 0;
     }
     for (int64_t i = 0; i < p->n; i++) {
-        int l = level_of(p->radius[i], rmax);
+        int l = grid_level_of(p->radius[i], rmax);
         struct grid_entry *e = &g[l].entry[g[l].n++];
         *e = (struct grid_entry){ at[i], p->radius[i], { 0 }, (int32_t)i };
         const double x[3] = { e->x.x, e->x.y, e->x.z };

@@ -80,14 +80,14 @@ struct corners {
     vec3 *a, *b, *moved; /* [of the shape that has most] m */
 };
 
-static int32_t cores_of(const struct packing *p, const struct fast *b)
+static int32_t time_of_impact_cores_of(const struct packing *p, const struct fast *b)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
     return s && s->form == SHAPE_CLUMP ? s->vertices : 1;
 }
 
 /* The body's vertices in space, with its centre at x */
-static void place(const struct packing *p, const struct fast *b, vec3 x, vec3 *v)
+static void time_of_impact_place(const struct packing *p, const struct fast *b, vec3 x, vec3 *v)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
     if (!s) v[0] = x;
@@ -97,7 +97,7 @@ static void place(const struct packing *p, const struct fast *b, vec3 x, vec3 *v
     }
 }
 
-static struct core core_of(const struct packing *p, const struct fast *b, vec3 x, const vec3 *v,
+static struct core time_of_impact_core_of(const struct packing *p, const struct fast *b, vec3 x, const vec3 *v,
                            int32_t k)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
@@ -113,11 +113,11 @@ static double meet_shapes(const struct packing *p, const struct corners *room, c
 {
     const vec3 none = v3(0, 0, 0), d = v3_sub(b->x, a->x);
     double first = INFINITY;
-    place(p, a, none, room->a), place(p, b, d, room->b);
-    for (int32_t k = 0; k < cores_of(p, a); k++)
-        for (int32_t l = 0; l < cores_of(p, b); l++) {
-            const struct core ca = core_of(p, a, none, room->a, k),
-                              cb = core_of(p, b, d, room->b, l);
+    time_of_impact_place(p, a, none, room->a), time_of_impact_place(p, b, d, room->b);
+    for (int32_t k = 0; k < time_of_impact_cores_of(p, a); k++)
+        for (int32_t l = 0; l < time_of_impact_cores_of(p, b); l++) {
+            const struct core ca = time_of_impact_core_of(p, a, none, room->a, k),
+                              cb = time_of_impact_core_of(p, b, d, room->b, l);
             const bool points = ca.n == 1 && cb.n == 1;
             first =
                 dmin(first, points ? meet_balls(o, v3_sub(cb.v[0], ca.v[0]), ca.round + cb.round)
@@ -135,7 +135,7 @@ static bool come_near(const struct path *o, vec3 d, double radii)
 
 /* ---- all ---- */
 
-struct meeting {
+struct time_of_impact_meeting {
     const struct packing *p;
     double rest, part; /* s */
     double least;      /* s: for which the substeps suffice */
@@ -152,9 +152,9 @@ static double part_of(const struct packing *p, const struct path *o, double t)
     return ahead > 0 ? dmin(dmax(t / ahead, 0.5 * calm), 3 * calm) : calm;
 }
 
-static void look(void *arg, const struct fast *a, const struct fast *b)
+static void time_of_impact_look(void *arg, const struct fast *a, const struct fast *b)
 {
-    struct meeting *s = arg;
+    struct time_of_impact_meeting *s = arg;
     const struct packing *p = s->p;
     struct path o = { .w = v3_sub(b->v, a->v), .thin = dmin(a->thick, b->thick), .rest = s->rest };
     const vec3 d = v3_sub(b->x, a->x);
@@ -209,7 +209,7 @@ static double horizon_of(const struct fast_list *list)
 int meeting_part(double *part, const struct packing *p, const bool *of,
                  const struct fast_list *list, double rest, int64_t left, struct why *why)
 {
-    struct meeting s = { .p = p, .least = rest / (QUARTER * (double)left) };
+    struct time_of_impact_meeting s = { .p = p, .least = rest / (QUARTER * (double)left) };
     s.sought = (1 - p->theta) * rest;
     *part = rest;
     if (!list->n) return 0;
@@ -220,7 +220,7 @@ int meeting_part(double *part, const struct packing *p, const bool *of,
     // paths are looked at as far as it takes: a meeting after the time t leaves a substep of more than t/2
     for (double time = horizon; good && !ends; time *= 4) {
         s.rest = s.part = dmin(time, most);
-        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, look, &s, why);
+        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, time_of_impact_look, &s, why);
         ends = s.part <= 0.5 * s.rest || s.rest >= most;
     }
     free(s.room.a), free(s.room.b), free(s.room.moved);

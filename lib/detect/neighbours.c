@@ -153,7 +153,7 @@ static double fastest_of_all(const struct packing *p)
 }
 
 /* The same, where the cell repeats beyond the flow that its edges make */
-static double fastest(const struct packing *p)
+static double neighbours_fastest(const struct packing *p)
 {
     double v2 = 0;
     if (!cell_repeats(&p->cell)) return fastest_of_all(p);
@@ -176,7 +176,7 @@ static double spare_reach(const struct packing *p)
     double r = 0;
     for (int64_t i = 0; i < p->n; i++) r += p->radius[i];
     r /= (double)(p->n ? p->n : 1);
-    double way = fastest(p);
+    double way = neighbours_fastest(p);
     for (int k = 0; cell_repeats(&p->cell) && k < 3; k++) // what the edges' motion takes from it
         way += v3_norm(p->cell.rate[k]) / v3_norm(p->cell.edge[k]) * largest_radius(p);
     double step = 2 * p->dt * way, s = fmax(KEEP_STEPS * step, MIN_SPARE * r);

@@ -17,27 +17,27 @@ static const double ALONG = 1e-6; /* 1 - cosine: of normals that are one */
 static const double RISES = 0.5;  /* sine of 30 degrees */
 
 /* All contacts of every body: of[first[i]] .. of[first[i+1]-1] */
-struct lists {
+struct internal_edge_lists {
     int64_t *first, *of;
 };
 
 /* A contact as body s has it, where s is in its place: the other is a wall (< 0), or a body moved by `away` */
-struct side {
+struct internal_edge_side {
     int32_t s, other;
     vec3 away, n, x; /* m; the normal towards s; the place on the other */
 };
 
-static struct side side_of(const struct situation *o, const struct contact *c, int32_t s)
+static struct internal_edge_side side_of(const struct situation *o, const struct contact *c, int32_t s)
 {
     vec3 shift = o->edge ? cell_shift(o->edge, c->shift) : v3(0, 0, 0);
-    struct side f = { s, c->b, shift, v3_scale(-1, c->n), c->x };
-    if (s == c->b) f = (struct side){ s, c->a, v3_scale(-1, shift), c->n, v3_sub(c->x, shift) };
+    struct internal_edge_side f = { s, c->b, shift, v3_scale(-1, c->n), c->x };
+    if (s == c->b) f = (struct internal_edge_side){ s, c->a, v3_scale(-1, shift), c->n, v3_sub(c->x, shift) };
     if (f.other >= 0) f.x = v3_axpy(f.x, -0.5 * c->gap, f.n);
     return f;
 }
 
 /* Is it a body that moves by contacts? */
-static bool moves(const struct situation *o, int32_t who)
+static bool internal_edge_moves(const struct situation *o, int32_t who)
 {
     return who >= 0 && o->p->mass[who] > 0;
 }
@@ -53,13 +53,13 @@ static double weld_of(const struct situation *o, int32_t who)
 }
 
 /* Core k of body i, which may be a ball among balls */
-static struct core core_of(const struct situation *o, int32_t i, int32_t k)
+static struct core internal_edge_core_of(const struct situation *o, int32_t i, int32_t k)
 {
     if (o->shaped) return placed_core(o->shaped, i, k);
     return (struct core){ .n = 1, .v = &o->x[i], .round = o->p->radius[i], .centre = o->x[i] };
 }
 
-static int32_t cores_of(const struct situation *o, int32_t i)
+static int32_t internal_edge_cores_of(const struct situation *o, int32_t i)
 {
     return o->shaped ? placed_cores(o->shaped, i) : 1;
 }
@@ -68,8 +68,8 @@ static int32_t cores_of(const struct situation *o, int32_t i)
 static double bottom_of(const struct situation *o, int32_t s, vec3 m)
 {
     double least = INFINITY;
-    for (int32_t k = 0; k < cores_of(o, s); k++) {
-        const struct core c = core_of(o, s, k);
+    for (int32_t k = 0; k < internal_edge_cores_of(o, s); k++) {
+        const struct core c = internal_edge_core_of(o, s, k);
         least = dmin(least, core_bottom(&c, m) - c.round);
     }
     return least;
@@ -91,13 +91,13 @@ static bool leads_up(vec3 from, vec3 to, const struct height *h)
 }
 
 /* Of a body, at the place of f: towards d, which lies above the level. */
-static bool body_rises(const struct situation *o, const struct side *f, vec3 d,
+static bool body_rises(const struct situation *o, const struct internal_edge_side *f, vec3 d,
                        const struct height *h)
 {
     vec3 x = v3_sub(d, f->away);
     const struct core point = { .n = 1, .v = &x, .centre = x };
-    for (int32_t k = 0; k < cores_of(o, f->other); k++) {
-        const struct core c = core_of(o, f->other, k);
+    for (int32_t k = 0; k < internal_edge_cores_of(o, f->other); k++) {
+        const struct core c = internal_edge_core_of(o, f->other, k);
         const struct nearest near = gjk_nearest(&c, &point);
         vec3 to = d;
         if (near.distance > c.round)
@@ -108,14 +108,14 @@ static bool body_rises(const struct situation *o, const struct side *f, vec3 d,
 }
 
 /* A place of a mesh, as it is described */
-struct spot {
+struct internal_edge_spot {
     vec3 c, n;          /* m; the normal of the contact there */
     vec3 d;             /* m: the place above c that lies above the level */
     double near, depth; /* m: tolerance; how far c lies below the level */
 };
 
 /* Of a mesh: an element at the spot across n or, where there is none, all elements there. */
-static bool mesh_rises(const struct surface *s, const struct spot *x, const struct height *h)
+static bool mesh_rises(const struct surface *s, const struct internal_edge_spot *x, const struct height *h)
 {
     const double near = x->near, depth = x->depth;
     struct surface_walk walk;
@@ -145,13 +145,13 @@ static bool nearest_place(const struct situation *o, const struct wall *w, vec3 
 }
 
 /* Where x is for wall w as it is described */
-static vec3 described(const struct wall *w, const struct pose *pose, vec3 x)
+static vec3 internal_edge_described(const struct wall *w, const struct pose *pose, vec3 x)
 {
     return v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), w->x);
 }
 
 /* Does what s meets rise there above the height `level` (m) along m? */
-static bool rises(const struct situation *o, const struct side *f, vec3 m, double level,
+static bool rises(const struct situation *o, const struct internal_edge_side *f, vec3 m, double level,
                   double near)
 {
     double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
@@ -159,10 +159,10 @@ static bool rises(const struct situation *o, const struct side *f, vec3 m, doubl
     if (f->other >= 0) return body_rises(o, f, v3_axpy(f->x, depth + ahead, m), &here);
     const struct wall *w = &o->p->wall[-1 - f->other];
     struct pose pose = wall_pose(o->p, w, o->t);
-    vec3 c = described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
+    vec3 c = internal_edge_described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
     vec3 d = v3_axpy(c, depth + ahead, n);
     const struct height above = { n, v3_dot(n, c) + depth + 3 * near };
-    const struct spot spot = { c, quat_turn_back(pose.q, f->n), d, near, dmax(depth, 0) };
+    const struct internal_edge_spot spot = { c, quat_turn_back(pose.q, f->n), d, near, dmax(depth, 0) };
     if (w->shape == BOUNDARY_MESH) return mesh_rises(&o->surface[-1 - f->other], &spot, &above);
     return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, &above);
 }
@@ -172,7 +172,7 @@ static bool wall_is_at(const struct situation *o, int32_t w, vec3 x, vec3 n, dou
 {
     const struct wall *wall = &o->p->wall[w];
     struct pose pose = wall_pose(o->p, wall, o->t);
-    vec3 c = described(wall, &pose, x), at;
+    vec3 c = internal_edge_described(wall, &pose, x), at;
     n = quat_turn_back(pose.q, n);
     if (wall->shape == BOUNDARY_MESH) return surface_is_at(&o->surface[w], c, &n, near);
     bool flat = wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_RECTANGLE ||
@@ -184,14 +184,14 @@ static bool wall_is_at(const struct situation *o, int32_t w, vec3 x, vec3 n, dou
 /* ---- one contact ---- */
 
 /* A contact and the others of the same two bodies: first .. end-1 */
-struct meeting {
+struct internal_edge_meeting {
     const struct situation *o;
     const struct contacts *all;
     int64_t i, first, end;
 };
 
 /* No place of the meeting, of body s and with the normal of contact i, is above `level` along m. */
-static bool is_below(const struct meeting *w, const struct side *f, vec3 m, double level)
+static bool is_below(const struct internal_edge_meeting *w, const struct internal_edge_side *f, vec3 m, double level)
 {
     const struct contact *c = &w->all->c[w->i];
     for (int64_t k = w->first; k < w->end; k++) {
@@ -205,7 +205,7 @@ static bool is_below(const struct meeting *w, const struct side *f, vec3 m, doub
 }
 
 /* Would ranks that have B or s have E, too? Two bodies must be near each other for that. */
-static bool are_near(const struct situation *o, const struct side *f, const struct side *e)
+static bool are_near(const struct situation *o, const struct internal_edge_side *f, const struct internal_edge_side *e)
 {
     if (f->other < 0 || e->other < 0) return true;
     vec3 d = v3_sub(v3_add(o->x[f->other], f->away), v3_add(o->x[e->other], e->away));
@@ -214,8 +214,8 @@ static bool are_near(const struct situation *o, const struct side *f, const stru
 
 /* Contacts c and e of body s with two walls have one normal: is c with a rim where the other wall goes on flat, or
    where e is, which comes first? */
-static bool goes_without(const struct meeting *w, const struct side *f, const struct contact *e,
-                         const struct side *g, double near)
+static bool goes_without(const struct internal_edge_meeting *w, const struct internal_edge_side *f, const struct contact *e,
+                         const struct internal_edge_side *g, double near)
 {
     const struct contact *c = &w->all->c[w->i];
     double height = v3_dot(g->n, v3_sub(f->x, g->x));
@@ -227,11 +227,11 @@ static bool goes_without(const struct meeting *w, const struct side *f, const st
 }
 
 /* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
-static bool passes_above(const struct meeting *w, const struct side *f, const struct contact *e)
+static bool passes_above(const struct internal_edge_meeting *w, const struct internal_edge_side *f, const struct contact *e)
 {
     const struct situation *o = w->o;
-    const struct side g = side_of(o, e, f->s);
-    if (moves(o, f->other) || moves(o, g.other)) return false; // they are parts of no surface
+    const struct internal_edge_side g = side_of(o, e, f->s);
+    if (internal_edge_moves(o, f->other) || internal_edge_moves(o, g.other)) return false; // they are parts of no surface
     bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
     bool walls = f->other < 0 && g.other < 0 && f->other != g.other;
     if ((parallel && !walls) || !are_near(o, f, &g)) return false;
@@ -244,10 +244,10 @@ static bool passes_above(const struct meeting *w, const struct side *f, const st
 }
 
 /* Is contact i of body s at a seam? */
-static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
+static bool at_seam(const struct internal_edge_meeting *w, const struct internal_edge_lists *l, int32_t s)
 {
-    const struct side f = side_of(w->o, &w->all->c[w->i], s);
-    if (!moves(w->o, s)) return false;
+    const struct internal_edge_side f = side_of(w->o, &w->all->c[w->i], s);
+    if (!internal_edge_moves(w->o, s)) return false;
     for (int64_t k = l->first[s]; k < l->first[s + 1]; k++)
         if (passes_above(w, &f, &w->all->c[l->of[k]])) return true;
     return false;
@@ -256,10 +256,10 @@ static bool at_seam(const struct meeting *w, const struct lists *l, int32_t s)
 /* ---- all contacts ---- */
 
 /* Can it be one with the rim of a wall, or of a body? */
-static bool may_be(const struct situation *o, const struct contact *c)
+static bool internal_edge_may_be(const struct situation *o, const struct contact *c)
 {
     if (swift_ahead(c)) return false;
-    if (c->a >= 0) return !moves(o, c->a) || !moves(o, c->b);
+    if (c->a >= 0) return !internal_edge_moves(o, c->a) || !internal_edge_moves(o, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];
     if (packing_shape(o->p, c->b)) return wall->shape != BOUNDARY_PLANE;
@@ -270,7 +270,7 @@ static bool may_be(const struct situation *o, const struct contact *c)
     return boundary_ends_at(wall, o->p->dim, &o->surface[w], v3(0, 0, 0), &t);
 }
 
-static bool lists_init(struct lists *l, const struct contacts *s, int64_t bodies)
+static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct contacts *s, int64_t bodies)
 {
     l->first = calloc((size_t)bodies + 2, sizeof *l->first);
     l->of = malloc((2 * (size_t)s->n + 1) * sizeof *l->of);
@@ -287,11 +287,11 @@ static bool lists_init(struct lists *l, const struct contacts *s, int64_t bodies
     return true;
 }
 
-static bool is_dropped(const struct situation *o, const struct contacts *all, const struct lists *l,
+static bool is_dropped(const struct situation *o, const struct contacts *all, const struct internal_edge_lists *l,
                        int64_t i)
 {
     const struct contact *c = &all->c[i];
-    struct meeting w = { o, all, i, i, i + 1 };
+    struct internal_edge_meeting w = { o, all, i, i, i + 1 };
     while (w.first > 0 && all->c[w.first - 1].a == c->a && all->c[w.first - 1].b == c->b) w.first--;
     while (w.end < all->n && all->c[w.end].a == c->a && all->c[w.end].b == c->b) w.end++;
     return at_seam(&w, l, c->b) || (c->a >= 0 && at_seam(&w, l, c->a));
@@ -299,14 +299,14 @@ static bool is_dropped(const struct situation *o, const struct contacts *all, co
 
 int seams_drop(struct contacts *s, const struct situation *o, struct why *why)
 {
-    struct lists lists = { 0 };
+    struct internal_edge_lists lists = { 0 };
     bool *drop = NULL, good = true;
     int64_t n = 0;
     for (int64_t i = 0; good && i < s->n; i++) {
         if (s->c[i].a >= 0 && !o->shaped) break; // walls come first
-        if (!may_be(o, &s->c[i])) continue;
+        if (!internal_edge_may_be(o, &s->c[i])) continue;
         if (!drop)
-            good = (drop = calloc((size_t)s->n, sizeof *drop)) && lists_init(&lists, s, o->p->n);
+            good = (drop = calloc((size_t)s->n, sizeof *drop)) && internal_edge_lists_init(&lists, s, o->p->n);
         if (good) drop[i] = is_dropped(o, s, &lists, i);
     }
     for (int64_t i = 0; good && drop && i < s->n; i++)

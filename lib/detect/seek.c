@@ -66,7 +66,7 @@ struct line {
 
 /* Lists those of entries first .. end-1 that are in the line. Returns false, as all that look do, when memory is
    short. */
-static bool look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
+static bool seek_look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
                     struct line l)
 {
     for (const struct grid_entry *f = g->entry + first; f < g->entry + end; f++) {
@@ -84,8 +84,8 @@ static bool look_at(const struct seeker *s, const struct grid *g, int64_t first,
 static bool look_along(const struct seeker *s, const struct grid *g, struct line l)
 {
     uint64_t b0 = grid_bucket(g, l.i0, l.j, l.k), b1 = grid_bucket(g, l.i1, l.j, l.k);
-    if (b0 <= b1) return look_at(s, g, g->first[b0], g->first[b1 + 1], l);
-    return look_at(s, g, g->first[b0], g->n, l) && look_at(s, g, 0, g->first[b1 + 1], l);
+    if (b0 <= b1) return seek_look_at(s, g, g->first[b0], g->first[b1 + 1], l);
+    return seek_look_at(s, g, g->first[b0], g->n, l) && seek_look_at(s, g, 0, g->first[b1 + 1], l);
 }
 
 /* Bodies near entry m of g in g itself: half of the cells around, so that a pair is found once. */
@@ -93,7 +93,7 @@ static bool look_here(const struct seeker *s, const struct grid *g, int64_t m)
 {
     int64_t i = s->e->cell[0], j = s->e->cell[1], k = s->e->cell[2];
     int64_t end = g->first[grid_bucket(g, i, j, k) + 1];
-    if (!look_at(s, g, m + 1, end, (struct line){ i, i, j, k }) ||
+    if (!seek_look_at(s, g, m + 1, end, (struct line){ i, i, j, k }) ||
         !look_along(s, g, (struct line){ i + 1, i + 1, j, k }) ||
         !look_along(s, g, (struct line){ i - 1, i + 1, j + 1, k }))
         return false;
@@ -117,26 +117,26 @@ static bool look_around(const struct seeker *s, const struct grid *g)
 /* ---- images ---- */
 
 /* The cell as the search sees it: how many edges from the origin the bodies are, u = inverse . x */
-struct lattice {
+struct seek_lattice {
     const vec3 *edge;    /* [3] m */
     const bool *repeats; /* [3] */
     vec3 inverse[3];     /* 1/m */
     double lo[3], hi[3]; /* of u over all bodies */
 };
 
-static double edges_along(const struct lattice *c, int k, vec3 x)
+static double seek_edges_along(const struct seek_lattice *c, int k, vec3 x)
 {
     return v3_dot(c->inverse[k], x);
 }
 
-static struct lattice lattice_of(const struct packing *p, const vec3 *x, const vec3 edge[3])
+static struct seek_lattice seek_lattice_of(const struct packing *p, const vec3 *x, const vec3 edge[3])
 {
-    struct lattice c = { .edge = edge, .repeats = p->cell.repeats };
+    struct seek_lattice c = { .edge = edge, .repeats = p->cell.repeats };
     cell_inverse(edge, c.inverse);
     for (int k = 0; k < 3; k++) c.lo[k] = INFINITY, c.hi[k] = -INFINITY;
     for (int64_t i = 0; i < p->n; i++)
         for (int k = 0; k < 3; k++) {
-            double u = edges_along(&c, k, x[i]);
+            double u = seek_edges_along(&c, k, x[i]);
             c.lo[k] = dmin(c.lo[k], u), c.hi[k] = dmax(c.hi[k], u);
         }
     return c;
@@ -144,7 +144,7 @@ static struct lattice lattice_of(const struct packing *p, const vec3 *x, const v
 
 /* Bodies that are not brought back into the cell have so many images near them that the search would
    not end. */
-static bool is_wrapped(const struct lattice *c)
+static bool is_wrapped(const struct seek_lattice *c)
 {
     for (int k = 0; k < 3; k++)
         if (c->repeats[k] && !(c->hi[k] - c->lo[k] <= 3)) return false;
@@ -164,11 +164,11 @@ static bool is_later(const int shift[3])
  * the one finds the other where the image by shift of the other finds the one: one of them looks.
  */
 static bool look_from_images(struct seeker s, const struct grid *g, bool own,
-                             const struct lattice *c)
+                             const struct seek_lattice *c)
 {
     int lo[3], hi[3], n[3];
     for (int k = 0; k < 3; k++) {
-        double u = edges_along(c, k, s.e->x), reach = g->h * v3_norm(c->inverse[k]);
+        double u = seek_edges_along(c, k, s.e->x), reach = g->h * v3_norm(c->inverse[k]);
         lo[k] = c->repeats[k] ? (int)fmax(ceil(c->lo[k] - reach - u), -INT8_MAX) : 0;
         hi[k] = c->repeats[k] ? (int)fmin(floor(c->hi[k] + reach - u), INT8_MAX) : 0;
     }
@@ -224,7 +224,7 @@ static bool pairs_sort(struct pairs *s)
 struct search {
     const struct packing *p;
     const struct grid *g;    /* [level + 1] */
-    const struct lattice *c; /* NULL: nothing repeats */
+    const struct seek_lattice *c; /* NULL: nothing repeats */
     int level;
     pthread_mutex_t lock; /* of what follows */
     struct pairs *out;
@@ -278,7 +278,7 @@ static void search_some(void *arg, int64_t first, int64_t end)
 
 /* c: NULL, nothing repeats */
 static bool make_list(struct pairs *s, const struct packing *p, const vec3 *x,
-                      const struct lattice *c)
+                      const struct seek_lattice *c)
 {
     struct grid g[LEVELS];
     memset(g, 0, sizeof g);
@@ -297,8 +297,8 @@ int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const ve
                struct why *why)
 {
     bool images = cell_repeats(&p->cell);
-    struct lattice c = { 0 };
-    if (images) c = lattice_of(p, x, edge);
+    struct seek_lattice c = { 0 };
+    if (images) c = seek_lattice_of(p, x, edge);
     if (images && !is_wrapped(&c))
         return why_set(
             why, EX_DATAERR,

@@ -33,28 +33,28 @@ bool swift_is(const struct packing *p, int64_t i, double most)
 }
 
 /* m/s: how fast what it meets may be, and what gravity adds */
-static double most_of(const struct packing *p, double speed)
+static double tunnelling_most_of(const struct packing *p, double speed)
 {
     return speed + packing_most_fall(p);
 }
 
 double swift_beside(const struct packing *p, int32_t w)
 {
-    return most_of(p, wall_top_speed(p, &p->wall[w]));
+    return tunnelling_most_of(p, wall_top_speed(p, &p->wall[w]));
 }
 
 /* ---- a way ---- */
 
 /* What body i goes through in a step relative to what has velocity v: n places of it are looked at, each a step on. */
-struct way {
+struct tunnelling_way {
     int64_t i, n;
     vec3 step; /* m */
     double thick;
 };
 
-static struct way way_of(const struct packing *p, int64_t i, vec3 v)
+static struct tunnelling_way tunnelling_way_of(const struct packing *p, int64_t i, vec3 v)
 {
-    struct way y = { .i = i };
+    struct tunnelling_way y = { .i = i };
     if (p->mass[i] == 0) return y;
     vec3 d = v3_scale(p->dt, v3_sub(v3_add(p->v[i], packing_fall(p, i)), v));
     double length = v3_norm(d);
@@ -69,7 +69,7 @@ static struct way way_of(const struct packing *p, int64_t i, vec3 v)
 
 /* A way towards something, with which the body has contacts where contacts are sought */
 struct approach {
-    const struct way *y;
+    const struct tunnelling_way *y;
     double sign;          /* of normals, for them to point to the body */
     struct contacts *out; /* to which new ones are added */
     int64_t first, end;   /* those that there are */
@@ -78,7 +78,7 @@ struct approach {
 /* Is c, found at place k of the way, one to add? Its gap is then the one that it has now. */
 static bool comes(const struct approach *o, int64_t k, struct contact *c)
 {
-    const struct way *y = o->y;
+    const struct tunnelling_way *y = o->y;
     double closing = -o->sign * v3_dot(c->n, y->step);
     if (!(closing * (double)(y->n + 1) > CLOSING * y->thick)) return false;
     for (int64_t l = o->first; l < o->end; l++)
@@ -112,7 +112,7 @@ static int64_t add_coming(const struct approach *o, int64_t k, const struct cont
 /* ---- boundaries ---- */
 
 /* A way beside a wall, as the wall is described */
-struct beside {
+struct tunnelling_beside {
     const struct situation *o;
     struct approach to;
     int32_t w;
@@ -122,7 +122,7 @@ struct beside {
 };
 
 /* Is the wall within `reach` of c? */
-static bool is_near(const struct beside *s, vec3 c, double reach)
+static bool tunnelling_is_near(const struct tunnelling_beside *s, vec3 c, double reach)
 {
     const struct packing *p = s->o->p;
     const struct surface *surface = situation_surface(s->o, s->w);
@@ -137,7 +137,7 @@ static bool is_near(const struct beside *s, vec3 c, double reach)
 }
 
 /* A ball's contacts at place k, relative to where it is */
-static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k)
+static bool touch_ball(struct contacts *found, const struct tunnelling_beside *s, int64_t k)
 {
     const struct packing *p = s->o->p;
     const struct surface *surface = situation_surface(s->o, s->w);
@@ -167,7 +167,7 @@ static bool touch_ball(struct contacts *found, const struct beside *s, int64_t k
 }
 
 /* Looks at place k; returns whether the search ends there. */
-static bool look_at(struct beside *s, int64_t k)
+static bool tunnelling_look_at(struct tunnelling_beside *s, int64_t k)
 {
     const struct situation *o = s->o;
     struct contacts found = { 0 };
@@ -182,13 +182,13 @@ static bool look_at(struct beside *s, int64_t k)
 }
 
 /* The first of places lo .. hi-1 that ends the search; parts of the way far from the wall are passed over. */
-static bool look(struct beside *s, int64_t lo, int64_t hi)
+static bool tunnelling_look(struct tunnelling_beside *s, int64_t lo, int64_t hi)
 {
     double half = 0.5 * (double)(hi - 1 - lo);
     vec3 middle = v3_axpy(s->c, (double)lo + half, s->step);
-    if (!is_near(s, middle, s->o->p->radius[s->to.y->i] + half * v3_norm(s->step))) return false;
-    if (hi - lo == 1) return look_at(s, lo);
-    return look(s, lo, lo + (hi - lo) / 2) || look(s, lo + (hi - lo) / 2, hi);
+    if (!tunnelling_is_near(s, middle, s->o->p->radius[s->to.y->i] + half * v3_norm(s->step))) return false;
+    if (hi - lo == 1) return tunnelling_look_at(s, lo);
+    return tunnelling_look(s, lo, lo + (hi - lo) / 2) || tunnelling_look(s, lo + (hi - lo) / 2, hi);
 }
 
 bool swift_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
@@ -196,13 +196,13 @@ bool swift_meets_wall(struct contacts *out, int64_t first, const struct situatio
 {
     const struct packing *p = o->p;
     const struct wall *wall = &p->wall[w];
-    const struct way y = way_of(p, i, wall_velocity(p, wall, o->x[i]));
+    const struct tunnelling_way y = tunnelling_way_of(p, i, wall_velocity(p, wall, o->x[i]));
     if (y.n < 1) return true;
-    struct beside s = { .o = o, .to = { &y, 1, out, first, out->n }, .w = w };
+    struct tunnelling_beside s = { .o = o, .to = { &y, 1, out, first, out->n }, .w = w };
     s.pose = wall_pose(p, wall, o->t);
     s.c = v3_sub(quat_turn_back(s.pose.q, v3_sub(o->x[i], s.pose.shift)), wall->x);
     s.step = quat_turn_back(s.pose.q, y.step);
-    look(&s, 1, y.n + 1);
+    tunnelling_look(&s, 1, y.n + 1);
     return !s.failed;
 }
 
@@ -221,7 +221,7 @@ static int64_t first_fixed_hull(const struct packing *p, double *most)
     double speed = 0;
     for (int64_t i = p->n - 1; p->shape && i >= 0; i--)
         if (is_fixed_hull(p, i)) first = i, speed = dmax(speed, v3_norm(p->v[i]));
-    *most = most_of(p, speed);
+    *most = tunnelling_most_of(p, speed);
     return first;
 }
 
@@ -235,7 +235,7 @@ double swift_reach(const struct packing *p)
 }
 
 /* Does the way come near the ball of radius `reach` around x? */
-static bool passes_by(const struct way *y, vec3 from, vec3 x, double reach)
+static bool passes_by(const struct tunnelling_way *y, vec3 from, vec3 x, double reach)
 {
     vec3 d = v3_scale((double)y->n, y->step), w = v3_sub(x, from);
     double s = dmin(dmax(v3_dot(w, d) / v3_dot(d, d), 0), 1);
@@ -258,7 +258,7 @@ static int64_t find_pair(const struct contact *s, int64_t n, int32_t a, int32_t 
 
 /* The first place of the way of body i at which it meets hull f; false when memory is short. */
 static bool meet_hull(struct contacts *out, int64_t sorted, const struct situation *o,
-                      const struct way *y, int64_t f)
+                      const struct tunnelling_way *y, int64_t f)
 {
     const int32_t a = (int32_t)(y->i < f ? y->i : f), b = (int32_t)(y->i < f ? f : y->i);
     double reach = o->p->radius[y->i] + o->p->radius[f], sign = y->i == b ? 1 : -1;
@@ -279,7 +279,7 @@ static bool meet_hull(struct contacts *out, int64_t sorted, const struct situati
     return n >= 0;
 }
 
-static int by_key(const void *a, const void *b)
+static int tunnelling_by_key(const void *a, const void *b)
 {
     return contact_compare(a, b);
 }
@@ -293,14 +293,14 @@ bool swift_meet_hulls(struct contacts *out, const struct situation *o)
         if (!swift_is(p, i, most)) continue;
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f) || !packing_may_meet(p, (int32_t)f, (int32_t)i)) continue;
-            const struct way y = way_of(p, i, p->v[f]);
+            const struct tunnelling_way y = tunnelling_way_of(p, i, p->v[f]);
             if (y.n < 1) continue;
             if (passes_by(&y, o->x[i], o->x[f], p->radius[i] + p->radius[f]) &&
                 !meet_hull(out, sorted, o, &y, f))
                 return false;
         }
     }
-    if (out->n > sorted) qsort(out->c, (size_t)out->n, sizeof *out->c, by_key);
+    if (out->n > sorted) qsort(out->c, (size_t)out->n, sizeof *out->c, tunnelling_by_key);
     return true;
 }
 

@@ -36,7 +36,7 @@ struct two_places {
     struct contacts now, then;
 };
 
-static bool touches(const struct packing *p, const struct contact *c)
+static bool touching_touches(const struct packing *p, const struct contact *c)
 {
     return c->gap <= contact_laws_touch(p, c);
 }
@@ -49,10 +49,10 @@ static int64_t count_new(const struct two_places *y, int64_t first, int64_t end,
     bool parts = false;
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &y->now.c[i], *d = y->then.c;
-        if (!touches(y->p, c)) continue;
+        if (!touching_touches(y->p, c)) continue;
         while (*then < y->then.n && contact_compare(&d[*then], c) < 0) ++*then;
         bool there = *then < y->then.n && !contact_compare(&d[*then], c);
-        parts = parts || !there || !touches(y->p, &d[*then]);
+        parts = parts || !there || !touching_touches(y->p, &d[*then]);
         n++;
     }
     return parts ? n : 0;
@@ -83,7 +83,7 @@ static int64_t find_row(const struct bonds *s, int64_t n, struct contact_key key
 }
 
 /* Has a contact's pair a bond that holds, or is remembered as broken? */
-static bool has_bond(const struct bonds *s, int64_t n, const struct contact *c)
+static bool touching_has_bond(const struct bonds *s, int64_t n, const struct contact *c)
 {
     struct contact_key first = { c->a, c->b, INT32_MIN, { INT8_MIN, INT8_MIN, INT8_MIN } };
     bool has = false;
@@ -104,7 +104,7 @@ static bool bond(struct packing *p, const struct contact *c, int64_t n, int64_t 
     const int64_t at = find_row(&p->bonds, rows, contact_key(c));
     struct bond *row = at < rows ? &p->bonds.bond[at] : NULL;
     if (row && contact_key_order(bond_key(row), contact_key(c)) != 0) row = NULL;
-    bool bonds = wish.bonds && !has_bond(&p->bonds, rows, c);
+    bool bonds = wish.bonds && !touching_has_bond(&p->bonds, rows, c);
     for (int k = 0; k < 3; k++) new.shift[k] = c->shift[k];
     if (row) new = *row;
     if (wish.wets && !new.wet) new.wet = BOND_WETTED;
@@ -130,7 +130,7 @@ static bool bond_all(struct two_places *y)
         int64_t n = count_new(y, i, end, &then);
         int32_t key = 0;
         for (int64_t k = i; n && good && k < end; k++)
-            if (touches(y->p, &y->now.c[k])) good = bond(y->p, &y->now.c[k], n, rows, --key);
+            if (touching_touches(y->p, &y->now.c[k])) good = bond(y->p, &y->now.c[k], n, rows, --key);
     }
     bonds_sort(&y->p->bonds);
     return good;

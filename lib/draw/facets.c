@@ -9,7 +9,7 @@ enum {
     CORNERS_MOST = SHAPE_VERTICES_MOST /* of a face */
 };
 
-static vec3 unit(vec3 a)
+static vec3 facets_unit(vec3 a)
 {
     return v3_scale(1 / v3_norm(a), a);
 }
@@ -27,13 +27,13 @@ static void icosahedron(struct facets_triangle t[20])
                                      { 3, 2, 6 },   { 3, 6, 8 },  { 3, 8, 9 },  { 4, 9, 5 },
                                      { 2, 4, 11 },  { 6, 2, 10 }, { 8, 6, 7 },  { 9, 8, 1 } };
     for (int k = 0; k < 20; k++)
-        for (int c = 0; c < 3; c++) t[k].corner[c] = unit(x[face[k][c]]);
+        for (int c = 0; c < 3; c++) t[k].corner[c] = facets_unit(x[face[k][c]]);
 }
 
 static void divide(const struct facets_triangle *t, struct facets_triangle out[4])
 {
     const vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
-    const vec3 ab = unit(v3_add(a, b)), bc = unit(v3_add(b, c)), ca = unit(v3_add(c, a));
+    const vec3 ab = facets_unit(v3_add(a, b)), bc = facets_unit(v3_add(b, c)), ca = facets_unit(v3_add(c, a));
     out[0] = (struct facets_triangle){ { a, ab, ca } },
     out[1] = (struct facets_triangle){ { ab, b, bc } };
     out[2] = (struct facets_triangle){ { ca, bc, c } },
@@ -63,12 +63,12 @@ void facets_free(struct facets *b)
 }
 
 /* Where polygons go */
-struct sink {
+struct facets_sink {
     facets_text *put;
     void *to;
 };
 
-static void put_ball(const struct sink *out, vec3 x0, double r, quat q, const struct facets *b)
+static void put_ball(const struct facets_sink *out, vec3 x0, double r, quat q, const struct facets *b)
 {
     for (int64_t k = 0; k < b->n; k++) {
         vec3 x[3];
@@ -77,7 +77,7 @@ static void put_ball(const struct sink *out, vec3 x0, double r, quat q, const st
     }
 }
 
-static void put_disc(const struct sink *out, vec3 x, double r)
+static void put_disc(const struct facets_sink *out, vec3 x, double r)
 {
     vec3 last = v3_add(x, v3(r, 0, 0));
     for (int k = 1; k <= DISC; k++) {
@@ -108,7 +108,7 @@ static vec3 placed(const struct packing *p, int64_t i, vec3 v)
     return v3_axpy(p->x[i], p->radius[i], quat_turn(p->q[i], v));
 }
 
-static void put_faces(const struct sink *out, const struct packing *p, int64_t i,
+static void put_faces(const struct facets_sink *out, const struct packing *p, int64_t i,
                       const struct shape *s)
 {
     vec3 x[CORNERS_MOST];
@@ -120,7 +120,7 @@ static void put_faces(const struct sink *out, const struct packing *p, int64_t i
     }
 }
 
-static void put_clump(const struct sink *out, const struct packing *p, int64_t i,
+static void put_clump(const struct facets_sink *out, const struct packing *p, int64_t i,
                       const struct shape *s, const struct facets *b)
 {
     for (int32_t k = 0; k < s->vertices; k++) {
@@ -133,7 +133,7 @@ static void put_clump(const struct sink *out, const struct packing *p, int64_t i
     }
 }
 
-static void put_rounded(const struct sink *out, const struct packing *p, int64_t i,
+static void put_rounded(const struct facets_sink *out, const struct packing *p, int64_t i,
                         const struct shape *s, const struct facets *b)
 {
     vec3 x[3];
@@ -154,7 +154,7 @@ void facets_of(const struct facets *b, const struct packing *p, int64_t i, facet
                void *to)
 {
     const struct shape *s = packing_shape(p, i);
-    const struct sink out = { put, to };
+    const struct facets_sink out = { put, to };
     if (!s && p->dim == 2)
         put_disc(&out, p->x[i], p->radius[i]);
     else if (!s)

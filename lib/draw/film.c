@@ -72,7 +72,7 @@ int film_open(struct film **film, const char *path, int rate, struct why *why)
 
 /* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only; without -xerror it ends with 0 where
    the disk is full. */
-static int start(struct film *f, struct why *why)
+static int film_start(struct film *f, struct why *why)
 {
     char size[40], rate[16];
     bool webm = !strcmp(ending(f->path), ".webm");
@@ -116,7 +116,7 @@ int film_add(struct film *f, const struct picture *p, struct why *why)
     if (!f->pipe) {
         f->width = p->width, f->height = p->height;
         signal(SIGPIPE, SIG_IGN); // ffmpeg that has failed is told from its status
-        if (start(f, why)) return why->status;
+        if (film_start(f, why)) return why->status;
     }
     size_t n = 3 * (size_t)p->width * (size_t)p->height;
     if (p->width != f->width || p->height != f->height)

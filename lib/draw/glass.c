@@ -4,26 +4,26 @@
 #include <stdlib.h>
 
 /* r < 0: glass */
-static struct rgb own_of(const struct solid_walls *s, int32_t boundary, int32_t face)
+static struct rgb wall_facets_own_of(const struct solid_walls *s, int32_t boundary, int32_t face)
 {
     return s ? s->colour[s->faces.first[boundary] + face] : (struct rgb){ -1, 0, 0 };
 }
 
-static void add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec3 c)
+static void wall_facets_add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec3 c)
 {
     vec3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
     double area = v3_norm(n);
     if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n), own };
 }
 
-static void add_planes(struct glass *g, const struct packing *p, const struct glass_opt *o)
+static void wall_facets_add_planes(struct glass *g, const struct packing *p, const struct glass_opt *o)
 {
     vec3 corner[WALLS_CORNERS];
     for (int i = 0; i < p->walls && i < WALLS_PANELS; i++) {
         int corners = walls_polygon(p, i, &o->region, corner);
-        struct rgb own = own_of(o->solid, i, 0);
+        struct rgb own = wall_facets_own_of(o->solid, i, 0);
         if (corners < 3 || (own.r < 0 && (!o->glass || walls_floor(p, i, o->toward)))) continue;
-        for (int k = 2; k < corners; k++) add(g, own, corner[0], corner[k - 1], corner[k]);
+        for (int k = 2; k < corners; k++) wall_facets_add(g, own, corner[0], corner[k - 1], corner[k]);
     }
 }
 
@@ -37,11 +37,11 @@ int glass_init(struct glass *g, const struct packing *p, const struct glass_opt 
     int64_t room = all.triangles + (int64_t)WALLS_PANELS * WALLS_CORNERS;
     g->facet = malloc((size_t)room * sizeof *g->facet);
     if (g->facet) {
-        add_planes(g, p, o);
+        wall_facets_add_planes(g, p, o);
         for (int64_t i = 0; i < all.triangles; i++) {
             const vec3 *x = all.triangle[i].corner;
-            struct rgb own = own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
-            if (own.r >= 0 || o->glass) add(g, own, x[0], x[1], x[2]);
+            struct rgb own = wall_facets_own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
+            if (own.r >= 0 || o->glass) wall_facets_add(g, own, x[0], x[1], x[2]);
         }
     } else
         why_set(why, EX_SOFTWARE, "no memory for the facets of the boundaries");

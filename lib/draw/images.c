@@ -30,25 +30,25 @@ static bool shift_of(const struct cell *c, int k, int8_t shift[3])
 }
 
 /* Body `to` of q = body i of p, moved */
-static void copy_body(struct packing *q, int64_t to, const struct packing *p, int64_t i, vec3 by)
+static void images_copy_body(struct packing *q, int64_t to, const struct packing *p, int64_t i, vec3 by)
 {
     packing_copy_body(q, to, p, i);
     q->x[to] = v3_add(p->x[i], by);
 }
 
 /* Fills q, or counts only where it is NULL: the bodies, then their images. */
-static int64_t fill(struct packing *q, int64_t *of, const struct packing *p)
+static int64_t images_fill(struct packing *q, int64_t *of, const struct packing *p)
 {
     vec3 inverse[3];
     int8_t shift[3];
     int64_t n = p->n;
     cell_inverse(p->cell.edge, inverse);
-    for (int64_t i = 0; q && i < p->n; i++) copy_body(q, i, p, i, v3(0, 0, 0)), of[i] = i;
+    for (int64_t i = 0; q && i < p->n; i++) images_copy_body(q, i, p, i, v3(0, 0, 0)), of[i] = i;
     for (int k = 0; k < 27; k++) {
         if (!shift_of(&p->cell, k, shift)) continue;
         for (int64_t i = 0; i < p->n; i++) {
             if (!reaches(p, inverse, i, shift)) continue;
-            if (q) copy_body(q, n, p, i, cell_shift(p->cell.edge, shift)), of[n] = i;
+            if (q) images_copy_body(q, n, p, i, cell_shift(p->cell.edge, shift)), of[n] = i;
             n++;
         }
     }
@@ -61,7 +61,7 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
     *of = NULL;
     if (!cell_repeats(&p->cell)) return 0;
     packing_wrap(p, NULL);
-    int64_t n = fill(NULL, NULL, p);
+    int64_t n = images_fill(NULL, NULL, p);
     if (packing_init(&q, p->dim, n, why)) return why->status;
     uint32_t optional = packing_optional(p) & ~(1u << BODY_image);
     if (packing_alloc_optional(&q, optional, why)) {
@@ -73,7 +73,7 @@ int images_append(struct packing *p, int64_t **of, struct why *why)
         packing_free(&q);
         return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     }
-    fill(&q, *of, p);
+    images_fill(&q, *of, p);
     // all that a packing has beside its bodies changes hands
     struct packing all = packing_with_bodies(p, &q, 0, n),
                    rest = packing_with_bodies(&q, p, 0, p->n);

@@ -6,7 +6,7 @@
 #define SHARP 0.94 /* the cosine of the least angle between triangles whose edge is drawn */
 
 /* A boundary where it is now */
-struct placed {
+struct outline_placed {
     const struct packing *p;
     const struct wall *w;
     int32_t boundary;
@@ -14,7 +14,7 @@ struct placed {
     double reach; /* m */
 };
 
-static bool add_triangle(struct outline *o, const struct placed *b, int32_t face, vec3 x, vec3 y,
+static bool add_triangle(struct outline *o, const struct outline_placed *b, int32_t face, vec3 x, vec3 y,
                          vec3 z)
 {
     if (o->triangles == o->triangle_room) {
@@ -27,7 +27,7 @@ static bool add_triangle(struct outline *o, const struct placed *b, int32_t face
     return true;
 }
 
-static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
+static bool outline_add_line(struct outline *o, const struct outline_placed *b, vec3 x, vec3 y)
 {
     if (o->lines == o->line_room) {
         int64_t room = 2 * o->line_room + 256;
@@ -42,7 +42,7 @@ static bool add_line(struct outline *o, const struct placed *b, vec3 x, vec3 y)
 /* ---- shapes that are grids ---- */
 
 /* Across the axis, at a share u of the whole angle */
-static vec3 around(const struct wall *w, double u)
+static vec3 outline_around(const struct wall *w, double u)
 {
     bool given = v3_dot(w->along, w->along) > 0;
     vec3 along = given ? w->along : v3_across(w->n);
@@ -51,12 +51,12 @@ static vec3 around(const struct wall *w, double u)
 }
 
 /* The point (u, v) of the surface, both from 0 to 1: u around the axis, v along the generatrix */
-static vec3 point_of(const struct placed *b, double u, double v)
+static vec3 point_of(const struct outline_placed *b, double u, double v)
 {
     const struct wall *w = b->w;
     const double *s = w->size;
     bool endless = w->shape == BOUNDARY_CYLINDER && s[2] == 0;
-    vec3 x, d = around(w, u);
+    vec3 x, d = outline_around(w, u);
     switch (w->shape) {
     case BOUNDARY_RECTANGLE:
         x = v3_axpy(v3_scale((u - 0.5) * s[0], w->along), (v - 0.5) * s[1],
@@ -81,19 +81,19 @@ struct curve {
 };
 
 /* In n pieces */
-static bool add_curve(struct outline *o, const struct placed *b, struct curve c, int n)
+static bool add_curve(struct outline *o, const struct outline_placed *b, struct curve c, int n)
 {
     vec3 last = point_of(b, c.u0, c.v0);
     for (int i = 1; i <= n; i++) {
         double s = (double)i / n;
         vec3 next = point_of(b, c.u0 + s * (c.u1 - c.u0), c.v0 + s * (c.v1 - c.v0));
-        if (!add_line(o, b, last, next)) return false;
+        if (!outline_add_line(o, b, last, next)) return false;
         last = next;
     }
     return true;
 }
 
-static bool add_grid(struct outline *o, const struct placed *b, int nu, int nv)
+static bool add_grid(struct outline *o, const struct outline_placed *b, int nu, int nv)
 {
     for (int i = 0; i < nu; i++)
         for (int j = 0; j < nv; j++) {
@@ -108,7 +108,7 @@ static bool add_grid(struct outline *o, const struct placed *b, int nu, int nv)
     return true;
 }
 
-static bool add_shape(struct outline *o, const struct placed *b)
+static bool outline_add_shape(struct outline *o, const struct outline_placed *b)
 {
     const struct wall *w = b->w;
     bool flat = b->p->dim == 2, rectangle = w->shape == BOUNDARY_RECTANGLE;
@@ -135,11 +135,11 @@ static bool add_shape(struct outline *o, const struct placed *b)
 /* ---- meshes ---- */
 
 /* An edge of a triangle, its lower vertex first */
-struct side {
+struct outline_side {
     vec3 end[2], normal;
 };
 
-static int compare(vec3 a, vec3 b)
+static int outline_compare(vec3 a, vec3 b)
 {
     if (a.x != b.x) return a.x < b.x ? -1 : 1;
     if (a.y != b.y) return a.y < b.y ? -1 : 1;
@@ -148,28 +148,28 @@ static int compare(vec3 a, vec3 b)
 
 static int by_ends(const void *a, const void *b)
 {
-    const struct side *s = a, *t = b;
-    int first = compare(s->end[0], t->end[0]);
-    return first ? first : compare(s->end[1], t->end[1]);
+    const struct outline_side *s = a, *t = b;
+    int first = outline_compare(s->end[0], t->end[0]);
+    return first ? first : outline_compare(s->end[1], t->end[1]);
 }
 
 /* Edges that are no other triangle's, or where two meet at an angle */
-static bool add_sharp(struct outline *o, const struct placed *b, struct side *s, size_t n)
+static bool add_sharp(struct outline *o, const struct outline_placed *b, struct outline_side *s, size_t n)
 {
     qsort(s, n, sizeof *s, by_ends);
     for (size_t i = 0, next; i < n; i = next) {
         for (next = i + 1; next < n && !by_ends(&s[i], &s[next]);) next++;
         bool smooth = next == i + 2 && fabs(v3_dot(s[i].normal, s[i + 1].normal)) > SHARP;
-        if (!smooth && !add_line(o, b, s[i].end[0], s[i].end[1])) return false;
+        if (!smooth && !outline_add_line(o, b, s[i].end[0], s[i].end[1])) return false;
     }
     return true;
 }
 
-static bool add_mesh(struct outline *o, const struct placed *b)
+static bool add_mesh(struct outline *o, const struct outline_placed *b)
 {
     const struct mesh *m = &b->p->mesh;
     const struct wall *w = b->w;
-    struct side *side = malloc(3 * (size_t)w->elements * sizeof *side + 1);
+    struct outline_side *side = malloc(3 * (size_t)w->elements * sizeof *side + 1);
     bool good = side, flat = b->p->dim == 2;
     size_t n = 0;
     for (int32_t e = w->first_element; good && e < w->first_element + w->elements; e++) {
@@ -177,7 +177,7 @@ static bool add_mesh(struct outline *o, const struct placed *b)
         for (int k = 0; k < 3; k++)
             x[k] = pose_of(&b->pose, v3_add(w->x, m->vertex[m->element[e][k]]));
         if (flat) {
-            good = add_line(o, b, x[0], x[1]);
+            good = outline_add_line(o, b, x[0], x[1]);
             if (good) o->line[o->lines - 1].face = e - w->first_element;
             continue;
         }
@@ -186,8 +186,8 @@ static bool add_mesh(struct outline *o, const struct placed *b)
         good = add_triangle(o, b, e - w->first_element, x[0], x[1], x[2]);
         for (int k = 0; k < 3; k++) {
             vec3 from = x[k], to = x[(k + 1) % 3];
-            bool rises = compare(from, to) < 0;
-            side[n++] = (struct side){ { rises ? from : to, rises ? to : from }, normal };
+            bool rises = outline_compare(from, to) < 0;
+            side[n++] = (struct outline_side){ { rises ? from : to, rises ? to : from }, normal };
         }
     }
     good = good && add_sharp(o, b, side, n);
@@ -202,8 +202,8 @@ int outline_init(struct outline *o, const struct packing *p, double reach, struc
     for (int32_t w = 0; good && w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
-        const struct placed b = { p, wall, w, wall_pose(p, wall, p->t), reach };
-        good = wall->shape == BOUNDARY_MESH ? add_mesh(o, &b) : add_shape(o, &b);
+        const struct outline_placed b = { p, wall, w, wall_pose(p, wall, p->t), reach };
+        good = wall->shape == BOUNDARY_MESH ? add_mesh(o, &b) : outline_add_shape(o, &b);
     }
     if (good) return 0;
     outline_free(o);

@@ -71,7 +71,7 @@ static void draw_network(cairo_t *cr, const struct overlay *o, const struct view
 }
 
 /* Whole bonds are green, those that break red; liquid alone is blue. */
-static void set_bond(cairo_t *cr, const struct bond *b)
+static void overlay_set_bond(cairo_t *cr, const struct bond *b)
 {
     if (b->beta > 0)
         cairo_set_source_rgb(cr, 0.84 - 0.74 * b->beta, 0.20 + 0.35 * b->beta,
@@ -93,7 +93,7 @@ static void draw_bonds(cairo_t *cr, const struct view *v, const struct packing *
         if (is_cut(v, a) || is_cut(v, b)) continue;
         vec3 from = view_sees(v, a, &size), to = view_sees(v, b, &size);
         if (!(size > 0)) continue;
-        set_bond(cr, k);
+        overlay_set_bond(cr, k);
         cairo_set_line_width(cr, fmax(0.25 * small * v->camera.scale, 1.2));
         cairo_move_to(cr, from.x, from.y);
         cairo_line_to(cr, to.x, to.y);
@@ -159,10 +159,10 @@ static void say_length(double m, char *text, size_t room)
     snprintf(text, room, "%g m", m);
 }
 
-enum side { LEFT, MIDDLE, RIGHT };
+enum overlay_side { LEFT, MIDDLE, RIGHT };
 
 /* Words on the line y; returns their width. */
-static double write_words(cairo_t *cr, double x, double y, enum side side, const char *text)
+static double overlay_write_words(cairo_t *cr, double x, double y, enum overlay_side side, const char *text)
 {
     cairo_text_extents_t e;
     cairo_text_extents(cr, text, &e);
@@ -192,7 +192,7 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
     snprintf(text, sizeof text, "%s%s%s", p->name ? p->name : m->name, *m->unit ? ", " : "",
              m->unit);
     if (m->classes || !isfinite(p->lo) || !isfinite(p->hi)) {
-        write_words(cr, x, y + h, LEFT, m->classes ? m->name : "");
+        overlay_write_words(cr, x, y + h, LEFT, m->classes ? m->name : "");
         return;
     }
     cairo_save(cr);
@@ -204,11 +204,11 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
     }
     cairo_restore(cr);
     double size = font_height(cr);
-    write_words(cr, x + 0.5 * w, y - 0.35 * size, MIDDLE, text);
+    overlay_write_words(cr, x + 0.5 * w, y - 0.35 * size, MIDDLE, text);
     snprintf(text, sizeof text, "%.3g", p->lo);
-    write_words(cr, x, y + h + size, LEFT, text);
+    overlay_write_words(cr, x, y + h + size, LEFT, text);
     snprintf(text, sizeof text, "%.3g", p->hi);
-    write_words(cr, x + w, y + h + size, RIGHT, text);
+    overlay_write_words(cr, x + w, y + h + size, RIGHT, text);
 }
 
 /* A square of the colour, and a word; false where it would be beyond `end`, and dots are there instead. */
@@ -218,7 +218,7 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
     double size = font_height(cr);
     cairo_text_extents(cr, word, &e);
     if (*x + 1.4 * size + e.x_advance > end) {
-        write_words(cr, *x, y, LEFT, "...");
+        overlay_write_words(cr, *x, y, LEFT, "...");
         return false;
     }
     cairo_save(cr);
@@ -227,7 +227,7 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
     cairo_fill(cr);
     cairo_restore(cr);
     *x += 1.2 * size;
-    *x += write_words(cr, *x, y, LEFT, word) + 0.9 * size;
+    *x += overlay_write_words(cr, *x, y, LEFT, word) + 0.9 * size;
     return true;
 }
 
@@ -260,7 +260,7 @@ static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct pa
         if (!draw_key(cr, &x, y, end, s->shown[k], s->name[k])) return;
     if (s->by == SURFACE_NAME) return;
     snprintf(text, sizeof text, "%s, %s:  %.3g", m->name, m->unit, s->lo);
-    x += write_words(cr, x, y, LEFT, text) + 0.4 * size;
+    x += overlay_write_words(cr, x, y, LEFT, text) + 0.4 * size;
     double w = 0.25 * (end - x);
     cairo_save(cr);
     cairo_set_antialias(cr, CAIRO_ANTIALIAS_NONE);
@@ -271,7 +271,7 @@ static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct pa
     }
     cairo_restore(cr);
     snprintf(text, sizeof text, "%.3g", s->hi);
-    write_words(cr, x + w + 0.4 * size, y, LEFT, text);
+    overlay_write_words(cr, x + w + 0.4 * size, y, LEFT, text);
 }
 
 static void draw_scale(cairo_t *cr, const struct view *v, double x, double y, double most)
@@ -287,7 +287,7 @@ static void draw_scale(cairo_t *cr, const struct view *v, double x, double y, do
     cairo_move_to(cr, x + 0.5 * w, y - 4);
     cairo_line_to(cr, x + 0.5 * w, y + 4);
     cairo_stroke(cr);
-    write_words(cr, x, y + 6 + 0.9 * font_height(cr), MIDDLE, text);
+    overlay_write_words(cr, x, y + 6 + 0.9 * font_height(cr), MIDDLE, text);
 }
 
 /* What the colours of lines and dots say */
@@ -301,7 +301,7 @@ static void draw_status(cairo_t *cr, double x, double y, double size)
         cairo_fill(cr);
         cairo_restore(cr);
         x += 1.7 * size;
-        x += write_words(cr, x, y, LEFT, word[k]) + size;
+        x += overlay_write_words(cr, x, y, LEFT, word[k]) + size;
     }
 }
 
@@ -327,7 +327,7 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     const double scale = keys ? fmin(0.54 * w, status - size - 0.1 * w) : 0.54 * w;
     if (isinf(v->camera.eye)) draw_scale(cr, v, scale, top + 0.42 * strip, 0.2 * w);
     snprintf(text, sizeof text, "t = %.4g s", p->t);
-    write_words(cr, 0.97 * w, top + 0.36 * strip + (keys ? 0 : 0.6 * size), RIGHT, text);
+    overlay_write_words(cr, 0.97 * w, top + 0.36 * strip + (keys ? 0 : 0.6 * size), RIGHT, text);
     if (keys) draw_status(cr, status, top + 0.58 * strip + size, size);
 }
 

@@ -24,7 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int no_memory(struct why *why)
+static int page_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for the page");
 }
@@ -37,7 +37,7 @@ static int not_written(const struct page *p, struct why *why)
 static int write_chunk(struct page *p, char letter, int64_t number, const struct chunk *b,
                        struct why *why)
 {
-    return chunk_write(p->out, letter, number, b) ? no_memory(why) : not_written(p, why);
+    return chunk_write(p->out, letter, number, b) ? page_no_memory(why) : not_written(p, why);
 }
 
 /* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
@@ -58,7 +58,7 @@ static int write_changed(struct page *p, char letter, struct page_kept *kept, st
 static int write_grains(struct page *p, const struct packing *k, struct why *why)
 {
     struct chunk b = { malloc(20 * (size_t)k->n + 1), 0 };
-    if (!b.at) return no_memory(why);
+    if (!b.at) return page_no_memory(why);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->radius[i]);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->mass[i]);
     chunk_put(&b, k->id, 4 * (size_t)k->n);
@@ -79,7 +79,7 @@ static void put_point(struct chunk *b, vec3 x)
     chunk_put_float(b, x.x), chunk_put_float(b, x.y), chunk_put_float(b, x.z);
 }
 
-static void put_triangle(struct chunk *b, vec3 x, vec3 y, vec3 z)
+static void page_put_triangle(struct chunk *b, vec3 x, vec3 y, vec3 z)
 {
     put_point(b, x), put_point(b, y), put_point(b, z);
 }
@@ -93,11 +93,11 @@ static void put_walls(struct chunk *b, const struct walls *w, const struct outli
     chunk_put(b, counts, sizeof counts);
     for (int i = 0; i < w->panels; i++)
         for (int c = 2; c < w->panel[i].corners; c++)
-            put_triangle(b, w->panel[i].corner[0], w->panel[i].corner[c - 1],
+            page_put_triangle(b, w->panel[i].corner[0], w->panel[i].corner[c - 1],
                          w->panel[i].corner[c]);
     for (int64_t i = 0; i < o->triangles; i++) {
         const vec3 *x = o->triangle[i].corner;
-        put_triangle(b, x[0], x[1], x[2]);
+        page_put_triangle(b, x[0], x[1], x[2]);
     }
     for (int i = 0; i < w->edges; i++) put_point(b, w->edge[i].a), put_point(b, w->edge[i].b);
 }
@@ -107,7 +107,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct ext
 {
     struct walls *w = malloc(sizeof *w);
     struct outline o;
-    if (!w) return no_memory(why);
+    if (!w) return page_no_memory(why);
     int e = outline_init(&o, k, v3_norm(v3_sub(r->hi, r->lo)), why);
     if (!e) {
         struct chunk b = {
@@ -118,7 +118,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct ext
         walls_build(w, k, r);
         images_outline(w, k);
         if (b.at) put_walls(&b, w, &o);
-        e = b.at ? write_changed(p, 'b', &p->walls, &b, why) : no_memory(why);
+        e = b.at ? write_changed(p, 'b', &p->walls, &b, why) : page_no_memory(why);
         outline_free(&o);
     }
     free(w);
@@ -128,7 +128,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct ext
 /* ---- a frame ---- */
 
 /* What the numbers of the grains are relative to; grains that have flown off do not count. */
-static void measure(struct page_moment *m, const struct packing *k)
+static void page_measure(struct page_moment *m, const struct packing *k)
 {
     double hi[3] = { -INFINITY, -INFINITY, -INFINITY };
     for (int j = 0; j < 3; j++) m->lo[j] = INFINITY;
@@ -172,19 +172,19 @@ static void put_motion(struct chunk *b, const struct page_moment *m, const struc
     }
 }
 
-static double tangential(const struct found *f)
+static double page_tangential(const struct found *f)
 {
     return hypot(f->r[1], f->r[2]);
 }
 
-static void put_contacts(struct chunk *b, const struct page_moment *m, const struct packing *k,
+static void page_put_contacts(struct chunk *b, const struct page_moment *m, const struct packing *k,
                          const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].a, 4);
     for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].b, 4);
     for (int t = 0; t < 2; t++)
         for (int64_t i = 0; i < s->n; i++) {
-            double r = t ? tangential(&s->found[i]) : fmax(s->found[i].r[0], 0);
+            double r = t ? page_tangential(&s->found[i]) : fmax(s->found[i].r[0], 0);
             chunk_put_u16(b, chunk_quantise(r / k->dt, m->fmax, U16));
         }
     for (int64_t i = 0; i < s->n; i++) {
@@ -203,7 +203,7 @@ static int widen(struct page *p, const struct page_moment *m, const struct packi
     int *count = calloc((size_t)k->n + 1, sizeof *count);
     if (!push || !count) {
         free(push), free(count);
-        return no_memory(why);
+        return page_no_memory(why);
     }
     p->fastest = fmax(p->fastest, m->vmax), p->spin = fmax(p->spin, m->wmax);
     p->force = fmax(p->force, m->fmax);
@@ -226,15 +226,15 @@ static int write_frame(struct page *p, const struct page_moment *m, const struct
                        const struct contacts *s, struct why *why)
 {
     struct chunk b = { malloc(20 * (size_t)k->n + 16 * (size_t)m->contacts + 1), 0 };
-    if (!b.at) return no_memory(why);
+    if (!b.at) return page_no_memory(why);
     put_motion(&b, m, k);
-    if (m->contacts) put_contacts(&b, m, k, s);
+    if (m->contacts) page_put_contacts(&b, m, k, s);
     int e = write_chunk(p, 'f', p->frames, &b, why);
     free(b.at);
     return e;
 }
 
-static struct page_moment *add_moment(struct page *p)
+static struct page_moment *page_add_moment(struct page *p)
 {
     if (p->frames == p->room) {
         int64_t room = p->room ? 2 * p->room : 64;
@@ -259,7 +259,7 @@ static int adopt(struct page *p, const struct packing *k, struct why *why)
     p->kind_name = calloc((size_t)k->kinds + 1, sizeof *p->kind_name);
     for (; p->kind_name && p->kinds < k->kinds; p->kinds++)
         if (!(p->kind_name[p->kinds] = strdup(k->kind_name[p->kinds]))) break;
-    return p->kind_name && p->kinds == k->kinds ? 0 : no_memory(why);
+    return p->kind_name && p->kinds == k->kinds ? 0 : page_no_memory(why);
 }
 
 int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct why *why)
@@ -272,15 +272,15 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     if (p->frames && k->dim != p->dim)
         return why_set(why, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim, p->dim);
     if (!p->frames && adopt(p, k, why)) return why->status;
-    struct page_moment *m = add_moment(p);
-    if (!m) return no_memory(why);
+    struct page_moment *m = page_add_moment(p);
+    if (!m) return page_no_memory(why);
     *m = (struct page_moment){
         .step = k->step, .t = k->t, .n = k->n, .contacts = s->n, .walls = -1, .shapes = -1
     };
     p->solved |= s->found != NULL;
-    measure(m, k);
+    page_measure(m, k);
     for (int64_t i = 0; i < s->n; i++) {
-        double f = fmax(s->found[i].r[0], tangential(&s->found[i])) / k->dt;
+        double f = fmax(s->found[i].r[0], page_tangential(&s->found[i])) / k->dt;
         if (isfinite(f)) m->fmax = fmax(m->fmax, f);
     }
     for (int j = 0; j < 3; j++) m->repeats[j] = k->cell.repeats[j], m->edge[j] = k->cell.edge[j];
@@ -304,12 +304,12 @@ int page_value(struct page *p, const char *name, const char *unit, double value,
     while (c < p->curves && strcmp(p->curve[c].name, name) != 0) c++;
     if (c == p->curves) {
         struct page_curve *more = realloc(p->curve, (size_t)(c + 1) * sizeof *more), new;
-        if (!more) return no_memory(why);
+        if (!more) return page_no_memory(why);
         p->curve = more;
         new = (struct page_curve){ strdup(name), strdup(unit),
                                    malloc((size_t)(p->room + 1) * sizeof(double)) };
         p->curve[p->curves++] = new;
-        if (!new.name || !new.unit || !new.value) return no_memory(why);
+        if (!new.name || !new.unit || !new.value) return page_no_memory(why);
         for (int64_t k = 0; k < p->frames; k++) new.value[k] = NAN;
     }
     p->curve[c].value[p->frames - 1] = value;
@@ -346,7 +346,7 @@ int page_end(struct page *p, struct why *why)
     json_t *meta = page_meta(p);
     char *text = json_dumps(meta, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(meta);
-    if (!text) return no_memory(why);
+    if (!text) return page_no_memory(why);
     fputs("<script type=\"application/json\" id=\"meta\">", p->out);
     for (const char *s = text; *s; s++) // "</script" in a name must not end it
         if (*s == '<')

@@ -16,7 +16,7 @@ struct triangles {
     int dim;
 };
 
-static void put_fan(void *to, int corners, const vec3 *x)
+static void page_data_put_fan(void *to, int corners, const vec3 *x)
 {
     struct triangles *t = to;
     for (int k = 2; k < corners; k++) {
@@ -55,7 +55,7 @@ int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct why *wh
         }
         for (row = 1; row < t->n; row++) {
             s.sharp = facets_are_faces(&t->s[row]);
-            facets_of(&f, &one, 0, put_fan, &s);
+            facets_of(&f, &one, 0, page_data_put_fan, &s);
         }
         chunk_put(b, s.edges, (size_t)s.n);
     } else {

@@ -40,7 +40,7 @@ int bytes_append(struct bytes_out *b, const unsigned char *data, size_t n)
     return 0;
 }
 
-static void append(png_structp png, png_bytep data, size_t n)
+static void picture_append(png_structp png, png_bytep data, size_t n)
 {
     if (bytes_append(png_get_io_ptr(png), data, n)) png_error(png, "no memory");
 }
@@ -65,7 +65,7 @@ static int encode(const struct picture *p, struct bytes_out *b, struct why *why)
         png_destroy_write_struct(&png, &info);
         return why_set(why, EX_SOFTWARE, "no memory for the PNG");
     }
-    png_set_write_fn(png, b, append, flush_nothing);
+    png_set_write_fn(png, b, picture_append, flush_nothing);
     png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -79,7 +79,7 @@ static int encode(const struct picture *p, struct bytes_out *b, struct why *why)
 
 /* ---- out ---- */
 
-static bool write_all(int fd, const struct bytes_out *b)
+static bool picture_write_all(int fd, const struct bytes_out *b)
 {
     for (size_t done = 0; done < b->size;) {
         ssize_t n = write(fd, b->at + done, b->size - done);
@@ -94,7 +94,7 @@ static bool write_all(int fd, const struct bytes_out *b)
 static int write_open(int fd, const struct bytes_out *b, const char *name, struct why *why)
 {
     off_t start = lseek(fd, 0, fcntl(fd, F_GETFL) & O_APPEND ? SEEK_END : SEEK_CUR);
-    if (!write_all(fd, b)) {
+    if (!picture_write_all(fd, b)) {
         why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
         if (start >= 0 && ftruncate(fd, start)) errno = 0; // there is nothing more that can be done
     }
@@ -107,7 +107,7 @@ int bytes_write(const struct bytes_out *b, const char *path, struct why *why)
     struct output o;
     if (!path) return write_open(STDOUT_FILENO, b, "standard output", why);
     if (output_open(&o, path, why)) return why->status;
-    if (!write_all(o.fd, b)) why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
+    if (!picture_write_all(o.fd, b)) why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
     return output_close(&o, why);
 }
 

@@ -25,7 +25,7 @@ static bool cut_ball(const struct cutting *c, double x, double y, double under, 
 
 /* A body of another shape: its normal, or in the plane how deep the sample lies in it, is known here, and
    kept. */
-static void draw_shape(struct band *b, const struct raster *s, int64_t i)
+static void raster_draw_shape(struct band *b, const struct raster *s, int64_t i)
 {
     const struct spot *o = &s->spot[i];
     struct patch t = band_patch(b, o->x.x, o->x.y, o->r);
@@ -65,7 +65,7 @@ static void draw_spot(struct band *b, const struct raster *s, int64_t i)
 {
     const struct spot *o = &s->spot[i];
     if (o->shape) {
-        draw_shape(b, s, i);
+        raster_draw_shape(b, s, i);
         return;
     }
     struct patch t = band_patch(b, o->x.x, o->x.y, o->r);
@@ -85,12 +85,12 @@ static void draw_spot(struct band *b, const struct raster *s, int64_t i)
 }
 
 /* Samples of a row, from x to before end */
-struct run {
+struct raster_run {
     int x, end;
 };
 
 /* Those of the row y with their middle inside a polygon */
-static struct run row_inside(const struct band *b, const double *px, const double *py, int corners,
+static struct raster_run row_inside(const struct band *b, const double *px, const double *py, int corners,
                              int y)
 {
     double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
@@ -100,7 +100,7 @@ static struct run row_inside(const struct band *b, const double *px, const doubl
         double x = px[k] + (at - py[k]) / (py[l] - py[k]) * (px[l] - px[k]);
         x0 = fmin(x0, x), x1 = fmax(x1, x);
     }
-    return (struct run){ band_clamp(ceil(x0 - 0.5), 0, b->width),
+    return (struct raster_run){ band_clamp(ceil(x0 - 0.5), 0, b->width),
                          band_clamp(ceil(x1 - 0.5), 0, b->width) };
 }
 
@@ -108,7 +108,7 @@ static void draw_ground(struct band *b, const struct raster *s, int i)
 {
     const struct ground *g = &s->ground[i];
     for (int y = b->y0; y < b->y1; y++) {
-        const struct run run = row_inside(b, g->x, g->y, g->corners, y);
+        const struct raster_run run = row_inside(b, g->x, g->y, g->corners, y);
         double at = y + 0.5;
         for (int x = run.x; x < run.end; x++) {
             size_t k = band_at(b, x, y);
@@ -127,7 +127,7 @@ static void draw_pane(struct band *b, const struct raster *s, int64_t i)
     int y0 = band_clamp(ceil(fmin(p->y[0], fmin(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
     int y1 = band_clamp(ceil(fmax(p->y[0], fmax(p->y[1], p->y[2])) - 0.5), b->y0, b->y1);
     for (int y = y0; y < y1; y++) {
-        const struct run run = row_inside(b, p->x, p->y, 3, y);
+        const struct raster_run run = row_inside(b, p->x, p->y, 3, y);
         double at = y + 0.5;
         for (int x = run.x; x < run.end; x++) {
             double z = p->plane[0] + p->plane[1] * (x + 0.5) + p->plane[2] * at;

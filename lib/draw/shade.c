@@ -107,13 +107,13 @@ static struct rgb scaled(struct rgb a, float t, float plus)
 }
 
 /* The camera's axes right, up, toward in the axes of a body: a rotation kept for its next sample */
-struct turn {
+struct shade_turn {
     int64_t body;
     vec3 x, y, z;
 };
 
 /* (x, y, z) of the camera, in the axes of the body */
-static vec3 camera_to_body(struct turn *t, const struct raster *s, int64_t body, double x, double y,
+static vec3 camera_to_body(struct shade_turn *t, const struct raster *s, int64_t body, double x, double y,
                            double z)
 {
     if (t->body != body) { // neighbouring samples mostly show the same body
@@ -135,7 +135,7 @@ static struct rgb solid_light(const struct band *b, const struct raster *s, size
     return scaled(s->pane[SOLID - b->what[k]].own, (float)light, 0);
 }
 
-static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k, struct turn *t)
+static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k, struct shade_turn *t)
 {
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
@@ -154,7 +154,7 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
 }
 
 static struct rgb disc_light(const struct raster *s, const struct spot *o, float depth, double x,
-                             double y, struct turn *t)
+                             double y, struct shade_turn *t)
 {
     if (o->shape) { // a rim of 0.7 pixels
         double least = fmin(0.3 * o->r, fmax(0.04 * o->r, s->samples * 0.7));
@@ -188,7 +188,7 @@ static struct rgb behind_glass(struct rgb seen, const struct veil *v)
     return rgb_mix(seen, scaled(glass, light, 0), 1 - v->passes);
 }
 
-static struct rgb sample(const struct band *b, const struct raster *s, int x, int y, struct turn *t)
+static struct rgb shade_sample(const struct band *b, const struct raster *s, int x, int y, struct shade_turn *t)
 {
     size_t k = band_at(b, x, y);
     int64_t what = b->what[k];
@@ -206,7 +206,7 @@ static struct rgb sample(const struct band *b, const struct raster *s, int x, in
 
 void shade_pixels(const struct band *b, const struct raster *s, struct picture *p)
 {
-    struct turn t = { .body = -1 };
+    struct shade_turn t = { .body = -1 };
     const int n = s->samples;
     const float mean = 1.0F / (float)(n * n);
     for (int row = b->y0 / n; row < b->y1 / n; row++)
@@ -214,7 +214,7 @@ void shade_pixels(const struct band *b, const struct raster *s, struct picture *
             struct rgb sum = { 0, 0, 0 };
             for (int y = 0; y < n; y++)
                 for (int x = 0; x < n; x++) {
-                    struct rgb c = sample(b, s, column * n + x, row * n + y, &t);
+                    struct rgb c = shade_sample(b, s, column * n + x, row * n + y, &t);
                     // brighter than white counts as white, or outlines would be ragged
                     sum.r += fminf(c.r, 1), sum.g += fminf(c.g, 1), sum.b += fminf(c.b, 1);
                 }

@@ -12,7 +12,7 @@ static struct interval all_of_it(void)
 }
 
 /* What is left of it where n . x <= at */
-static void cut(struct interval *k, const struct sight *l, vec3 n, double at)
+static void ray_cut(struct interval *k, const struct sight *l, vec3 n, double at)
 {
     double slope = v3_dot(n, l->along), rest = at - v3_dot(n, l->from);
     if (slope > 1e-12) {
@@ -24,7 +24,7 @@ static void cut(struct interval *k, const struct sight *l, vec3 n, double at)
     }
 }
 
-static struct interval in_ball(const struct sight *l, vec3 c, double r)
+static struct interval ray_in_ball(const struct sight *l, vec3 c, double r)
 {
     vec3 d = v3_sub(c, l->from);
     double middle = v3_dot(d, l->along), h2 = r * r - v3_dot(d, d) + middle * middle;
@@ -35,7 +35,7 @@ static struct interval in_ball(const struct sight *l, vec3 c, double r)
 }
 
 /* In the cylinder around a segment, without round ends */
-static struct interval in_tube(const struct sight *l, vec3 a, vec3 b, double r)
+static struct interval ray_in_tube(const struct sight *l, vec3 a, vec3 b, double r)
 {
     vec3 d = v3_sub(b, a), u = v3_scale(1 / v3_norm(d), d), o = v3_sub(l->from, a);
     vec3 p = v3_axpy(l->along, -v3_dot(l->along, u), u), q = v3_axpy(o, -v3_dot(o, u), u);
@@ -43,7 +43,7 @@ static struct interval in_tube(const struct sight *l, vec3 a, vec3 b, double r)
     if (A < 1e-12 || !(D > 0)) return (struct interval){ INFINITY, -INFINITY, { 0, 0, 0 } };
     struct interval k = { (-B - sqrt(D)) / A, (-B + sqrt(D)) / A, { 0, 0, 0 } };
     k.n = v3_scale(1 / r, v3_axpy(q, k.hi, p));
-    cut(&k, l, u, v3_dot(u, b)), cut(&k, l, v3_scale(-1, u), -v3_dot(u, a));
+    ray_cut(&k, l, u, v3_dot(u, b)), ray_cut(&k, l, v3_scale(-1, u), -v3_dot(u, a));
     return k;
 }
 
@@ -51,11 +51,11 @@ static struct interval in_core(const struct shape *s, const struct sight *l)
 {
     struct interval k = all_of_it();
     for (int32_t f = 0; f < s->faces; f++)
-        cut(&k, l, s->normal[f], v3_dot(s->normal[f], s->vertex[s->corner[s->first[f]]]));
+        ray_cut(&k, l, s->normal[f], v3_dot(s->normal[f], s->vertex[s->corner[s->first[f]]]));
     return k;
 }
 
-static struct interval over_face(const struct shape *s, const struct sight *l, int32_t f)
+static struct interval ray_over_face(const struct shape *s, const struct sight *l, int32_t f)
 {
     struct interval k = all_of_it();
     vec3 n = s->normal[f];
@@ -64,14 +64,14 @@ static struct interval over_face(const struct shape *s, const struct sight *l, i
         vec3 a = s->vertex[s->corner[i]],
              b = s->vertex[s->corner[i + 1 < end ? i + 1 : s->first[f]]];
         vec3 out = v3_cross(v3_sub(b, a), n);
-        cut(&k, l, out, v3_dot(out, a));
+        ray_cut(&k, l, out, v3_dot(out, a));
     }
-    cut(&k, l, v3_scale(-1, n), -at), cut(&k, l, n, at + s->round);
+    ray_cut(&k, l, v3_scale(-1, n), -at), ray_cut(&k, l, n, at + s->round);
     return k;
 }
 
 /* The one that is nearest to the viewer, once what is cut away is */
-static void take(struct interval *best, struct interval k, const struct sight *l)
+static void ray_take(struct interval *best, struct interval k, const struct sight *l)
 {
     if (!(k.lo < k.hi) || k.lo >= l->before) return;
     if (k.hi > l->before) k.hi = l->before, k.n = v3(0, 0, 0);
@@ -82,15 +82,15 @@ bool sight_meets(const struct shape *s, const struct sight *l, double *t, vec3 *
 {
     struct interval best = { INFINITY, -INFINITY, { 0, 0, 0 } };
     bool clump = s->form == SHAPE_CLUMP, hull = s->form == SHAPE_HULL;
-    if (hull) take(&best, in_core(s, l), l);
+    if (hull) ray_take(&best, in_core(s, l), l);
     for (int32_t i = 0; i < s->vertices && (clump || s->round > 0); i++)
-        take(&best, in_ball(l, s->vertex[i], clump ? s->ball[i] : s->round), l);
+        ray_take(&best, ray_in_ball(l, s->vertex[i], clump ? s->ball[i] : s->round), l);
     for (int32_t k = 0; k < s->edges && hull && s->round > 0; k++)
-        take(&best, in_tube(l, s->vertex[s->edge[k].tail], s->vertex[s->edge[k].head], s->round),
+        ray_take(&best, ray_in_tube(l, s->vertex[s->edge[k].tail], s->vertex[s->edge[k].head], s->round),
              l);
     for (int32_t f = 0; f < s->faces && hull && s->round > 0; f++)
-        take(&best, over_face(s, l, f), l);
-    if (s->form == SHAPE_CAPSULE) take(&best, in_tube(l, s->vertex[0], s->vertex[1], s->round), l);
+        ray_take(&best, ray_over_face(s, l, f), l);
+    if (s->form == SHAPE_CAPSULE) ray_take(&best, ray_in_tube(l, s->vertex[0], s->vertex[1], s->round), l);
     *t = best.hi, *n = best.n;
     return best.lo < best.hi;
 }

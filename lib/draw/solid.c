@@ -38,7 +38,7 @@ static double value_of(const struct solid_walls *s, const struct packing *p, int
 }
 
 /* The name by which a face was chosen; else its own; NULL: none */
-static const char *name_of(const struct chosen *c, const struct packing *p, int32_t wall,
+static const char *wall_facets_name_of(const struct chosen *c, const struct packing *p, int32_t wall,
                            int32_t face)
 {
     for (int32_t k = 0; c->any && k < p->names.rows; k++) {
@@ -54,7 +54,7 @@ static int legend_row(struct solid_walls *s, const struct chosen *c, const struc
                       int32_t wall, int32_t face)
 {
     char name[NAME_BYTES + 12];
-    const char *own = name_of(c, p, wall, face);
+    const char *own = wall_facets_name_of(c, p, wall, face);
     if (own)
         snprintf(name, sizeof name, "%s", own);
     else

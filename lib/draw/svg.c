@@ -35,7 +35,7 @@ static void draw_core(cairo_t *cr, const struct view *v, const struct packing *p
         cairo_new_path(cr);
 }
 
-static void draw_shape(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
+static void svg_draw_shape(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
                        struct rgb own, double r)
 {
     const struct rgb dark = { 0.06F, 0.06F, 0.06F };
@@ -73,7 +73,7 @@ static void draw_disc(cairo_t *cr, const struct view *v, const struct packing *p
     struct rgb own = paint_body(&v->paint, p, i);
     own = rgb_mix(own, v->background, v->pale);
     if (packing_shape(p, i)) {
-        draw_shape(cr, v, p, i, own, r);
+        svg_draw_shape(cr, v, p, i, own, r);
         return;
     }
     overlay_colour(cr, own);
@@ -112,7 +112,7 @@ static int draw_walls(cairo_t *cr, const struct view *v, const struct packing *p
     return 0;
 }
 
-static cairo_status_t keep(void *picture, const unsigned char *data, unsigned n)
+static cairo_status_t svg_keep(void *picture, const unsigned char *data, unsigned n)
 {
     struct bytes_out *b = picture;
     return bytes_append(b, data, n) ? CAIRO_STATUS_NO_MEMORY : CAIRO_STATUS_SUCCESS;
@@ -143,7 +143,7 @@ int svg_draw(const struct overlay *o, const struct view *v, const struct packing
     struct bytes_out b = { 0 };
     if (p->dim != 2) return why_set(why, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
-        keep, &b, c->width, c->height + overlay_strip(o, c->width));
+        svg_keep, &b, c->width, c->height + overlay_strip(o, c->width));
     cairo_t *cr = cairo_create(surface);
     bool good = draw_all(cr, o, v, p, contacts);
     cairo_destroy(cr);

@@ -17,14 +17,14 @@ enum {
 
 /* ---- the table ---- */
 
-static int compare(const void *a, const void *b)
+static int paint_compare(const void *a, const void *b)
 {
     const struct value *x = a, *y = b;
     if (x->step != y->step) return x->step < y->step ? -1 : 1;
     return (x->id > y->id) - (x->id < y->id);
 }
 
-static struct value *add_row(struct values *v)
+static struct value *paint_add_row(struct values *v)
 {
     if (v->n == v->room) {
         int64_t room = v->room ? 2 * v->room : 1024;
@@ -35,16 +35,16 @@ static struct value *add_row(struct values *v)
     return &v->row[v->n++];
 }
 
-struct columns {
+struct paint_columns {
     int id, step, x; /* which; -1: not there */
 };
 
 /* The first line: names. */
-static int read_names(struct values *v, char *line, const char *path, const char *column,
-                      struct columns *c, struct why *why)
+static int paint_read_names(struct values *v, char *line, const char *path, const char *column,
+                      struct paint_columns *c, struct why *why)
 {
     int k = 0;
-    *c = (struct columns){ -1, -1, -1 };
+    *c = (struct paint_columns){ -1, -1, -1 };
     line += mark_length(line, strlen(line));
     line += strspn(line, "# \t");
     for (char *name = strtok(line, blank); name; name = strtok(NULL, blank), k++) {
@@ -61,10 +61,10 @@ static int read_names(struct values *v, char *line, const char *path, const char
 }
 
 static int read_row(struct values *v, char *line, const char *path, int64_t number,
-                    const struct columns *c, struct why *why)
+                    const struct paint_columns *c, struct why *why)
 {
     int k = 0, found = 0;
-    struct value *row = add_row(v);
+    struct value *row = paint_add_row(v);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
     *row = (struct value){ .step = -1, .x = NAN };
     for (char *word = strtok(line, blank); word; word = strtok(NULL, blank), k++) {
@@ -88,7 +88,7 @@ static int read_row(struct values *v, char *line, const char *path, int64_t numb
 int values_read(struct values *v, const char *path, const char *column, struct why *why)
 {
     FILE *in = fopen(path, "r");
-    struct columns c = { -1, -1, -1 };
+    struct paint_columns c = { -1, -1, -1 };
     char *line = malloc(LINE);
     struct stat st;
     if (in && !line) why_set(why, EX_SOFTWARE, "no memory");
@@ -103,14 +103,14 @@ int values_read(struct values *v, const char *path, const char *column, struct w
             why_set(why, EX_DATAERR, "%s: too many lines for a pipe (endless?): put it into a file",
                     path);
         else if (number == 1)
-            read_names(v, line, path, column, &c, why);
+            paint_read_names(v, line, path, column, &c, why);
         else if (line[strspn(line, blank)] && *line != '#')
             read_row(v, line, path, number, &c, why);
     }
     if (!why->status && ferror(in)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
     if (!why->status && !v->name) why_set(why, EX_DATAERR, "%s: empty", path);
     free(line), fclose(in);
-    if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, compare);
+    if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, paint_compare);
     return why->status;
 }
 
@@ -124,8 +124,8 @@ static double value_at(const struct values *v, int64_t step, int64_t id)
 {
     const struct value exact = { step, id, 0 }, any = { -1, id, 0 };
     if (!v || !v->n) return NAN;
-    const struct value *found = bsearch(&exact, v->row, (size_t)v->n, sizeof *v->row, compare);
-    if (!found) found = bsearch(&any, v->row, (size_t)v->n, sizeof *v->row, compare);
+    const struct value *found = bsearch(&exact, v->row, (size_t)v->n, sizeof *v->row, paint_compare);
+    if (!found) found = bsearch(&any, v->row, (size_t)v->n, sizeof *v->row, paint_compare);
     return found ? found->x : NAN;
 }
 

@@ -8,14 +8,14 @@
 
 #include <stdlib.h>
 
-static bool is_wanted(const struct view *v, const struct packing *p, int64_t i)
+static bool view_is_wanted(const struct view *v, const struct packing *p, int64_t i)
 {
     return !v->only || chosen_body(v->only, p, i);
 }
 
 bool view_joins(const struct view *v, const struct packing *p, int32_t a, int32_t b)
 {
-    return is_wanted(v, p, b) || (a >= 0 && is_wanted(v, p, a));
+    return view_is_wanted(v, p, b) || (a >= 0 && view_is_wanted(v, p, a));
 }
 
 static bool is_in_region(const struct view *v, const struct packing *p, int64_t i)
@@ -29,12 +29,12 @@ static bool is_in_region(const struct view *v, const struct packing *p, int64_t 
 
 bool view_shows(const struct view *v, const struct packing *p, int64_t i)
 {
-    return is_wanted(v, p, i) && is_in_region(v, p, i);
+    return view_is_wanted(v, p, i) && is_in_region(v, p, i);
 }
 
 /* ---- stray bodies ---- */
 
-static int compare(const void *a, const void *b)
+static int view_compare(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
@@ -56,7 +56,7 @@ static bool find_crowd(struct extent *r, const struct packing *p)
     for (int k = 0; k < 3; k++) {
         for (int64_t i = 0; i < p->n; i++)
             x[i] = k == 0 ? p->x[i].x : k == 1 ? p->x[i].y : p->x[i].z;
-        qsort(x, (size_t)p->n, sizeof *x, compare);
+        qsort(x, (size_t)p->n, sizeof *x, view_compare);
         int64_t out = p->n / 50 + 1;
         double from = x[out], to = x[p->n - 1 - out];
         lo[k] = from, hi[k] = to;
@@ -68,7 +68,7 @@ static bool find_crowd(struct extent *r, const struct packing *p)
     return true;
 }
 
-static bool within(const struct extent *r, vec3 x)
+static bool view_within(const struct extent *r, vec3 x)
 {
     return x.x >= r->lo.x && x.x <= r->hi.x && x.y >= r->lo.y && x.y <= r->hi.y && x.z >= r->lo.z &&
            x.z <= r->hi.z;
@@ -90,7 +90,7 @@ static int gather_crowd(struct packing *crowd, const struct view *v, const struc
     bool some = !v->strays && find_crowd(&r, p);
     crowd->n = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (is_wanted(v, p, i) && (!some || within(&r, p->x[i])))
+        if (view_is_wanted(v, p, i) && (!some || view_within(&r, p->x[i])))
             crowd->x[crowd->n] = p->x[i], crowd->radius[crowd->n++] = p->radius[i];
     return 0;
 }
@@ -198,7 +198,7 @@ static vec3 sample_near(const struct view *v, vec3 x, double *near)
               k * see.z);
 }
 
-static vec3 sample_of(const struct view *v, vec3 x)
+static vec3 view_sample_of(const struct view *v, vec3 x)
 {
     double near;
     return sample_near(v, x, &near);
@@ -276,7 +276,7 @@ static void place_cutting(struct cutting *c, const struct view *v)
 
 static void place_ground(struct ground *g, const struct view *v, const struct panel *f)
 {
-    vec3 n = camera_sees(&v->camera, f->n), foot = sample_of(v, v3_sub(f->corner[0], v->moved));
+    vec3 n = camera_sees(&v->camera, f->n), foot = view_sample_of(v, v3_sub(f->corner[0], v->moved));
     g->n = v3(n.x, -n.y, n.z);
     if (isinf(v->camera.eye)) {
         g->plane[1] = -g->n.x / g->n.z, g->plane[2] = -g->n.y / g->n.z;
@@ -288,7 +288,7 @@ static void place_ground(struct ground *g, const struct view *v, const struct pa
     }
     g->corners = f->corners;
     for (int k = 0; k < f->corners; k++) {
-        vec3 at = sample_of(v, v3_sub(f->corner[k], v->moved));
+        vec3 at = view_sample_of(v, v3_sub(f->corner[k], v->moved));
         g->x[k] = at.x, g->y[k] = at.y;
     }
     const struct extent *r = &v->region;
@@ -324,8 +324,8 @@ static int place_walls(struct raster *s, const struct view *v, const struct pack
         if (v3_dot(b->panel[i].n, v->camera.toward) > WALLS_FACING)
             place_ground(&s->ground[s->grounds++], v, &b->panel[i]);
     for (int i = 0; allocated && i < b->edges; i++)
-        s->edge[s->edges++] = (struct edge){ sample_of(v, v3_sub(b->edge[i].a, v->moved)),
-                                             sample_of(v, v3_sub(b->edge[i].b, v->moved)) };
+        s->edge[s->edges++] = (struct edge){ view_sample_of(v, v3_sub(b->edge[i].a, v->moved)),
+                                             view_sample_of(v, v3_sub(b->edge[i].b, v->moved)) };
     free(b);
     return allocated ? 0 : -1;
 }

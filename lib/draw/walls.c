@@ -3,12 +3,12 @@
 
 #include "draw/outline.h"
 
-static double *component(vec3 *a, int axis)
+static double *walls_component(vec3 *a, int axis)
 {
     return axis == 0 ? &a->x : axis == 1 ? &a->y : &a->z;
 }
 
-static vec3 unit(int axis, double sign)
+static vec3 walls_unit(int axis, double sign)
 {
     return v3(axis == 0 ? sign : 0, axis == 1 ? sign : 0, axis == 2 ? sign : 0);
 }
@@ -42,14 +42,14 @@ static int walls_of(const struct packing *p)
 /* ---- the region ---- */
 
 /* m: the innermost wall across the axis, below (sign 1) or above (-1) the bodies; NAN: none */
-static double limit(const struct packing *p, int axis, double sign)
+static double walls_limit(const struct packing *p, int axis, double sign)
 {
     double found = NAN;
     for (int i = 0; i < walls_of(p); i++) {
         vec3 x = wall_now(p, i);
-        if (!is_plane(p, i) || !is_drawn(x) || v3_dot(normal_now(p, i), unit(axis, sign)) < 0.999)
+        if (!is_plane(p, i) || !is_drawn(x) || v3_dot(normal_now(p, i), walls_unit(axis, sign)) < 0.999)
             continue;
-        double c = *component(&x, axis);
+        double c = *walls_component(&x, axis);
         if (isnan(found) || sign * c > sign * found) found = c;
     }
     return found;
@@ -61,7 +61,7 @@ static bool region_of_walls(struct extent *r, const struct packing *p)
     double lo[3], hi[3], size = 0;
     bool any = false;
     for (int k = 0; k < 3; k++) {
-        lo[k] = limit(p, k, 1), hi[k] = limit(p, k, -1);
+        lo[k] = walls_limit(p, k, 1), hi[k] = walls_limit(p, k, -1);
         if (hi[k] > lo[k]) size = fmax(size, hi[k] - lo[k]);
         any |= !isnan(lo[k]) || !isnan(hi[k]);
     }
@@ -70,13 +70,13 @@ static bool region_of_walls(struct extent *r, const struct packing *p)
         if (isnan(lo[k]) && isnan(hi[k])) lo[k] = -0.5 * size;
         if (isnan(lo[k])) lo[k] = hi[k] - size;
         if (!(hi[k] > lo[k])) hi[k] = lo[k] + size;
-        *component(&r->lo, k) = lo[k], *component(&r->hi, k) = hi[k];
+        *walls_component(&r->lo, k) = lo[k], *walls_component(&r->hi, k) = hi[k];
     }
     if (p->dim == 2) r->lo.z = r->hi.z = 0;
     return any;
 }
 
-static bool is_finite(const struct packing *p, int32_t i)
+static bool walls_is_finite(const struct packing *p, int32_t i)
 {
     const struct wall *w = &p->wall[i];
     return wall_there(w, p->t) && (w->shape == BOUNDARY_MESH || isfinite(boundary_reach(w)));
@@ -85,7 +85,7 @@ static bool is_finite(const struct packing *p, int32_t i)
 static bool any_finite(const struct packing *p)
 {
     for (int32_t i = 0; i < p->walls; i++)
-        if (is_finite(p, i)) return true;
+        if (walls_is_finite(p, i)) return true;
     return false;
 }
 
@@ -101,8 +101,8 @@ bool extent_clip(const struct extent *r, vec3 *a, vec3 *b)
     vec3 from = *a, way = v3_sub(*b, *a), lo = r->lo, hi = r->hi;
     double first = 0, last = 1, near = 1e-6 * v3_norm(v3_sub(hi, lo));
     for (int k = 0; k < 3; k++) {
-        double x = *component(&from, k), d = *component(&way, k);
-        double l = *component(&lo, k) - near, h = *component(&hi, k) + near;
+        double x = *walls_component(&from, k), d = *walls_component(&way, k);
+        double l = *walls_component(&lo, k) - near, h = *walls_component(&hi, k) + near;
         if (d == 0 && (x < l || x > h)) return false;
         if (d == 0) continue;
         first = fmax(first, d > 0 ? (l - x) / d : (h - x) / d);
@@ -142,7 +142,7 @@ static void add_finite(struct extent *r, const struct packing *p, const struct e
             continue;
         for (int k = 0; k < 2; k++) {
             vec3 x = end[k];
-            if (!is_finite(p, o.line[i].boundary) || !is_drawn(x)) continue;
+            if (!walls_is_finite(p, o.line[i].boundary) || !is_drawn(x)) continue;
             r->lo = v3(fmin(r->lo.x, x.x), fmin(r->lo.y, x.y), fmin(r->lo.z, x.z));
             r->hi = v3(fmax(r->hi.x, x.x), fmax(r->hi.y, x.y), fmax(r->hi.z, x.z));
         }
@@ -156,9 +156,9 @@ static bool find_region(struct extent *r, const struct packing *p, bool near)
     r->lo = v3(far, far, far), r->hi = v3(-far, -far, -far);
     for (int64_t i = 0; i < p->n; i++)
         for (int k = 0; is_drawn(p->x[i]) && p->radius[i] < WALLS_FAR && k < 3; k++) {
-            double c = *component(&p->x[i], k), b = k < p->dim ? p->radius[i] : 0;
-            *component(&r->lo, k) = fmin(*component(&r->lo, k), c - b);
-            *component(&r->hi, k) = fmax(*component(&r->hi, k), c + b);
+            double c = *walls_component(&p->x[i], k), b = k < p->dim ? p->radius[i] : 0;
+            *walls_component(&r->lo, k) = fmin(*walls_component(&r->lo, k), c - b);
+            *walls_component(&r->hi, k) = fmax(*walls_component(&r->hi, k), c + b);
         }
     if (r->lo.x > r->hi.x && !any_finite(p)) return region_of_walls(r, p);
     const struct extent around = near_bodies(r, p);
@@ -167,12 +167,12 @@ static bool find_region(struct extent *r, const struct packing *p, bool near)
     const vec3 up = walls_up(p);
     int upright = p->dim - 1; // the axis that is nearest to gravity
     for (int k = 0; k < p->dim; k++)
-        if (fabs(v3_dot(up, unit(k, 1))) > fabs(v3_dot(up, unit(upright, 1)))) upright = k;
+        if (fabs(v3_dot(up, walls_unit(k, 1))) > fabs(v3_dot(up, walls_unit(upright, 1)))) upright = k;
     for (int k = 0; k < p->dim; k++) {
         // wide beside the bodies, where the floor is seen; narrow above them
         double margin = size * (k == upright ? 0.04 : 0.25);
-        double *lo = component(&r->lo, k), *hi = component(&r->hi, k);
-        double below = limit(p, k, 1), above = limit(p, k, -1);
+        double *lo = walls_component(&r->lo, k), *hi = walls_component(&r->hi, k);
+        double below = walls_limit(p, k, 1), above = walls_limit(p, k, -1);
         *lo = *lo - below <= size ? fmin(*lo, below) : *lo - margin;
         *hi = above - *hi <= size ? fmax(*hi, above) : *hi + margin;
     }
@@ -200,16 +200,16 @@ struct extent region_join(struct extent a, struct extent b)
 /* ---- walls in it ---- */
 
 /* A convex polygon; cut[k]: the wall that cut its side from corner k to the next, -1: the region */
-struct polygon {
+struct walls_polygon {
     int count;
     vec3 p[WALLS_CORNERS];
     int cut[WALLS_CORNERS];
 };
 
 /* Keeps the part with n . x >= c [Sutherland and Hodgman]; who cuts: a wall or -1. */
-static void clip(struct polygon *g, vec3 n, double c, int who)
+static void walls_clip(struct walls_polygon *g, vec3 n, double c, int who)
 {
-    struct polygon out = { .count = 0 };
+    struct walls_polygon out = { .count = 0 };
     for (int k = 0; k < g->count; k++) {
         vec3 a = g->p[k], b = g->p[(k + 1) % g->count];
         double da = v3_dot(n, a) - c, db = v3_dot(n, b) - c;
@@ -222,19 +222,19 @@ static void clip(struct polygon *g, vec3 n, double c, int who)
 }
 
 /* With a tolerance, because walls often lie exactly in the sides of the region */
-static void clip_region(struct polygon *g, const struct extent *r, vec3 middle, double size,
+static void clip_region(struct walls_polygon *g, const struct extent *r, vec3 middle, double size,
                         int dim)
 {
     double tolerance = 1e-6 * size;
     vec3 lo = v3_sub(r->lo, middle), hi = v3_sub(r->hi, middle);
     for (int k = 0; k < dim; k++) {
-        clip(g, unit(k, 1), *component(&lo, k) - tolerance, -1);
-        clip(g, unit(k, -1), -*component(&hi, k) - tolerance, -1);
+        walls_clip(g, walls_unit(k, 1), *walls_component(&lo, k) - tolerance, -1);
+        walls_clip(g, walls_unit(k, -1), -*walls_component(&hi, k) - tolerance, -1);
     }
 }
 
 /* A square, or in the plane a line, of wall i that extends beyond the region; m from its middle */
-static struct polygon wall_uncut(const struct packing *p, int i, vec3 middle, double size)
+static struct walls_polygon wall_uncut(const struct packing *p, int i, vec3 middle, double size)
 {
     vec3 n = normal_now(p, i), x = v3_sub(wall_now(p, i), middle);
     vec3 foot = v3_scale(v3_dot(n, x), n);
@@ -243,14 +243,14 @@ static struct polygon wall_uncut(const struct packing *p, int i, vec3 middle, do
                                : v3_cross(n, v3(0, 1, 0));
     s = v3_scale(size / v3_norm(s), s);
     vec3 t = v3_cross(n, s);
-    if (p->dim == 2) return (struct polygon){ 2, { v3_sub(foot, t), v3_add(foot, t) }, { -1, -1 } };
-    struct polygon g = { .count = 4, .cut = { -1, -1, -1, -1 } };
+    if (p->dim == 2) return (struct walls_polygon){ 2, { v3_sub(foot, t), v3_add(foot, t) }, { -1, -1 } };
+    struct walls_polygon g = { .count = 4, .cut = { -1, -1, -1, -1 } };
     g.p[0] = v3_sub(v3_sub(foot, s), t), g.p[1] = v3_sub(v3_add(foot, s), t);
     g.p[2] = v3_add(v3_add(foot, s), t), g.p[3] = v3_add(v3_sub(foot, s), t);
     return g;
 }
 
-static void keep_polygon(struct walls *b, const struct packing *p, int i, const struct polygon *g,
+static void keep_polygon(struct walls *b, const struct packing *p, int i, const struct walls_polygon *g,
                          vec3 middle)
 {
     bool stroke = p->dim == 2;
@@ -267,22 +267,22 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
 }
 
 /* Wall i cut by the region and by all other walls; corners from the middle */
-static struct polygon wall_cut(const struct packing *p, int i, const struct extent *r, vec3 middle)
+static struct walls_polygon wall_cut(const struct packing *p, int i, const struct extent *r, vec3 middle)
 {
     double size = v3_norm(v3_sub(r->hi, r->lo));
-    if (!is_plane(p, i) || !is_drawn(wall_now(p, i))) return (struct polygon){ .count = 0 };
-    struct polygon g = wall_uncut(p, i, middle, size);
+    if (!is_plane(p, i) || !is_drawn(wall_now(p, i))) return (struct walls_polygon){ .count = 0 };
+    struct walls_polygon g = wall_uncut(p, i, middle, size);
     clip_region(&g, r, middle, size, p->dim);
     for (int j = 0; j < walls_of(p) && g.count; j++) {
         vec3 n = normal_now(p, j), x = wall_now(p, j);
         if (j == i || !is_plane(p, j) || !is_drawn(x)) continue;
-        clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
+        walls_clip(&g, n, v3_dot(n, v3_sub(x, middle)) - 1e-9 * size, j);
     }
     return g;
 }
 
 /* Lines of the other shapes; without memory for them there are none. */
-static void add_outlines(struct walls *b, const struct packing *p, const struct extent *r)
+static void walls_add_outlines(struct walls *b, const struct packing *p, const struct extent *r)
 {
     struct outline o;
     struct why why = { 0 };
@@ -298,10 +298,10 @@ void walls_build(struct walls *b, const struct packing *p, const struct extent *
     b->panels = b->edges = 0;
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
     for (int i = 0; i < walls_of(p); i++) {
-        struct polygon g = wall_cut(p, i, r, middle);
+        struct walls_polygon g = wall_cut(p, i, r, middle);
         if (g.count > 1) keep_polygon(b, p, i, &g, middle);
     }
-    add_outlines(b, p, r);
+    walls_add_outlines(b, p, r);
 }
 
 bool walls_floor(const struct packing *p, int i, vec3 toward)
@@ -313,7 +313,7 @@ bool walls_floor(const struct packing *p, int i, vec3 toward)
 int walls_polygon(const struct packing *p, int i, const struct extent *r, vec3 *corner)
 {
     vec3 middle = v3_scale(0.5, v3_add(r->lo, r->hi));
-    struct polygon g = wall_cut(p, i, r, middle);
+    struct walls_polygon g = wall_cut(p, i, r, middle);
     for (int k = 0; k < g.count; k++) corner[k] = v3_add(g.p[k], middle);
     return g.count;
 }

@@ -6,7 +6,7 @@
 const char *const part_name[PART_COUNT] = { "grains", "contacts", "boundary", "cell", "surfaces" };
 
 /* m: the least and the greatest of (direction . x) -+ radius over the grains; 0 and 1 without any */
-static void reach(const struct packing *p, vec3 direction, double *lo, double *hi)
+static void format_reach(const struct packing *p, vec3 direction, double *lo, double *hi)
 {
     *lo = INFINITY, *hi = -INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
@@ -29,7 +29,7 @@ void export_frame_box(struct box *b, const struct packing *p)
             b->origin = v3_add(b->origin, v3_scale(v3_dot(axis[k], c->origin), axis[k]));
             continue;
         }
-        if (k < p->dim) reach(p, axis[k], &lo, &hi);
+        if (k < p->dim) format_reach(p, axis[k], &lo, &hi);
         b->edge[k] = v3_scale(hi - lo, axis[k]);
         b->origin = v3_add(b->origin, v3_scale(lo, axis[k]));
     }

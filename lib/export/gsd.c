@@ -17,12 +17,12 @@
 
 enum gsd_type { U8 = 1, U32 = 3, U64 = 4, I8 = 5, I32 = 7, F32 = 9, F64 = 10 };
 
-static size_t size_of(enum gsd_type t)
+static size_t gsd_size_of(enum gsd_type t)
 {
     return t == U64 || t == F64 ? 8 : t == U8 || t == I8 ? 1 : 4;
 }
 
-enum chunk {
+enum gsd_chunk {
     STEP,
     DIMENSIONS,
     BOX,
@@ -101,10 +101,10 @@ static uint64_t hash_of(const unsigned char *b, size_t n)
     return h;
 }
 
-static int put_chunk(struct gsd *g, enum chunk k, int64_t rows, int64_t columns, const void *data,
+static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t columns, const void *data,
                      struct why *why)
 {
-    const size_t size = (size_t)(rows * columns) * size_of(chunks[k].type);
+    const size_t size = (size_t)(rows * columns) * gsd_size_of(chunks[k].type);
     const uint64_t hash = hash_of(data, size);
     if (!g->frames)
         g->first[k].rows = (uint64_t)rows, g->first[k].columns = (uint32_t)columns,
@@ -144,21 +144,21 @@ static int by_kind(const void *one, const void *other)
     return (a->radius > b->radius) - (a->radius < b->radius);
 }
 
-static struct kind kind_of(const struct packing *p, int64_t i)
+static struct kind gsd_kind_of(const struct packing *p, int64_t i)
 {
     int32_t shape = p->shape ? p->shape[i] : 0;
     return (struct kind){ p->kind[i], shape, shape ? p->radius[i] : 0 };
 }
 
 /* The types, sorted; those of balls come first, one for each kind. To be freed. */
-static struct kind *list_types(const struct packing *p, int64_t *types, struct why *why)
+static struct kind *gsd_list_types(const struct packing *p, int64_t *types, struct why *why)
 {
     struct kind *t = malloc(((size_t)p->n + (size_t)p->kinds) * sizeof *t);
     int64_t n = 0, kept = 0;
     if (!t) return why_set(why, EX_SOFTWARE, "no memory for the types of an export"), NULL;
     for (int32_t k = 0; k < p->kinds; k++) t[n++] = (struct kind){ k, 0, 0 };
     for (int64_t i = 0; i < p->n; i++)
-        if (packing_shape(p, i)) t[n++] = kind_of(p, i);
+        if (packing_shape(p, i)) t[n++] = gsd_kind_of(p, i);
     qsort(t, (size_t)n, sizeof *t, by_kind);
     for (int64_t k = 0; k < n; k++)
         if (!kept || by_kind(&t[kept - 1], &t[k])) t[kept++] = t[k];
@@ -207,7 +207,7 @@ static void put_shape(FILE *out, const struct packing *p, const struct kind *k)
 }
 
 /* The k-th type's name: its kind, with the shape and, where there are several sizes of that, a number */
-static void put_name(FILE *out, const struct packing *p, const struct kind *t, int64_t types,
+static void gsd_put_name(FILE *out, const struct packing *p, const struct kind *t, int64_t types,
                      int64_t k)
 {
     int64_t first = k, last = k;
@@ -221,7 +221,7 @@ static void put_name(FILE *out, const struct packing *p, const struct kind *t, i
 }
 
 /* Texts as rows of one width, ended by zeros */
-static int put_texts(struct gsd *g, enum chunk c, char *const *text, int64_t n, struct why *why)
+static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int64_t n, struct why *why)
 {
     size_t width = 1;
     for (int64_t k = 0; k < n; k++)
@@ -238,7 +238,7 @@ static int put_texts(struct gsd *g, enum chunk c, char *const *text, int64_t n, 
 }
 
 static int put_types(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
-                     enum chunk c, struct why *why)
+                     enum gsd_chunk c, struct why *why)
 {
     char **text = calloc((size_t)types + 1, sizeof *text);
     struct text written;
@@ -246,12 +246,12 @@ static int put_types(struct gsd *g, const struct packing *p, const struct kind *
     if (!text) why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     for (int64_t k = 0; !why->status && k < types; k++) {
         FILE *to = text_open(&written);
-        if (to && c == TYPES) put_name(to, p, t, types, k);
+        if (to && c == TYPES) gsd_put_name(to, p, t, types, k);
         if (to && c == TYPE_SHAPES) put_shape(to, p, &t[k]);
         if (!(text[k] = text_close(&written, to, &size)))
             why_set(why, EX_SOFTWARE, "no memory for the types of an export");
     }
-    if (!why->status) put_texts(g, c, text, types, why);
+    if (!why->status) gsd_put_texts(g, c, text, types, why);
     for (int64_t k = 0; text && k < types; k++) free(text[k]);
     free(text);
     return why->status;
@@ -263,7 +263,7 @@ static int put_type_ids(struct gsd *g, const struct packing *p, const struct kin
     uint32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
     if (!id) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++) {
-        struct kind k = kind_of(p, i);
+        struct kind k = gsd_kind_of(p, i);
         id[i] =
             !k.shape
                 ? (uint32_t)k.kind
@@ -277,7 +277,7 @@ static int put_type_ids(struct gsd *g, const struct packing *p, const struct kin
 /* ---- particles ---- */
 
 /* The box of GSD: along x, in the plane of x and y, and above; tilts relative to the heights */
-static int box_of(float of[6], struct box *b, const struct packing *p, struct why *why)
+static int gsd_box_of(float of[6], struct box *b, const struct packing *p, struct why *why)
 {
     export_frame_box(b, p);
     const vec3 *e = b->edge;
@@ -292,7 +292,7 @@ static int box_of(float of[6], struct box *b, const struct packing *p, struct wh
 }
 
 /* x relative to the centre of the box, and within it along periodic edges; image: the edges taken off */
-static vec3 within(const struct box *b, vec3 x, int32_t image[3])
+static vec3 gsd_within(const struct box *b, vec3 x, int32_t image[3])
 {
     const vec3 *e = b->edge;
     vec3 centre = v3_axpy(b->origin, 0.5, v3_add(v3_add(e[0], e[1]), e[2]));
@@ -318,13 +318,13 @@ static void principal_moments(const struct packing *p, int64_t i, double of[3])
 
 /* The chunk's numbers of grain i. HOOMD's angular momentum is the quaternion 2 q (0, I w), w in the axes of
    the grain. */
-static void numbers_of(const struct packing *p, const struct box *b, int64_t i, enum chunk c,
+static void numbers_of(const struct packing *p, const struct box *b, int64_t i, enum gsd_chunk c,
                        float out[4])
 {
     int32_t image[3] = { 0 };
     double moment[3];
     vec3 x = v3(0, 0, 0);
-    if (c == POSITION) x = within(b, p->x[i], image);
+    if (c == POSITION) x = gsd_within(b, p->x[i], image);
     if (c == VELOCITY) x = p->v[i];
     principal_moments(p, i, moment);
     if (c == MOMENT) x = v3(moment[0], moment[1], moment[2]);
@@ -343,7 +343,7 @@ static void numbers_of(const struct packing *p, const struct box *b, int64_t i, 
 static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b, struct why *why)
 {
     static const struct {
-        enum chunk chunk;
+        enum gsd_chunk chunk;
         int width;
     } of[] = { { MASS, 1 },        { DIAMETER, 1 }, { MOMENT, 3 }, { POSITION, 3 },
                { ORIENTATION, 4 }, { VELOCITY, 3 }, { ANGMOM, 4 } };
@@ -366,7 +366,7 @@ static int put_images(struct gsd *g, const struct packing *p, const struct box *
     if (!image) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++) {
         if (p->image) memcpy(image[i], p->image[i], sizeof image[i]);
-        within(b, p->x[i], image[i]);
+        gsd_within(b, p->x[i], image[i]);
     }
     put_chunk(g, IMAGE, p->n, 3, image, why);
     free(image);
@@ -381,8 +381,8 @@ static int put_frame(struct gsd *g, const struct packing *p, struct why *why)
     struct box b;
     float box[6];
     int64_t types = 0;
-    if (box_of(box, &b, p, why)) return why->status;
-    struct kind *t = list_types(p, &types, why);
+    if (gsd_box_of(box, &b, p, why)) return why->status;
+    struct kind *t = gsd_list_types(p, &types, why);
     if (t && !put_chunk(g, STEP, 1, 1, &step, why) && !put_chunk(g, DIMENSIONS, 1, 1, &dim, why) &&
         !put_chunk(g, BOX, 6, 1, box, why) && !put_chunk(g, COUNT, 1, 1, &n, why) &&
         !put_types(g, p, t, types, TYPES, why) && !put_types(g, p, t, types, TYPE_SHAPES, why) &&
@@ -394,7 +394,7 @@ static int put_frame(struct gsd *g, const struct packing *p, struct why *why)
     return why->status;
 }
 
-static struct gsd *begin(FILE *out, struct why *why)
+static struct gsd *gsd_begin(FILE *out, struct why *why)
 {
     static const struct header empty;
     struct gsd *g = calloc(1, sizeof *g);
@@ -412,7 +412,7 @@ static int write_gsd(FILE *out, const struct export_frame *m, enum part part, bo
                      struct why *why)
 {
     (void)part;
-    if (first && !(*m->kept = begin(out, why))) return why->status;
+    if (first && !(*m->kept = gsd_begin(out, why))) return why->status;
     return put_frame(*m->kept, m->packing, why);
 }
 

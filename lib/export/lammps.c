@@ -32,7 +32,7 @@ static void put_tilted(FILE *out, const struct box *b)
     fprintf(out, "%.17g %.17g %.17g\n", o.z, o.z + b->edge[2].z, yz);
 }
 
-static void put_box(FILE *out, const struct packing *p)
+static void lammps_put_box(FILE *out, const struct packing *p)
 {
     struct box b;
     export_frame_box(&b, p);
@@ -61,7 +61,7 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
     (void)part, (void)first, (void)why;
     fprintf(out, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->step,
             p->n);
-    put_box(out, p);
+    lammps_put_box(out, p);
     fprintf(out,
             "ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz radius mass "
             "quati quatj quatk quatw%s\n",

@@ -8,7 +8,7 @@
 #include <inttypes.h>
 
 /* A data file has nothing but balls that move. */
-static int check(const struct packing *p, struct why *why)
+static int lammps_check(const struct packing *p, struct why *why)
 {
     if (p->dim == 2) return why_set(why, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
     for (int64_t i = 0; i < p->n; i++) {
@@ -26,7 +26,7 @@ static int check(const struct packing *p, struct why *why)
     return 0;
 }
 
-static int put_box(FILE *out, const struct packing *p, struct why *why)
+static int lammps_data_put_box(FILE *out, const struct packing *p, struct why *why)
 {
     struct box b;
     export_frame_box(&b, p);
@@ -53,11 +53,11 @@ static int write_data(FILE *out, const struct export_frame *m, enum part part, b
 {
     const struct packing *p = m->packing;
     (void)part, (void)first;
-    if (check(p, why)) return why->status;
+    if (lammps_check(p, why)) return why->status;
     fprintf(out,
             "# nsd, step %" PRId64 ": SI units\n\n%" PRId64 " atoms\n%" PRId32 " atom types\n\n",
             p->step, p->n, p->kinds);
-    if (put_box(out, p, why)) return why->status;
+    if (lammps_data_put_box(out, p, why)) return why->status;
     fputs("\nAtoms\n\n", out);
     for (int64_t i = 0; i < p->n; i++) {
         double mass, inertia;

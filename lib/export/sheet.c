@@ -65,7 +65,7 @@ int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, stru
 }
 
 /* Room for so many points, and as many cells and corners */
-static int grow(struct sheet *s, int64_t least)
+static int sheet_grow(struct sheet *s, int64_t least)
 {
     if (least <= s->room) return 0;
     int64_t room = s->room ? 2 * s->room : 64;
@@ -83,7 +83,7 @@ static int grow(struct sheet *s, int64_t least)
 
 int sheet_add(struct sheet *s, int corners, const vec3 *x, struct why *why)
 {
-    if (grow(s, s->points + corners)) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (sheet_grow(s, s->points + corners)) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int k = 0; k < corners; k++) {
         s->corner[s->corners++] = s->points;
         s->x[s->points++] = x[k];
@@ -92,7 +92,7 @@ int sheet_add(struct sheet *s, int corners, const vec3 *x, struct why *why)
     return 0;
 }
 
-static struct sheet_column *add_column(struct sheet *s, const char *name, const char *suffix)
+static struct sheet_column *sheet_add_column(struct sheet *s, const char *name, const char *suffix)
 {
     struct sheet_column *c = &s->column[s->columns++];
     *c = (struct sheet_column){ name, suffix, *suffix ? (int)strlen(suffix) : 1, NULL, NULL };
@@ -101,7 +101,7 @@ static struct sheet_column *add_column(struct sheet *s, const char *name, const 
 
 double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct why *why)
 {
-    struct sheet_column *c = add_column(s, name, suffix);
+    struct sheet_column *c = sheet_add_column(s, name, suffix);
     c->real = calloc((size_t)(sheet_rows(s) * c->width) + 1, sizeof *c->real);
     if (!c->real) why_set(why, EX_SOFTWARE, "no memory for an export");
     return c->real;
@@ -109,7 +109,7 @@ double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct
 
 int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct why *why)
 {
-    struct sheet_column *c = add_column(s, name, suffix);
+    struct sheet_column *c = sheet_add_column(s, name, suffix);
     c->whole = calloc((size_t)(sheet_rows(s) * c->width) + 1, sizeof *c->whole);
     if (!c->whole) why_set(why, EX_SOFTWARE, "no memory for an export");
     return c->whole;

@@ -20,7 +20,7 @@ struct owners {
     struct chosen chosen; /* boundaries that are wanted */
 };
 
-static int add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
+static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
                     const vec3 *corner, struct why *why)
 {
     if (!o->of || s->cells == o->room) {
@@ -33,20 +33,20 @@ static int add_cell(struct sheet *s, struct owners *o, struct owner of, int corn
     return sheet_add(s, corners, corner, why);
 }
 
-static int add_planes(struct sheet *s, struct owners *o, const struct packing *p,
+static int sheet_walls_add_planes(struct sheet *s, struct owners *o, const struct packing *p,
                       const struct extent *region, struct why *why)
 {
     vec3 corner[WALLS_CORNERS];
     for (int32_t i = 0; i < p->walls && i < WALLS_PANELS; i++) {
         int corners = walls_polygon(p, i, region, corner);
         if (corners >= 2 && chosen_wall(&o->chosen, p, i) &&
-            add_cell(s, o, (struct owner){ i, 0 }, corners, corner, why))
+            sheet_walls_add_cell(s, o, (struct owner){ i, 0 }, corners, corner, why))
             return why->status;
     }
     return 0;
 }
 
-static int add_outlines(struct sheet *s, struct owners *o, const struct packing *p,
+static int sheet_walls_add_outlines(struct sheet *s, struct owners *o, const struct packing *p,
                         const struct extent *region, struct why *why)
 {
     struct outline line;
@@ -54,23 +54,23 @@ static int add_outlines(struct sheet *s, struct owners *o, const struct packing 
     for (int64_t i = 0; p->dim == 3 && i < line.triangles && !why->status; i++) {
         const struct owner of = { line.triangle[i].boundary, line.triangle[i].face };
         if (chosen_face(&o->chosen, p, of.boundary, of.face))
-            add_cell(s, o, of, 3, line.triangle[i].corner, why);
+            sheet_walls_add_cell(s, o, of, 3, line.triangle[i].corner, why);
     }
     for (int64_t i = 0; p->dim == 2 && i < line.lines && !why->status; i++) {
         const struct owner of = { line.line[i].boundary, line.line[i].face };
         if (chosen_face(&o->chosen, p, of.boundary, of.face))
-            add_cell(s, o, of, 2, line.line[i].end, why);
+            sheet_walls_add_cell(s, o, of, 2, line.line[i].end, why);
     }
     outline_free(&line);
     return why->status;
 }
 
-static void put(double *out, int64_t i, vec3 x)
+static void sheet_walls_put(double *out, int64_t i, vec3 x)
 {
     out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
 }
 
-static int add_columns(struct sheet *s, const struct owners *o, const struct packing *p,
+static int sheet_walls_add_columns(struct sheet *s, const struct owners *o, const struct packing *p,
                        struct why *why)
 {
     int32_t *number = sheet_whole(s, "boundary", "", why), *kind = sheet_whole(s, "kind", "", why);
@@ -81,14 +81,14 @@ static int add_columns(struct sheet *s, const struct owners *o, const struct pac
         const struct wall *w = &p->wall[o->of[k].boundary];
         vec3 x = wall_at(p, w, p->t);
         number[k] = o->of[k].boundary, kind[k] = w->kind;
-        put(point, k, x), put(n, k, wall_normal(p, w, p->t)), put(v, k, wall_velocity(p, w, x));
+        sheet_walls_put(point, k, x), sheet_walls_put(n, k, wall_normal(p, w, p->t)), sheet_walls_put(v, k, wall_velocity(p, w, x));
     }
     return 0;
 }
 
 /* Of solved contacts: those on each cell's face, and their forces (N) on it. A face of several cells, a cylinder or a
    sphere, has them in each. */
-static int add_contacts(struct sheet *s, const struct owners *o, const struct export_frame *m,
+static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o, const struct export_frame *m,
                         const struct wall_faces *faces, struct why *why)
 {
     const struct packing *p = m->packing;
@@ -105,7 +105,7 @@ static int add_contacts(struct sheet *s, const struct owners *o, const struct ex
     }
     for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) {
         int32_t face = faces->first[o->of[k].boundary] + o->of[k].face;
-        count[k] = pushes[face], put(force, k, sum[face]);
+        count[k] = pushes[face], sheet_walls_put(force, k, sum[face]);
     }
     free(sum), free(pushes);
     return why->status;
@@ -126,14 +126,14 @@ static int add_sums(struct sheet *s, const struct owners *o, const struct packin
         const struct owner of = o->of[k];
         const struct face_sums *x = &p->sums.face[faces->first[of.boundary] + of.face];
         double area = face_of_area(p, of.boundary, of.face);
-        put(force, k, v3_scale(by, x->impulse));
+        sheet_walls_put(force, k, v3_scale(by, x->impulse));
         pressure[k] = isfinite(area) ? by * x->normal / area : NAN;
         friction[k] = x->friction, rub[k] = x->rub, wear[k] = p->wall[of.boundary].wear * x->rub;
     }
     return why->status;
 }
 
-static int add_forces(struct sheet *s, const struct owners *o, const struct export_frame *m,
+static int sheet_walls_add_forces(struct sheet *s, const struct owners *o, const struct export_frame *m,
                       struct why *why)
 {
     const struct packing *p = m->packing;
@@ -143,7 +143,7 @@ static int add_forces(struct sheet *s, const struct owners *o, const struct expo
     if (face_of_init(&faces, p, solved, why)) return why->status;
     int32_t *face = sheet_whole(s, "face", "", why);
     for (int64_t k = 0; !why->status && o->of && k < s->cells; k++) face[k] = o->of[k].face;
-    if (!why->status && solved) add_contacts(s, o, m, &faces, why);
+    if (!why->status && solved) sheet_walls_add_contacts(s, o, m, &faces, why);
     if (!why->status && p->sums.n) add_sums(s, o, p, &faces, why);
     wall_faces_free(&faces);
     return why->status;
@@ -156,9 +156,9 @@ int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *wh
     struct owners o = { 0 };
     s->shape = p->dim == 2 ? SHEET_LINE : SHEET_POLYGON;
     if (m->only && m->only->walls) o.chosen = *m->only;
-    if (region_of(&region, p) && !add_planes(s, &o, p, &region, why))
-        add_outlines(s, &o, p, &region, why);
-    if (!why->status && !add_columns(s, &o, p, why)) add_forces(s, &o, m, why);
+    if (region_of(&region, p) && !sheet_walls_add_planes(s, &o, p, &region, why))
+        sheet_walls_add_outlines(s, &o, p, &region, why);
+    if (!why->status && !sheet_walls_add_columns(s, &o, p, why)) sheet_walls_add_forces(s, &o, m, why);
     free(o.of);
     return why->status;
 }

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-static int add_lines(struct sheet *s, const struct export_frame *m, struct why *why)
+static int sheet_add_lines(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     for (int64_t i = 0; i < m->contacts->n; i++) {
@@ -18,12 +18,12 @@ static int add_lines(struct sheet *s, const struct export_frame *m, struct why *
     return 0;
 }
 
-static void put(double *out, int64_t i, vec3 x)
+static void sheet_put(double *out, int64_t i, vec3 x)
 {
     out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
 }
 
-static int add_forces(struct sheet *s, const struct export_frame *m, struct why *why)
+static int sheet_add_forces(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const double dt = m->packing->dt;
     int32_t *status = sheet_whole(s, "status", "", why);
@@ -34,7 +34,7 @@ static int add_forces(struct sheet *s, const struct export_frame *m, struct why 
     for (int64_t i = 0; i < m->contacts->n; i++) {
         const struct found *f = &m->contacts->found[i];
         status[i] = (int32_t)f->status; // NOLINT(bugprone-signed-char-misuse): 0, 1 or 2
-        put(force, i, v3_scale(1 / dt, contact_in_space(&m->contacts->c[i], f->r)));
+        sheet_put(force, i, v3_scale(1 / dt, contact_in_space(&m->contacts->c[i], f->r)));
         normal[i] = f->r[0] / dt, tangential[i] = hypot(f->r[1], f->r[2]) / dt;
     }
     return 0;
@@ -45,7 +45,7 @@ int sheet_contacts(struct sheet *s, const struct export_frame *m, struct why *wh
     const struct packing *p = m->packing;
     s->shape = SHEET_LINE;
     if (!m->contacts) return 0;
-    if (add_lines(s, m, why)) return why->status;
+    if (sheet_add_lines(s, m, why)) return why->status;
     int32_t *body = sheet_whole(s, "body", "ab", why), *id = sheet_whole(s, "id", "ab", why);
     double *point = sheet_real(s, "point", "xyz", why), *n = sheet_real(s, "normal", "xyz", why);
     double *gap = sheet_real(s, "gap", "", why), *mu = sheet_real(s, "mu", "", why);
@@ -54,8 +54,8 @@ int sheet_contacts(struct sheet *s, const struct export_frame *m, struct why *wh
         const struct contact *c = &m->contacts->c[i];
         body[2 * i] = c->a, body[2 * i + 1] = c->b;
         id[2 * i] = c->a >= 0 ? p->id[c->a] : c->a, id[2 * i + 1] = p->id[c->b];
-        put(point, i, c->x), put(n, i, c->n);
+        sheet_put(point, i, c->x), sheet_put(n, i, c->n);
         gap[i] = c->gap, mu[i] = c->mu;
     }
-    return m->contacts->found ? add_forces(s, m, why) : 0;
+    return m->contacts->found ? sheet_add_forces(s, m, why) : 0;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
-static int add_contacts(struct sheet *s, const struct export_frame *m, struct why *why)
+static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
@@ -50,5 +50,5 @@ int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why)
         memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
         memcpy(q, p->q, n * sizeof *p->q);
     }
-    return m->contacts && m->contacts->found ? add_contacts(s, m, why) : 0;
+    return m->contacts && m->contacts->found ? sheet_add_contacts(s, m, why) : 0;
 }

@@ -5,16 +5,16 @@
 #include <stdlib.h>
 
 /* Which grain each cell is of */
-struct cells {
+struct sheet_cells {
     struct sheet *s;
     int64_t grain, room;
     int32_t *of;
     struct why *why;
 };
 
-static void add_cell(void *to, int corners, const vec3 *x)
+static void sheet_add_cell(void *to, int corners, const vec3 *x)
 {
-    struct cells *c = to;
+    struct sheet_cells *c = to;
     if (c->why->status) return;
     if (c->s->cells == c->room) {
         int64_t room = 2 * c->room + 64;
@@ -29,12 +29,12 @@ static void add_cell(void *to, int corners, const vec3 *x)
     sheet_add(c->s, corners, x, c->why);
 }
 
-static void put(double *out, int64_t k, vec3 x)
+static void sheet_surfaces_put(double *out, int64_t k, vec3 x)
 {
     out[3 * k] = x.x, out[3 * k + 1] = x.y, out[3 * k + 2] = x.z;
 }
 
-static void add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
+static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
                         struct why *why)
 {
     int32_t *id = sheet_whole(s, "id", "", why), *kind = sheet_whole(s, "kind", "", why),
@@ -47,12 +47,12 @@ static void add_columns(struct sheet *s, const int32_t *of, const struct packing
         int32_t i = of[k];
         id[k] = p->id[i], kind[k] = p->kind[i], shape[k] = p->shape[i];
         radius[k] = p->radius[i], mass[k] = p->mass[i];
-        put(v, k, p->v[i]), put(w, k, p->w[i]);
+        sheet_surfaces_put(v, k, p->v[i]), sheet_surfaces_put(w, k, p->w[i]);
     }
 }
 
 /* Of solved contacts: how many push each cell's grain, and the sum of their forces on it (N) */
-static void add_contacts(struct sheet *s, const int32_t *of, const struct export_frame *m,
+static void sheet_surfaces_add_contacts(struct sheet *s, const int32_t *of, const struct export_frame *m,
                          struct why *why)
 {
     const struct packing *p = m->packing;
@@ -69,22 +69,22 @@ static void add_contacts(struct sheet *s, const int32_t *of, const struct export
         if (c->a >= 0) sum[c->a] = v3_sub(sum[c->a], f), pushes[c->a] += t->found[i].r[0] > 0;
     }
     for (int64_t k = 0; !why->status && of && k < s->cells; k++)
-        count[k] = pushes[of[k]], put(force, k, sum[of[k]]);
+        count[k] = pushes[of[k]], sheet_surfaces_put(force, k, sum[of[k]]);
     free(sum), free(pushes);
 }
 
 int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *why)
 {
     const struct packing *p = m->packing;
-    struct cells c = { .s = s, .why = why };
+    struct sheet_cells c = { .s = s, .why = why };
     struct facets f;
     s->shape = SHEET_POLYGON;
     if (facets_init(&f, m->detail, why)) return why->status;
     for (c.grain = 0; c.grain < p->n && !why->status; c.grain++)
         if (packing_shape(p, c.grain) && export_frame_has(m, c.grain))
-            facets_of(&f, p, c.grain, add_cell, &c);
-    if (!why->status) add_columns(s, c.of, p, why);
-    if (!why->status && m->contacts && m->contacts->found) add_contacts(s, c.of, m, why);
+            facets_of(&f, p, c.grain, sheet_add_cell, &c);
+    if (!why->status) sheet_add_columns(s, c.of, p, why);
+    if (!why->status && m->contacts && m->contacts->found) sheet_surfaces_add_contacts(s, c.of, m, why);
     facets_free(&f);
     free(c.of);
     return why->status;

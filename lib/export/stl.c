@@ -17,24 +17,24 @@ static void put_float(FILE *out, double x)
     for (int k = 0; k < 4; k++) putc((int)(bits >> 8 * k & 255), out);
 }
 
-static void put_vec(FILE *out, vec3 a)
+static void stl_put_vec(FILE *out, vec3 a)
 {
     put_float(out, a.x), put_float(out, a.y), put_float(out, a.z);
 }
 
-static void put_triangle(FILE *out, vec3 a, vec3 b, vec3 c)
+static void stl_put_triangle(FILE *out, vec3 a, vec3 b, vec3 c)
 {
     vec3 n = v3_cross(v3_sub(b, a), v3_sub(c, a));
     double size = v3_norm(n);
-    put_vec(out, size > 0 ? v3_scale(1 / size, n) : n);
-    put_vec(out, a), put_vec(out, b), put_vec(out, c);
+    stl_put_vec(out, size > 0 ? v3_scale(1 / size, n) : n);
+    stl_put_vec(out, a), stl_put_vec(out, b), stl_put_vec(out, c);
     putc(0, out), putc(0, out);
 }
 
 /* A convex polygon of a grain, as a fan */
-static void put_fan(void *to, int corners, const vec3 *x)
+static void stl_put_fan(void *to, int corners, const vec3 *x)
 {
-    for (int k = 2; k < corners; k++) put_triangle(to, x[0], x[k - 1], x[k]);
+    for (int k = 2; k < corners; k++) stl_put_triangle(to, x[0], x[k - 1], x[k]);
 }
 
 /* A convex polygon, as a fan */
@@ -43,7 +43,7 @@ static void put_polygons(FILE *out, const struct sheet *s)
     int64_t first = 0;
     for (int64_t k = 0; k < s->cells; first = s->end[k++])
         for (int64_t c = first + 1; c + 1 < s->end[k]; c++)
-            put_triangle(out, s->x[s->corner[first]], s->x[s->corner[c]], s->x[s->corner[c + 1]]);
+            stl_put_triangle(out, s->x[s->corner[first]], s->x[s->corner[c]], s->x[s->corner[c + 1]]);
 }
 
 static int64_t polygon_triangles(const struct sheet *s)
@@ -73,7 +73,7 @@ static int stl(FILE *out, const struct export_frame *m, enum part part, bool fir
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);
     for (int64_t i = 0; i < grains && !why->status; i++) {
         moment_tell(m, i, grains);
-        if (export_frame_has(m, i)) facets_of(&b, p, i, put_fan, out);
+        if (export_frame_has(m, i)) facets_of(&b, p, i, stl_put_fan, out);
     }
     put_polygons(out, &walls);
     sheet_free(&walls);

@@ -8,7 +8,7 @@
 
 #include <inttypes.h>
 
-static void put_names(FILE *out, const struct sheet *s, char by)
+static void text_put_names(FILE *out, const struct sheet *s, char by)
 {
     fprintf(out, "step%ctime", by);
     if (s->of_points) fprintf(out, "%cx%cy%cz", by, by, by);
@@ -39,12 +39,12 @@ static void put_row(FILE *out, const struct export_frame *m, const struct sheet 
     putc('\n', out);
 }
 
-static int put(FILE *out, const struct export_frame *m, enum part part, bool first, char by,
+static int text_put(FILE *out, const struct export_frame *m, enum part part, bool first, char by,
                struct why *why)
 {
     struct sheet s;
     if (sheet_of(&s, part, m, why)) return why->status;
-    if (first) put_names(out, &s, by);
+    if (first) text_put_names(out, &s, by);
     for (int64_t row = 0; row < sheet_rows(&s); row++) {
         moment_tell(m, row, sheet_rows(&s));
         put_row(out, m, &s, row, by);
@@ -55,12 +55,12 @@ static int put(FILE *out, const struct export_frame *m, enum part part, bool fir
 
 static int csv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
-    return put(out, m, part, first, ',', why);
+    return text_put(out, m, part, first, ',', why);
 }
 
 static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
 {
-    return put(out, m, part, first, '\t', why);
+    return text_put(out, m, part, first, '\t', why);
 }
 
 const struct format format_csv = {

@@ -2,7 +2,7 @@
 
 #include <inttypes.h>
 
-static uint64_t size_of(const struct fields *f, int k)
+static uint64_t fields_file_size_of(const struct fields *f, int k)
 {
     return (uint64_t)fields_points(f) * (uint64_t)field_quantity[k].width * sizeof(double);
 }
@@ -30,11 +30,11 @@ void vti_write(FILE *out, const struct fields *f, int64_t step, double t)
                 "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" "
                 "format=\"appended\" offset=\"%" PRIu64 "\"/>\n",
                 field_quantity[k].name, field_quantity[k].width, offset);
-        offset += sizeof offset + size_of(f, k);
+        offset += sizeof offset + fields_file_size_of(f, k);
     }
     fprintf(out, "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_");
     for (int k = 0; k < FIELD_COUNT; k++) {
-        uint64_t size = size_of(f, k);
+        uint64_t size = fields_file_size_of(f, k);
         fwrite(&size, sizeof size, 1, out);
         fwrite(f->x[k], 1, size, out);
     }

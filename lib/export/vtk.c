@@ -11,7 +11,7 @@
 #include <stdlib.h>
 
 /* An array in the appended part: what it is called there and where it is */
-struct block {
+struct vtk_block {
     const char *name, *type;
     int width;
     uint64_t size; /* bytes */
@@ -20,7 +20,7 @@ struct block {
 
 enum { BLOCKS = SHEET_COLUMNS + 4 };
 
-static void name_block(FILE *out, const struct block *b, uint64_t *offset)
+static void name_block(FILE *out, const struct vtk_block *b, uint64_t *offset)
 {
     fprintf(out,
             "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" format=\"appended\" "
@@ -29,7 +29,7 @@ static void name_block(FILE *out, const struct block *b, uint64_t *offset)
     *offset += sizeof b->size + b->size;
 }
 
-static void put_block(FILE *out, const struct block *b)
+static void vtk_put_block(FILE *out, const struct vtk_block *b)
 {
     fwrite(&b->size, sizeof b->size, 1, out);
     if (b->size) fwrite(b->data, 1, b->size, out);
@@ -50,7 +50,7 @@ static void open_file(FILE *out, const char *type, const struct export_frame *m)
 }
 
 /* Points, their data and that of the cells; b[0] is the points, b[1] ... the columns. */
-static void name_columns(FILE *out, const struct sheet *s, const struct block *b, uint64_t *offset)
+static void name_columns(FILE *out, const struct sheet *s, const struct vtk_block *b, uint64_t *offset)
 {
     fprintf(out, "<Points>\n");
     name_block(out, &b[0], offset);
@@ -60,32 +60,32 @@ static void name_columns(FILE *out, const struct sheet *s, const struct block *b
 }
 
 /* The arrays that both kinds of file begin with; returns how many. */
-static int list_blocks(struct block *b, const struct sheet *s)
+static int list_blocks(struct vtk_block *b, const struct sheet *s)
 {
     int n = 0;
     const uint64_t rows = (uint64_t)sheet_rows(s);
-    b[n++] = (struct block){ "Points", "Float64", 3, (uint64_t)s->points * sizeof *s->x, s->x };
+    b[n++] = (struct vtk_block){ "Points", "Float64", 3, (uint64_t)s->points * sizeof *s->x, s->x };
     for (int k = 0; k < s->columns; k++) {
         const struct sheet_column *c = &s->column[k];
         uint64_t numbers = rows * (uint64_t)c->width;
-        b[n++] = c->real ? (struct block){ c->name, "Float64", c->width, 8 * numbers, c->real }
-                         : (struct block){ c->name, "Int32", c->width, 4 * numbers, c->whole };
+        b[n++] = c->real ? (struct vtk_block){ c->name, "Float64", c->width, 8 * numbers, c->real }
+                         : (struct vtk_block){ c->name, "Int32", c->width, 4 * numbers, c->whole };
     }
-    b[n++] = (struct block){ "connectivity", "Int64", 1, (uint64_t)s->corners * 8, s->corner };
-    b[n++] = (struct block){ "offsets", "Int64", 1, (uint64_t)s->cells * 8, s->end };
+    b[n++] = (struct vtk_block){ "connectivity", "Int64", 1, (uint64_t)s->corners * 8, s->corner };
+    b[n++] = (struct vtk_block){ "offsets", "Int64", 1, (uint64_t)s->cells * 8, s->end };
     return n;
 }
 
-static void close_file(FILE *out, const char *type, const struct block *b, int blocks)
+static void close_file(FILE *out, const char *type, const struct vtk_block *b, int blocks)
 {
     fprintf(out, "</Piece>\n</%s>\n<AppendedData encoding=\"raw\">\n_", type);
-    for (int k = 0; k < blocks; k++) put_block(out, &b[k]);
+    for (int k = 0; k < blocks; k++) vtk_put_block(out, &b[k]);
     fprintf(out, "\n</AppendedData>\n</VTKFile>\n");
 }
 
 static void write_poly(FILE *out, const struct export_frame *m, const struct sheet *s)
 {
-    struct block b[BLOCKS];
+    struct vtk_block b[BLOCKS];
     int blocks = list_blocks(b, s);
     uint64_t offset = 0;
     const char *cells = s->shape == SHEET_POINT  ? "Verts"
@@ -104,13 +104,13 @@ static void write_poly(FILE *out, const struct export_frame *m, const struct she
 static int write_cells(FILE *out, const struct export_frame *m, const struct sheet *s,
                        struct why *why)
 {
-    struct block b[BLOCKS];
+    struct vtk_block b[BLOCKS];
     int blocks = list_blocks(b, s);
     uint64_t offset = 0;
     uint8_t *types = malloc((size_t)s->cells + 1);
     if (!types) return why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t k = 0; k < s->cells; k++) types[k] = (uint8_t)s->shape;
-    b[blocks++] = (struct block){ "types", "UInt8", 1, (uint64_t)s->cells, types };
+    b[blocks++] = (struct vtk_block){ "types", "UInt8", 1, (uint64_t)s->cells, types };
     open_file(out, "UnstructuredGrid", m);
     fprintf(out, "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n",
             s->points, s->cells);

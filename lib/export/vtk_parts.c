@@ -11,7 +11,7 @@ static const enum part part_of[] = { PART_SURFACES, PART_BOUNDARY };
 static const char *const path_of[] = { "/VTKHDF/surfaces", "/VTKHDF/boundary" };
 
 /* Columns that say which grain or wall a cell is of; what else a sheet has is in the grains. */
-static bool is_wanted(const struct sheet_column *c)
+static bool vtk_is_wanted(const struct sheet_column *c)
 {
     static const char *const wanted[] = { "id", "kind", "shape", "boundary" };
     bool any = false;
@@ -20,7 +20,7 @@ static bool is_wanted(const struct sheet_column *c)
     return any;
 }
 
-static int make(struct vtkhdf_cells *cells, const struct packing *p, int k, void **made,
+static int vtk_make(struct vtkhdf_cells *cells, const struct packing *p, int k, void **made,
                 struct why *why)
 {
     const struct export_frame m = { .packing = p, .detail = DETAIL };
@@ -35,17 +35,17 @@ static int make(struct vtkhdf_cells *cells, const struct packing *p, int k, void
                                     .end = s->end,
                                     .lines = s->shape == SHEET_LINE };
     for (int i = 0; i < s->columns && cells->columns < VTKHDF_COLUMNS; i++) {
-        if (!is_wanted(&s->column[i])) continue;
+        if (!vtk_is_wanted(&s->column[i])) continue;
         cells->column[cells->columns].name = s->column[i].name;
         cells->column[cells->columns++].value = s->column[i].whole;
     }
     return 0;
 }
 
-static void done(void *made)
+static void vtk_done(void *made)
 {
     if (made) sheet_free(made);
     free(made);
 }
 
-const struct vtkhdf_parts vtk_parts = { 2, path_of, make, done };
+const struct vtkhdf_parts vtk_parts = { 2, path_of, vtk_make, vtk_done };

@@ -8,7 +8,7 @@
 
 #include <inttypes.h>
 
-static void put_cell(FILE *out, const struct packing *p)
+static void xyz_put_cell(FILE *out, const struct packing *p)
 {
     struct box b;
     const bool *r = p->cell.repeats;
@@ -30,7 +30,7 @@ static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bo
     const struct packing *p = m->packing;
     (void)part, (void)first, (void)why;
     fprintf(out, "%" PRId64 "\n", p->n);
-    put_cell(out, p);
+    xyz_put_cell(out, p);
     fprintf(out,
             "Properties=species:S:1:pos:R:3:id:I:1:kind:I:1:radius:R:1:mass:R:1:velo:R:3:"
             "angular_velocity:R:3:orientation:R:4%s Step=%" PRId64 " Time=%.17g\n",

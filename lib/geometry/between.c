@@ -3,13 +3,13 @@
 #include "geometry/surface_tree.h"
 
 /* Twice the area of the triangle a, b, c of the plane; above 0: counterclockwise */
-static double turn(vec3 a, vec3 b, vec3 c)
+static double wall_edge_turn(vec3 a, vec3 b, vec3 c)
 {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 /* Six times the volume of the tetrahedron */
-static double volume(vec3 a, vec3 b, vec3 c, vec3 d)
+static double wall_edge_volume(vec3 a, vec3 b, vec3 c, vec3 d)
 {
     return v3_dot(v3_sub(b, a), v3_cross(v3_sub(c, a), v3_sub(d, a)));
 }
@@ -21,14 +21,14 @@ static bool opposite(double x, double y)
 
 static bool crosses_segment(const vec3 x[2], vec3 a, vec3 b)
 {
-    return opposite(turn(x[0], x[1], a), turn(x[0], x[1], b)) &&
-           opposite(turn(a, b, x[0]), turn(a, b, x[1]));
+    return opposite(wall_edge_turn(x[0], x[1], a), wall_edge_turn(x[0], x[1], b)) &&
+           opposite(wall_edge_turn(a, b, x[0]), wall_edge_turn(a, b, x[1]));
 }
 
 static bool crosses_triangle(const vec3 x[3], vec3 a, vec3 b)
 {
-    if (!opposite(volume(x[0], x[1], x[2], a), volume(x[0], x[1], x[2], b))) return false;
-    double u = volume(a, b, x[0], x[1]), v = volume(a, b, x[1], x[2]), w = volume(a, b, x[2], x[0]);
+    if (!opposite(wall_edge_volume(x[0], x[1], x[2], a), wall_edge_volume(x[0], x[1], x[2], b))) return false;
+    double u = wall_edge_volume(a, b, x[0], x[1]), v = wall_edge_volume(a, b, x[1], x[2]), w = wall_edge_volume(a, b, x[2], x[0]);
     return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 

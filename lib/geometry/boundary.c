@@ -85,7 +85,7 @@ double boundary_reach(const struct wall *w)
 
 /* ---- flat shapes ---- */
 
-static double clamp(double x, double lo, double hi)
+static double wall_shape_clamp(double x, double lo, double hi)
 {
     return x < lo ? lo : x > hi ? hi : x;
 }
@@ -103,8 +103,8 @@ static struct touch near_rectangle(const struct wall *w, int dim, vec3 c)
 {
     vec3 across = v3_cross(w->n, w->along);
     double a = v3_dot(c, w->along), b = v3_dot(c, across), h = v3_dot(c, w->n);
-    double pa = clamp(a, -0.5 * w->size[0], 0.5 * w->size[0]);
-    double pb = dim == 2 ? 0 : clamp(b, -0.5 * w->size[1], 0.5 * w->size[1]);
+    double pa = wall_shape_clamp(a, -0.5 * w->size[0], 0.5 * w->size[0]);
+    double pb = dim == 2 ? 0 : wall_shape_clamp(b, -0.5 * w->size[1], 0.5 * w->size[1]);
     if (pa == a && (dim == 2 || pb == b)) // the very normal, without a square root's rounding
         return (struct touch){ h < 0 ? v3_scale(-1, w->n) : w->n, fabs(h), 0 };
     return touch_at(v3_axpy(v3_scale(pa, w->along), pb, across), c, w->n);
@@ -125,7 +125,7 @@ static struct touch near_disc(const struct wall *w, vec3 c)
     vec3 d = radial(w->n, c, &z, &rho);
     if (rho >= w->size[0] && rho <= w->size[1])
         return (struct touch){ z < 0 ? v3_scale(-1, w->n) : w->n, fabs(z), 0 };
-    return touch_at(v3_scale(clamp(rho, w->size[0], w->size[1]), d), c, w->n);
+    return touch_at(v3_scale(wall_shape_clamp(rho, w->size[0], w->size[1]), d), c, w->n);
 }
 
 /* ---- round shapes ---- */
@@ -164,7 +164,7 @@ static vec3 near_generatrix(const struct wall *w, vec3 d, vec3 c, bool *inner)
     }
     double s = ((rho - g.rho0) * g.drho + z * g.dz) / (g.drho * g.drho + g.dz * g.dz);
     *inner = s >= 0 && s <= 1;
-    s = clamp(s, 0, 1);
+    s = wall_shape_clamp(s, 0, 1);
     return v3_axpy(v3_scale(g.rho0 + s * g.drho, d), s * g.dz, w->n);
 }
 

@@ -33,14 +33,14 @@ int cell_copy(struct cell *to, const struct cell *from)
 }
 
 /* m^3: of the parallelepiped of the edges, negative where they are left-handed */
-static double volume(const vec3 e[3])
+static double cell_volume(const vec3 e[3])
 {
     return v3_dot(e[0], v3_cross(e[1], e[2]));
 }
 
 void cell_inverse(const vec3 e[3], vec3 inverse[3])
 {
-    double over = 1 / volume(e);
+    double over = 1 / cell_volume(e);
     for (int k = 0; k < 3; k++)
         inverse[k] = v3_scale(over, v3_cross(e[(k + 1) % 3], e[(k + 2) % 3]));
 }
@@ -83,12 +83,12 @@ static const char *edge_trouble(const struct cell *c, int dim)
     }
     if (dim == 2 && c->repeats[2]) return "z repeats, and dim is 2";
     if (dim == 2 && c->origin.z != 0) return "origin leaves the plane, and dim is 2";
-    if (!(fabs(volume(c->edge)) > 1e-6 * size) || !isfinite(size))
+    if (!(fabs(cell_volume(c->edge)) > 1e-6 * size) || !isfinite(size))
         return "its edges have no volume between them";
     return NULL;
 }
 
-static const char *load_trouble(const struct cell *c, int dim)
+static const char *cell_load_trouble(const struct cell *c, int dim)
 {
     for (int k = 0; k < 9; k++) {
         int i = k / 3, j = k % 3;
@@ -121,7 +121,7 @@ int cell_check(const struct cell *c, int dim, double least, struct why *why)
     double height[3];
     const char *trouble = edge_trouble(c, dim);
     if (!trouble) trouble = gradient_trouble(c, dim);
-    if (!trouble) trouble = load_trouble(c, dim);
+    if (!trouble) trouble = cell_load_trouble(c, dim);
     if (trouble) return why_set(why, EX_DATAERR, "the cell: %s", trouble);
     cell_heights(c, height);
     for (int k = 0; k < 3; k++)
@@ -168,7 +168,7 @@ double cell_growth(const struct cell *c, double after)
     return sum / dim;
 }
 
-static vec3 times(double L[3][3], vec3 x)
+static vec3 cell_times(double L[3][3], vec3 x)
 {
     return v3(L[0][0] * x.x + L[0][1] * x.y + L[0][2] * x.z,
               L[1][0] * x.x + L[1][1] * x.y + L[1][2] * x.z,
@@ -180,7 +180,7 @@ bool cell_moves(const struct cell *c, int k)
     bool moves = v3_norm(c->rate[k]) > 0;
     for (int i = 0; i < 3; i++) moves = moves || c->mass[k][i] > 0 || c->size_mass > 0;
     for (int32_t m = 0; m < c->gradients; m++)
-        moves = moves || v3_norm(times(c->gradient[m].L, c->edge[k])) > 0;
+        moves = moves || v3_norm(cell_times(c->gradient[m].L, c->edge[k])) > 0;
     return moves;
 }
 
@@ -205,13 +205,13 @@ static void cell_gradient_at(const struct cell *c, double t, double L[3][3])
 }
 
 /* The same with the growth of a size that yields, by which all edges are longer */
-static void grow(const struct cell *c, double growth, double L[3][3])
+static void cell_grow(const struct cell *c, double growth, double L[3][3])
 {
     for (int k = 0; k < cell_dim(c); k++) L[k][k] += growth;
 }
 
 /* out[k] = the e with (1 - s L) e = edge[k] */
-static void solve(double L[3][3], double s, const vec3 edge[3], vec3 out[3])
+static void cell_solve(double L[3][3], double s, const vec3 edge[3], vec3 out[3])
 {
     vec3 column[3], row[3];
     column[0] = v3(1 - s * L[0][0], -s * L[1][0], -s * L[2][0]);
@@ -244,12 +244,12 @@ void cell_next_rate(const struct cell *c, double end_time, double ahead, double 
     cell_gradient_at(c, end_time, L);
     cell_predict(c, ahead, half);
     if (c->size_mass > 0) {
-        grow(c, cell_growth(c, after), L);
-        for (int k = 0; k < 3; k++) out[k] = times(L, half[k]);
+        cell_grow(c, cell_growth(c, after), L);
+        for (int k = 0; k < 3; k++) out[k] = cell_times(L, half[k]);
         return;
     }
-    solve(L, after, half, end);
-    for (int k = 0; k < 3; k++) out[k] = times(L, end[k]);
+    cell_solve(L, after, half, end);
+    for (int k = 0; k < 3; k++) out[k] = cell_times(L, end[k]);
     keep_yielding(c, out);
 }
 
@@ -257,7 +257,7 @@ void cell_set_rate(struct cell *c, double t)
 {
     double L[3][3];
     cell_gradient_at(c, t, L);
-    for (int k = 0; k < 3; k++) c->rate[k] = times(L, c->edge[k]);
+    for (int k = 0; k < 3; k++) c->rate[k] = cell_times(L, c->edge[k]);
     struct cell still = *c;
     for (int k = 0; k < 3; k++) still.rate[k] = v3(0, 0, 0);
     keep_yielding(&still, c->rate);
@@ -289,9 +289,9 @@ void cell_unmove(struct cell *c, double t, double ahead, double after)
     vec3 half[3], edge[3], rate[3];
     cell_gradient_at(c, t, L);
     cell_predict(c, -after, half);
-    if (c->size_mass > 0) grow(c, cell_growth(c, after), L);
-    solve(L, c->size_mass > 0 ? -(ahead + after) : -ahead, half, edge);
-    for (int k = 0; k < 3; k++) rate[k] = times(L, edge[k]);
+    if (c->size_mass > 0) cell_grow(c, cell_growth(c, after), L);
+    cell_solve(L, c->size_mass > 0 ? -(ahead + after) : -ahead, half, edge);
+    for (int k = 0; k < 3; k++) rate[k] = cell_times(L, edge[k]);
     keep_yielding(c, rate);
     for (int k = 0; k < 3; k++) {
         c->rate[k] = rate[k];

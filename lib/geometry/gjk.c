@@ -5,17 +5,17 @@ enum { ITERATIONS = 64 }; /* polyhedra of a hundred corners take ten */
 static const double ENOUGH = 1e-12; /* relative: no support is nearer by more */
 
 /* A corner of the Minkowski difference b - a */
-struct corner {
+struct gjk_corner {
     vec3 w, a, b;
 };
 
 struct simplex {
     int n;
-    struct corner c[4];
+    struct gjk_corner c[4];
     double part[4]; /* the nearest point to the origin is their mean with these weights */
 };
 
-static struct corner support(const struct core *a, const struct core *b, vec3 d)
+static struct gjk_corner support(const struct core *a, const struct core *b, vec3 d)
 {
     int32_t i = 0, j = 0;
     double top = v3_dot(d, a->v[0]), bottom = v3_dot(d, b->v[0]);
@@ -27,10 +27,10 @@ static struct corner support(const struct core *a, const struct core *b, vec3 d)
         double at = v3_dot(d, b->v[k]);
         if (at < bottom) bottom = at, j = k;
     }
-    return (struct corner){ v3_sub(b->v[j], a->v[i]), a->v[i], b->v[j] };
+    return (struct gjk_corner){ v3_sub(b->v[j], a->v[i]), a->v[i], b->v[j] };
 }
 
-static void keep(struct simplex *s, int n, const int which[], const double part[])
+static void gjk_keep(struct simplex *s, int n, const int which[], const double part[])
 {
     struct simplex to = { .n = n };
     for (int k = 0; k < n; k++) to.c[k] = s->c[which[k]], to.part[k] = part[k];
@@ -38,43 +38,43 @@ static void keep(struct simplex *s, int n, const int which[], const double part[
 }
 
 /* Each of these leaves the corners whose face has the point nearest to the origin, and its weights. */
-static void near_segment(struct simplex *s, int i, int j)
+static void gjk_near_segment(struct simplex *s, int i, int j)
 {
     vec3 a = s->c[i].w, d = v3_sub(s->c[j].w, a);
     double length2 = v3_dot(d, d), t = length2 > 0 ? -v3_dot(a, d) / length2 : 0;
     if (t <= 0) {
-        keep(s, 1, (int[]){ i }, (double[]){ 1 });
+        gjk_keep(s, 1, (int[]){ i }, (double[]){ 1 });
         return;
     }
     if (t >= 1) {
-        keep(s, 1, (int[]){ j }, (double[]){ 1 });
+        gjk_keep(s, 1, (int[]){ j }, (double[]){ 1 });
         return;
     }
-    keep(s, 2, (int[]){ i, j }, (double[]){ 1 - t, t });
+    gjk_keep(s, 2, (int[]){ i, j }, (double[]){ 1 - t, t });
 }
 
 /* [Ericson, Real-time collision detection, 5.1.5] */
-static void near_triangle(struct simplex *s, int i, int j, int k)
+static void gjk_near_triangle(struct simplex *s, int i, int j, int k)
 {
     vec3 a = s->c[i].w, b = s->c[j].w, c = s->c[k].w, ab = v3_sub(b, a), ac = v3_sub(c, a);
     double d1 = -v3_dot(ab, a), d2 = -v3_dot(ac, a), d3 = -v3_dot(ab, b), d4 = -v3_dot(ac, b);
     double d5 = -v3_dot(ab, c), d6 = -v3_dot(ac, c);
     double vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4;
     if (d1 <= 0 && d2 <= 0) {
-        keep(s, 1, (int[]){ i }, (double[]){ 1 });
+        gjk_keep(s, 1, (int[]){ i }, (double[]){ 1 });
     } else if (d3 >= 0 && d4 <= d3) {
-        keep(s, 1, (int[]){ j }, (double[]){ 1 });
+        gjk_keep(s, 1, (int[]){ j }, (double[]){ 1 });
     } else if (d6 >= 0 && d5 <= d6) {
-        keep(s, 1, (int[]){ k }, (double[]){ 1 });
+        gjk_keep(s, 1, (int[]){ k }, (double[]){ 1 });
     } else if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        near_segment(s, i, j);
+        gjk_near_segment(s, i, j);
     } else if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        near_segment(s, i, k);
+        gjk_near_segment(s, i, k);
     } else if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-        near_segment(s, j, k);
+        gjk_near_segment(s, j, k);
     } else {
         double sum = 1 / (va + vb + vc);
-        keep(s, 3, (int[]){ i, j, k }, (double[]){ va * sum, vb * sum, vc * sum });
+        gjk_keep(s, 3, (int[]){ i, j, k }, (double[]){ va * sum, vb * sum, vc * sum });
     }
 }
 
@@ -86,7 +86,7 @@ static vec3 nearest_point(const struct simplex *s)
 }
 
 /* Is the origin on the other side of the plane of three corners than the fourth? */
-static bool beyond(const struct simplex *s, int i, int j, int k, int other)
+static bool gjk_beyond(const struct simplex *s, int i, int j, int k, int other)
 {
     vec3 a = s->c[i].w, n = v3_cross(v3_sub(s->c[j].w, a), v3_sub(s->c[k].w, a));
     double origin = -v3_dot(n, a), inside = v3_dot(n, v3_sub(s->c[other].w, a));
@@ -103,9 +103,9 @@ static bool near_tetrahedron(struct simplex *s)
     double least = INFINITY;
     for (int f = 0; f < 4; f++) {
         const int *c = face[f];
-        if (!beyond(s, c[0], c[1], c[2], c[3])) continue;
+        if (!gjk_beyond(s, c[0], c[1], c[2], c[3])) continue;
         struct simplex one = *s;
-        near_triangle(&one, c[0], c[1], c[2]);
+        gjk_near_triangle(&one, c[0], c[1], c[2]);
         vec3 x = nearest_point(&one);
         if (v3_dot(x, x) < least) least = v3_dot(x, x), best = one;
     }
@@ -114,14 +114,14 @@ static bool near_tetrahedron(struct simplex *s)
     return true;
 }
 
-static bool reduce(struct simplex *s)
+static bool gjk_reduce(struct simplex *s)
 {
-    if (s->n == 2) near_segment(s, 0, 1);
-    if (s->n == 3) near_triangle(s, 0, 1, 2);
+    if (s->n == 2) gjk_near_segment(s, 0, 1);
+    if (s->n == 3) gjk_near_triangle(s, 0, 1, 2);
     return s->n < 4 || near_tetrahedron(s);
 }
 
-static bool has(const struct simplex *s, vec3 w)
+static bool gjk_has(const struct simplex *s, vec3 w)
 {
     for (int k = 0; k < s->n; k++)
         if (s->c[k].w.x == w.x && s->c[k].w.y == w.y && s->c[k].w.z == w.z) return true;
@@ -146,11 +146,11 @@ struct nearest gjk_nearest(const struct core *a, const struct core *b)
         double x2 = v3_dot(x, x);
         if (!(x2 > 0) || !(x2 < last)) break;
         last = x2;
-        struct corner next = support(a, b, x); // the farthest towards the origin
-        if (x2 - v3_dot(x, next.w) <= ENOUGH * x2 || has(&s, next.w)) break;
+        struct gjk_corner next = support(a, b, x); // the farthest towards the origin
+        if (x2 - v3_dot(x, next.w) <= ENOUGH * x2 || gjk_has(&s, next.w)) break;
         struct simplex was = s;
         s.c[s.n++] = next;
-        if (!reduce(&s)) return (struct nearest){ 0, next.a, next.b };
+        if (!gjk_reduce(&s)) return (struct nearest){ 0, next.a, next.b };
         x = nearest_point(&s);
         if (!(v3_dot(x, x) < x2)) { // rounding: what was there was as near
             s = was;

@@ -152,7 +152,7 @@ static int32_t crossing(int32_t edge, int32_t side)
 }
 
 /* What is left of a polygon (or of a segment, n = 2) where m . x <= at */
-static int clip(struct clipped *to, const struct clipped *from, int n, vec3 m, double at,
+static int meet_clip(struct clipped *to, const struct clipped *from, int n, vec3 m, double at,
                 int32_t side)
 {
     int count = 0;
@@ -215,7 +215,7 @@ static int by_face(const struct two *o, const struct axis *best, struct place ou
         vec3 p = face->v[corner_of(face, dim, f, k)],
              q = face->v[corner_of(face, dim, f, (k + 1) % sides)];
         vec3 d = v3_sub(q, p), m = dim == 2 ? v3_scale(-1, d) : v3_cross(d, n);
-        count = clip(next, now, count, m, v3_dot(m, p), k);
+        count = meet_clip(next, now, count, m, v3_dot(m, p), k);
         struct clipped *was = now;
         now = next, next = was;
     }
@@ -268,7 +268,7 @@ int meet_few(struct place *p, int n)
 }
 
 /* An edge of a hull; a segment is one. */
-static vec3 edge_of(const struct core *c, int32_t k, vec3 *along)
+static vec3 meet_edge_of(const struct core *c, int32_t k, vec3 *along)
 {
     int32_t tail = c->hull ? c->hull->edge[k].tail : 0, head = c->hull ? c->hull->edge[k].head : 1;
     *along = v3_sub(c->v[head], c->v[tail]);
@@ -279,7 +279,7 @@ static vec3 edge_of(const struct core *c, int32_t k, vec3 *along)
 static int by_edges(const struct core *a, const struct core *b, const struct axis *best,
                     struct place *out)
 {
-    vec3 d, g, p = edge_of(a, best->i, &d), q = edge_of(b, best->j, &g), w = v3_sub(q, p);
+    vec3 d, g, p = meet_edge_of(a, best->i, &d), q = meet_edge_of(b, best->j, &g), w = v3_sub(q, p);
     double dd = v3_dot(d, d), gg = v3_dot(g, g), dg = v3_dot(d, g), det = dd * gg - dg * dg;
     double s = (v3_dot(w, d) * gg - v3_dot(w, g) * dg) / det;
     double t = (v3_dot(w, d) * dg - v3_dot(w, g) * dd) / det;
@@ -295,7 +295,7 @@ static int by_edges(const struct core *a, const struct core *b, const struct axi
 
 /* ---- points and segments ---- */
 
-static double clamp(double x)
+static double meet_clamp(double x)
 {
     return fmin(fmax(x, 0), 1);
 }
@@ -327,17 +327,17 @@ static int meet_segments(const struct two *o, struct place *out)
     double dd = v3_dot(d, d), ee = v3_dot(e, e), de = v3_dot(d, e), dw = v3_dot(d, w),
            ew = v3_dot(e, w), det = dd * ee - de * de;
     if (a->n == 1 || b->n == 1) {
-        double s = a->n == 2 ? clamp(dw / dd) : 0, t = b->n == 2 ? clamp(-ew / ee) : 0;
+        double s = a->n == 2 ? meet_clamp(dw / dd) : 0, t = b->n == 2 ? meet_clamp(-ew / ee) : 0;
         return at_parameters(o, s, t, BY_NEAREST, out);
     }
     if (det > 1e-4 * dd * ee) { // crossed by more than half a degree
-        double s = clamp((dw * ee - ew * de) / det), t = clamp((s * de - ew) / ee);
-        s = clamp((t * de + dw) / dd);
+        double s = meet_clamp((dw * ee - ew * de) / det), t = meet_clamp((s * de - ew) / ee);
+        s = meet_clamp((t * de + dw) / dd);
         return at_parameters(o, s, t, BY_NEAREST, out);
     }
-    double lo = clamp(dw / dd), hi = clamp((dw + de) / dd);
-    double t_lo = lo > 0 && lo < 1 ? 0 : clamp((lo * de - ew) / ee);
-    double t_hi = hi > 0 && hi < 1 ? 1 : clamp((hi * de - ew) / ee);
+    double lo = meet_clamp(dw / dd), hi = meet_clamp((dw + de) / dd);
+    double t_lo = lo > 0 && lo < 1 ? 0 : meet_clamp((lo * de - ew) / ee);
+    double t_hi = hi > 0 && hi < 1 ? 1 : meet_clamp((hi * de - ew) / ee);
     int count = at_parameters(o, lo, t_lo, BY_CORNER, out);
     if (fabs(hi - lo) < 1e-9) return count;
     return count + at_parameters(o, hi, t_hi, BY_CORNER + 1, out + count);

@@ -78,7 +78,7 @@ struct keyed {
     int32_t element;
 };
 
-static int by_key(const void *a, const void *b)
+static int mesh_by_key(const void *a, const void *b)
 {
     const struct keyed *p = a, *q = b;
     if (p->key != q->key) return p->key < q->key ? -1 : 1;
@@ -86,7 +86,7 @@ static int by_key(const void *a, const void *b)
 }
 
 /* Makes the boxes of order[lo .. hi-1] from box `at` on; returns the index behind them. */
-static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t hi, int32_t at)
+static int32_t mesh_grow_tree(struct surface *s, struct keyed *room, int32_t lo, int32_t hi, int32_t at)
 {
     struct surface_box *b = &s->box[at];
     b->lo = v3(INFINITY, INFINITY, INFINITY), b->hi = v3_scale(-1, b->lo);
@@ -103,11 +103,11 @@ static int32_t grow(struct surface *s, struct keyed *room, int32_t lo, int32_t h
             v3_add(s->at[s->order[i]][0], v3_add(s->at[s->order[i]][1], s->at[s->order[i]][2]));
         room[i] = (struct keyed){ axis == 0 ? sum.x : axis == 1 ? sum.y : sum.z, s->order[i] };
     }
-    qsort(room + lo, (size_t)(hi - lo), sizeof *room, by_key);
+    qsort(room + lo, (size_t)(hi - lo), sizeof *room, mesh_by_key);
     for (int32_t i = lo; i < hi; i++) s->order[i] = room[i].element;
     int32_t middle = lo + (hi - lo) / 2;
-    b->next = grow(s, room, lo, middle, at + 1);
-    return grow(s, room, middle, hi, b->next);
+    b->next = mesh_grow_tree(s, room, lo, middle, at + 1);
+    return mesh_grow_tree(s, room, middle, hi, b->next);
 }
 
 /* ---- which elements meet at a corner ---- */
@@ -126,7 +126,7 @@ static int by_along(const void *a, const void *b)
 }
 
 /* The first of the corners that are one with c */
-static int32_t first_of(int32_t *corner, int32_t c)
+static int32_t mesh_first_of(int32_t *corner, int32_t c)
 {
     while (corner[c] != c) c = corner[c] = corner[corner[c]];
     return c;
@@ -148,13 +148,13 @@ static bool weld(struct surface *s)
     for (int32_t i = 0; i < n; i++)
         for (int32_t j = i - 1; j >= 0 && p[i].key - p[j].key <= reach; j--) {
             int32_t c = p[i].corner, d = p[j].corner;
-            int32_t a = first_of(s->corner, c), b = first_of(s->corner, d);
+            int32_t a = mesh_first_of(s->corner, c), b = mesh_first_of(s->corner, d);
             vec3 way = v3_sub(s->at[c / 3][c % 3], s->at[d / 3][d % 3]);
             if (a != b && v3_norm(way) <= s->weld) s->corner[a > b ? a : b] = a > b ? b : a;
         }
     free(p);
     for (int32_t c = 0; c < n; c++) {
-        int32_t first = s->corner[c] = first_of(s->corner, c);
+        int32_t first = s->corner[c] = mesh_first_of(s->corner, c);
         s->at[c / 3][c % 3] = s->at[first / 3][first % 3];
     }
     return true;
@@ -214,7 +214,7 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
     good = good && weld(s);
     for (int32_t i = 0; good && i < n; i++)
         if (extends(s, m, first, i)) s->order[s->n++] = i;
-    if (good) meet(s), grow(s, room, 0, s->n, 0);
+    if (good) meet(s), mesh_grow_tree(s, room, 0, s->n, 0);
     free(room);
     for (int32_t v = 0; good && v < 3 * n; v++)
         if (s->star[v + 1] - s->star[v] > STAR_MOST)
@@ -233,47 +233,47 @@ void surface_free(struct surface *s)
 
 /* The nearest place of an element, and which part of it: below 3 the edge from that corner, below 6
    a corner, 6 the inside */
-struct place {
+struct mesh_place {
     vec3 x;
     int part;
 };
 
-static struct place near_segment(vec3 a, vec3 b, vec3 c)
+static struct mesh_place mesh_near_segment(vec3 a, vec3 b, vec3 c)
 {
     vec3 ab = v3_sub(b, a);
     double s = v3_dot(v3_sub(c, a), ab), most = v3_dot(ab, ab);
-    if (s <= 0) return (struct place){ a, 3 };
-    if (s >= most) return (struct place){ b, 4 };
-    return (struct place){ v3_axpy(a, s / most, ab), 6 };
+    if (s <= 0) return (struct mesh_place){ a, 3 };
+    if (s >= most) return (struct mesh_place){ b, 4 };
+    return (struct mesh_place){ v3_axpy(a, s / most, ab), 6 };
 }
 
 /* By the regions of Voronoi [Ericson 2005, Real-Time Collision Detection, 5.1.5] */
-static struct place near_triangle(vec3 a, vec3 b, vec3 c, vec3 p)
+static struct mesh_place mesh_near_triangle(vec3 a, vec3 b, vec3 c, vec3 p)
 {
     vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), ap = v3_sub(p, a);
     double d1 = v3_dot(ab, ap), d2 = v3_dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return (struct place){ a, 3 };
+    if (d1 <= 0 && d2 <= 0) return (struct mesh_place){ a, 3 };
     vec3 bp = v3_sub(p, b), cp = v3_sub(p, c);
     double d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return (struct place){ b, 4 };
+    if (d3 >= 0 && d4 <= d3) return (struct mesh_place){ b, 4 };
     double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (struct place){ v3_axpy(a, d1 / (d1 - d3), ab), 0 };
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (struct mesh_place){ v3_axpy(a, d1 / (d1 - d3), ab), 0 };
     double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return (struct place){ c, 5 };
+    if (d6 >= 0 && d5 <= d6) return (struct mesh_place){ c, 5 };
     double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (struct place){ v3_axpy(a, d2 / (d2 - d6), ac), 2 };
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (struct mesh_place){ v3_axpy(a, d2 / (d2 - d6), ac), 2 };
     double va = d3 * d6 - d5 * d4, along = (d4 - d3) + (d5 - d6);
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-        return (struct place){ v3_axpy(b, (d4 - d3) / along, v3_sub(c, b)), 1 };
+        return (struct mesh_place){ v3_axpy(b, (d4 - d3) / along, v3_sub(c, b)), 1 };
     double sum = va + vb + vc;
-    return (struct place){ v3_axpy(v3_axpy(a, vb / sum, ab), vc / sum, ac), 6 };
+    return (struct mesh_place){ v3_axpy(v3_axpy(a, vb / sum, ab), vc / sum, ac), 6 };
 }
 
-static struct place near_element(const struct surface *s, int32_t e, vec3 c)
+static struct mesh_place near_element(const struct surface *s, int32_t e, vec3 c)
 {
     const vec3 *x = s->at[e];
-    if (s->corner[3 * e + 1] == s->corner[3 * e + 2]) return near_segment(x[0], x[1], c);
-    return near_triangle(x[0], x[1], x[2], c);
+    if (s->corner[3 * e + 1] == s->corner[3 * e + 2]) return mesh_near_segment(x[0], x[1], c);
+    return mesh_near_triangle(x[0], x[1], x[2], c);
 }
 
 /* Which corner of element e is vertex v; -1: none */
@@ -285,7 +285,7 @@ static int which_corner(const struct surface *s, int32_t e, int32_t v)
 }
 
 /* Is `part` of element e on the edge of the corners v and w, or for w = v at that corner? */
-static bool is_there(const struct surface *s, int32_t e, int part, int32_t v, int32_t w)
+static bool mesh_is_there(const struct surface *s, int32_t e, int part, int32_t v, int32_t w)
 {
     if (part == 6) return false;
     const int32_t *corner = &s->corner[3 * e];
@@ -309,8 +309,8 @@ static bool is_minimum(const struct surface *s, int32_t e, int part, vec3 c, int
         int32_t other = s->member[i];
         ++*looked;
         if (other == e || which_corner(s, other, w) < 0) continue;
-        struct place at = near_element(s, other, c);
-        if (!is_there(s, other, at.part, v, w)) return false;
+        struct mesh_place at = near_element(s, other, c);
+        if (!mesh_is_there(s, other, at.part, v, w)) return false;
         if (other < e) return false;
     }
     return true;
@@ -330,10 +330,10 @@ vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c)
 }
 
 /* Returns how many elements were looked at for it, of those at its corners each. */
-static int look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
+static int mesh_look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
                    int *n)
 {
-    struct place at = near_element(s, e, c);
+    struct mesh_place at = near_element(s, e, c);
     vec3 d = v3_sub(c, at.x);
     double distance = v3_norm(d);
     int looked = 1;
@@ -392,7 +392,7 @@ int surface_touches(const struct surface *s, vec3 c, double most, struct touch t
     if (s->seen && *s->seen > s->seen_most) return 0;
     while (surface_walk_next(&walk, s->box, c, most, &leaf))
         for (int32_t i = leaf.lo; i < leaf.hi; i++)
-            seen += look_at(s, s->order[i], c, most, touch, &n);
+            seen += mesh_look_at(s, s->order[i], c, most, touch, &n);
     if (s->seen) *s->seen += seen;
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
     return leave_one(s, touch, n);

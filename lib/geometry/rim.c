@@ -5,7 +5,7 @@
 /* Of the sum of two unit vectors: surfaces are in one plane. A finely tessellated drum is bent by more. */
 static const double FLAT = 2e-3;
 
-static vec3 unit(vec3 a)
+static vec3 wall_edge_unit(vec3 a)
 {
     double length = v3_norm(a);
     return length > 0 ? v3_scale(1 / length, a) : a;
@@ -31,7 +31,7 @@ static void of_rectangle(struct rims *out, const struct wall *w, int dim, vec3 c
         struct rim r = { .n = dim - 1, .sides = 1, .key = k, .corner = { k, (k + 1) % 4 } };
         r.v[0] = corner[k], r.v[1] = corner[(k + 1) % 4];
         vec3 into = dim == 2 ? corner[k] : v3_add(r.v[0], r.v[1]); // of it, the middle is 0
-        r.into[0] = unit(v3_scale(-1, into));
+        r.into[0] = wall_edge_unit(v3_scale(-1, into));
         if (counts(&r, c, reach)) out->rim[out->n++] = r;
     }
 }
@@ -43,7 +43,7 @@ static vec3 into_element(const struct surface *s, int32_t e, const struct rim *r
     for (int k = 0; k < 3; k++) inside = v3_axpy(inside, 1.0 / 3, s->at[e][k]);
     vec3 way = v3_sub(inside, r->v[0]);
     if (r->n == 2) way = v3_axpy(way, -v3_dot(way, d) / v3_dot(d, d), d);
-    return unit(way);
+    return wall_edge_unit(way);
 }
 
 static bool has_corner(const struct surface *s, int32_t e, int32_t v)
@@ -189,8 +189,8 @@ bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surfa
     if (!round) return false;
     // at its end the way to the place is not across the surface: it leads along it
     vec3 place = v3_axpy(c, -t->distance, t->n);
-    vec3 radius = unit(v3_axpy(place, -v3_dot(place, w->n), w->n));
+    vec3 radius = wall_edge_unit(v3_axpy(place, -v3_dot(place, w->n), w->n));
     double end = w->shape == BOUNDARY_CONE ? w->size[1] : w->size[0];
-    vec3 line = unit(v3_axpy(v3_scale(end - w->size[0], radius), w->size[2], w->n));
+    vec3 line = wall_edge_unit(v3_axpy(v3_scale(end - w->size[0], radius), w->size[2], w->n));
     return fabs(v3_dot(t->n, v3_cross(w->n, radius))) > tiny || fabs(v3_dot(t->n, line)) > tiny;
 }

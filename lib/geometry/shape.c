@@ -48,7 +48,7 @@ static int32_t names_before(const struct shapes *t, const char *name, bool equal
 }
 
 /* Room for one more; false: no memory */
-static bool grow(struct shapes *t)
+static bool shape_grow(struct shapes *t)
 {
     if (t->n < t->room) return true;
     int32_t room = t->n + t->n / 2 + 8;
@@ -61,9 +61,9 @@ static bool grow(struct shapes *t)
     return true;
 }
 
-static int append(struct shapes *t, struct shape *s, struct why *why)
+static int shape_append(struct shapes *t, struct shape *s, struct why *why)
 {
-    if (!s->name || !grow(t)) {
+    if (!s->name || !shape_grow(t)) {
         shape_free(s);
         return why_set(why, EX_SOFTWARE, "no memory for the shapes");
     }
@@ -85,9 +85,9 @@ int shapes_add(struct shapes *t, int dim, struct shape *s, struct why *why)
     struct shape ball = { .volume = volume, .moment = { k, k, k } };
     if (!t->n) {
         ball.name = strdup("ball");
-        if (append(t, &ball, why)) return shape_free(s), why->status;
+        if (shape_append(t, &ball, why)) return shape_free(s), why->status;
     }
-    return append(t, s, why);
+    return shape_append(t, s, why);
 }
 
 int32_t shapes_find(const struct shapes *t, const char *name)
@@ -109,7 +109,7 @@ bool shape_same(const struct shape *a, const struct shape *b)
     return same;
 }
 
-static int copy_one(struct shape *to, const struct shape *from, struct why *why)
+static int shape_copy_one(struct shape *to, const struct shape *from, struct why *why)
 {
     *to = *from;
     to->name = strdup(from->name);
@@ -150,7 +150,7 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
     to->room = from->n;
     memcpy(to->sorted, from->sorted, (size_t)from->n * sizeof *to->sorted);
     for (; to->n < from->n; to->n++)
-        if (copy_one(&to->s[to->n], &from->s[to->n], why)) {
+        if (shape_copy_one(&to->s[to->n], &from->s[to->n], why)) {
             to->n++;
             shapes_free(to);
             return why->status;
@@ -160,7 +160,7 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
 
 /* ---- what makes a shape one ---- */
 
-static const char *number_trouble(const struct shape *s, int dim)
+static const char *shape_number_trouble(const struct shape *s, int dim)
 {
     if (s->form < 0 || s->form >= SHAPE_FORMS) return "no such form";
     if (!(s->volume > 0 && isfinite(s->volume))) return "its volume must be positive";
@@ -308,7 +308,7 @@ int shape_finish(struct shape *s, int dim, struct why *why)
 {
     const char *trouble = s->vertices > SHAPE_VERTICES_MOST ? "has too many vertices" : NULL;
     if (!trouble) trouble = form_trouble(s);
-    if (!trouble) trouble = number_trouble(s, dim);
+    if (!trouble) trouble = shape_number_trouble(s, dim);
     if (trouble) return why_set(why, EX_DATAERR, "%s", trouble);
     if (s->form != SHAPE_HULL) return 0;
     if (s->faces < 1 || (trouble = count_trouble(s, dim)) || (trouble = index_trouble(s)))

@@ -16,7 +16,7 @@ static const double FLAT = 1e-9;       /* volume, of the cube of the reach, that
 /* ---- sums of simple parts ---- */
 
 /* Integrals from the origin, while parts are added up */
-struct sums {
+struct solid_sums {
     double volume, first[3], second[3][3];
 };
 
@@ -28,7 +28,7 @@ static void add_outer(double t[3][3], double s, vec3 a, vec3 b)
 }
 
 /* The tetrahedron 0, a, b, c; in the plane (dim 2) the triangle 0, a, b */
-static void add_simplex(struct sums *t, int dim, vec3 a, vec3 b, vec3 c)
+static void add_simplex(struct solid_sums *t, int dim, vec3 a, vec3 b, vec3 c)
 {
     double det = dim == 2 ? a.x * b.y - a.y * b.x : v3_dot(a, v3_cross(b, c));
     double volume = det / (dim == 2 ? 2 : 6), mean = volume / (dim + 1);
@@ -42,7 +42,7 @@ static void add_simplex(struct sums *t, int dim, vec3 a, vec3 b, vec3 c)
 }
 
 /* Something of this volume and with these second moments about its own centre at c */
-static void add_part(struct sums *t, double volume, vec3 c, double own[3][3])
+static void solid_add_part(struct solid_sums *t, double volume, vec3 c, double own[3][3])
 {
     t->volume += volume;
     t->first[0] += volume * c.x, t->first[1] += volume * c.y, t->first[2] += volume * c.z;
@@ -51,19 +51,19 @@ static void add_part(struct sums *t, double volume, vec3 c, double own[3][3])
         for (int j = 0; j < 3; j++) t->second[i][j] += own[i][j];
 }
 
-static void add_ball(struct sums *t, int dim, vec3 c, double r)
+static void add_ball(struct solid_sums *t, int dim, vec3 c, double r)
 {
     double volume = dim == 2 ? M_PI * r * r : 4 * M_PI / 3 * r * r * r;
     double k = volume * r * r / (dim + 2);
     double own[3][3] = { { k, 0, 0 }, { 0, k, 0 }, { 0, 0, dim == 2 ? 0 : k } };
-    add_part(t, volume, c, own);
+    solid_add_part(t, volume, c, own);
 }
 
 /*
  * Along its axis u, of length l: a cylinder, and two half balls that together are one, whose matter
  * is l/2 further out. In the plane a rectangle and two half discs.
  */
-static void add_capsule(struct sums *t, int dim, vec3 a, vec3 b, double r)
+static void add_capsule(struct solid_sums *t, int dim, vec3 a, vec3 b, double r)
 {
     vec3 d = v3_sub(b, a), middle = v3_scale(0.5, v3_add(a, b));
     double l = v3_norm(d), h = l / 2;
@@ -74,7 +74,7 @@ static void add_capsule(struct sums *t, int dim, vec3 a, vec3 b, double r)
     double along = trunk * l * l / 12 + ends * (h * h + 2 * h * out + r * r / (dim + 2));
     double own[3][3] = { { across, 0, 0 }, { 0, across, 0 }, { 0, 0, dim == 2 ? 0 : across } };
     if (l > 0) add_outer(own, (along - across) / (l * l), d, d);
-    add_part(t, trunk + ends, middle, own);
+    solid_add_part(t, trunk + ends, middle, own);
 }
 
 /* ---- lines through unions ---- */
@@ -84,7 +84,7 @@ struct chord {
 };
 
 /* Where the line (x, y, z) along x is in a ball */
-static struct chord in_ball(vec3 c, double r, double y, double z)
+static struct chord solid_in_ball(vec3 c, double r, double y, double z)
 {
     double h2 = r * r - (y - c.y) * (y - c.y) - (z - c.z) * (z - c.z);
     double h = h2 > 0 ? sqrt(h2) : -INFINITY;
@@ -92,7 +92,7 @@ static struct chord in_ball(vec3 c, double r, double y, double z)
 }
 
 /* What is left of a chord where n . x <= at */
-static void cut(struct chord *k, vec3 n, double at, double y, double z)
+static void solid_cut(struct chord *k, vec3 n, double at, double y, double z)
 {
     double rest = at - n.y * y - n.z * z;
     if (n.x > 1e-14)
@@ -104,7 +104,7 @@ static void cut(struct chord *k, vec3 n, double at, double y, double z)
 }
 
 /* In the cylinder of radius r around a segment, without round ends */
-static struct chord in_tube(vec3 a, vec3 b, double r, double y, double z)
+static struct chord solid_in_tube(vec3 a, vec3 b, double r, double y, double z)
 {
     vec3 d = v3_sub(b, a), u = v3_scale(1 / v3_norm(d), d), e = v3(1, 0, 0);
     vec3 o = v3_sub(v3(0, y, z), a); // the point x = 0 of the line, from a
@@ -113,23 +113,23 @@ static struct chord in_tube(vec3 a, vec3 b, double r, double y, double z)
     struct chord k = { -INFINITY, INFINITY };
     if (A < 1e-14 ? C > 0 : D <= 0) return (struct chord){ INFINITY, -INFINITY };
     if (A >= 1e-14) k = (struct chord){ (-B - sqrt(D)) / A, (-B + sqrt(D)) / A };
-    cut(&k, u, v3_dot(u, b), y, z);
-    cut(&k, v3_scale(-1, u), -v3_dot(u, a), y, z);
+    solid_cut(&k, u, v3_dot(u, b), y, z);
+    solid_cut(&k, v3_scale(-1, u), -v3_dot(u, a), y, z);
     return k;
 }
 
 /* Over a face, out to `round`: between its plane and that one, and within its sides */
-static struct chord over_face(const struct shape *s, int32_t f, vec3 n, double y, double z)
+static struct chord solid_over_face(const struct shape *s, int32_t f, vec3 n, double y, double z)
 {
     struct chord k = { -INFINITY, INFINITY };
     double at = v3_dot(n, s->vertex[s->corner[s->first[f]]]);
-    cut(&k, n, at + s->round, y, z);
-    cut(&k, v3_scale(-1, n), -at, y, z);
+    solid_cut(&k, n, at + s->round, y, z);
+    solid_cut(&k, v3_scale(-1, n), -at, y, z);
     for (int32_t i = s->first[f], end = s->first[f + 1]; i < end; i++) {
         vec3 a = s->vertex[s->corner[i]],
              b = s->vertex[s->corner[i + 1 < end ? i + 1 : s->first[f]]];
         vec3 out = v3_cross(v3_sub(b, a), n);
-        cut(&k, out, v3_dot(out, a), y, z);
+        solid_cut(&k, out, v3_dot(out, a), y, z);
     }
     return k;
 }
@@ -149,7 +149,7 @@ static int find_chords(const struct shape *s, int dim, const vec3 *normal, doubl
 {
     int n = 0;
     for (int32_t i = 0; i < s->vertices; i++)
-        in[n++] = in_ball(s->vertex[i], s->form == SHAPE_CLUMP ? s->ball[i] : s->round, y, z);
+        in[n++] = solid_in_ball(s->vertex[i], s->form == SHAPE_CLUMP ? s->ball[i] : s->round, y, z);
     if (s->form != SHAPE_HULL) return n;
     struct chord core = { -INFINITY, INFINITY };
     for (int32_t f = 0; f < s->faces; f++)
@@ -157,14 +157,14 @@ static int find_chords(const struct shape *s, int dim, const vec3 *normal, doubl
             vec3 a = s->vertex[s->corner[i]],
                  b = s->vertex[s->corner[i + 1 < end ? i + 1 : s->first[f]]];
             // in the plane tubes are the strips beside the sides
-            in[n++] = in_tube(a, b, s->round, y, z);
+            in[n++] = solid_in_tube(a, b, s->round, y, z);
             if (dim == 3) continue;
             vec3 out = v3(b.y - a.y, a.x - b.x, 0);
-            cut(&core, out, v3_dot(out, a), y, z);
+            solid_cut(&core, out, v3_dot(out, a), y, z);
         }
     for (int32_t f = 0; f < s->faces && dim == 3; f++) {
-        cut(&core, normal[f], v3_dot(normal[f], s->vertex[s->corner[s->first[f]]]), y, z);
-        in[n++] = over_face(s, f, normal[f], y, z);
+        solid_cut(&core, normal[f], v3_dot(normal[f], s->vertex[s->corner[s->first[f]]]), y, z);
+        in[n++] = solid_over_face(s, f, normal[f], y, z);
     }
     in[n++] = core;
     return n;
@@ -177,7 +177,7 @@ static int compare_chords(const void *one, const void *other)
 }
 
 /* What a line with this share of the section adds */
-static void add_line(struct sums *t, struct chord *in, int n, double y, double z, double share)
+static void solid_add_line(struct solid_sums *t, struct chord *in, int n, double y, double z, double share)
 {
     int count = 0;
     for (int k = 0; k < n; k++)
@@ -196,7 +196,7 @@ static void add_line(struct sums *t, struct chord *in, int n, double y, double z
     }
 }
 
-static int add_lines(struct sums *t, const struct shape *s, int dim, struct why *why)
+static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim, struct why *why)
 {
     size_t room = (size_t)s->vertices + (size_t)s->corners + (size_t)s->faces + 2;
     struct chord *in = malloc(room * sizeof *in);
@@ -217,7 +217,7 @@ static int add_lines(struct sums *t, const struct shape *s, int dim, struct why 
     for (int i = 0; i < n; i++)
         for (int j = 0; j < m; j++) {
             double y = lo[0] + (i + 0.5) * dy, z = dim == 2 ? 0 : lo[1] + (j + 0.5) * dz;
-            add_line(t, in, find_chords(s, dim, normal, y, z, in), y, z, dy * dz);
+            solid_add_line(t, in, find_chords(s, dim, normal, y, z, in), y, z, dy * dz);
         }
     for (int i = 1; i < 3; i++)
         for (int j = 0; j < i; j++) t->second[i][j] = t->second[j][i];
@@ -235,7 +235,7 @@ static bool overlapping(const struct shape *s)
     return false;
 }
 
-static void add_faces(struct sums *t, const struct shape *s, int dim)
+static void solid_add_faces(struct solid_sums *t, const struct shape *s, int dim)
 {
     for (int32_t f = 0; f < s->faces; f++) {
         int32_t a = s->first[f], end = s->first[f + 1];
@@ -250,10 +250,10 @@ static void add_faces(struct sums *t, const struct shape *s, int dim)
 
 static int integrate(struct solid *out, const struct shape *s, int dim, struct why *why)
 {
-    struct sums t = { 0 };
+    struct solid_sums t = { 0 };
     bool lines = s->form == SHAPE_CLUMP ? overlapping(s) : s->form == SHAPE_HULL && s->round > 0;
-    if (lines && add_lines(&t, s, dim, why)) return why->status;
-    if (!lines && s->form == SHAPE_HULL) add_faces(&t, s, dim);
+    if (lines && solid_add_lines(&t, s, dim, why)) return why->status;
+    if (!lines && s->form == SHAPE_HULL) solid_add_faces(&t, s, dim);
     if (s->form == SHAPE_CAPSULE) add_capsule(&t, dim, s->vertex[0], s->vertex[1], s->round);
     for (int32_t i = 0; i < s->vertices && !lines && s->form == SHAPE_CLUMP; i++)
         add_ball(&t, dim, s->vertex[i], s->ball[i]);

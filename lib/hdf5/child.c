@@ -54,7 +54,7 @@ static void bury_all(void)
     for (struct child *c = running; c && owner == getpid(); c = c->next) bury(c);
 }
 
-static void enlist(struct child *c)
+static void child_enlist(struct child *c)
 {
     static bool registered;
     c->next = running, running = c, owner = getpid();
@@ -77,7 +77,7 @@ static int no_child(struct why *why, const char *trouble)
 }
 
 /* What the new process is to do */
-struct start {
+struct child_start {
     struct child *child;
     int line[2];
     int files;
@@ -88,7 +88,7 @@ struct start {
 };
 
 /* The files that the program has open, and may have locked, are its own: all but those that are to be read. */
-static void leave_files(const struct start *s)
+static void leave_files(const struct child_start *s)
 {
     int keep[2] = { s->line[1], -1 };
     if (s->files) sscanf(s->file[0], "/proc/self/fd/%d", &keep[1]);
@@ -104,9 +104,9 @@ static void leave_files(const struct start *s)
 }
 
 /* Called as libhdf5 calls back, so that it does not matter with what */
-static herr_t start(hid_t plist, const char *name, void *data)
+static herr_t child_start_reader(hid_t plist, const char *name, void *data)
 {
-    struct start *s = data;
+    struct child_start *s = data;
     struct child *c = s->child;
     (void)plist, (void)name;
     c->pid = fork();
@@ -122,17 +122,17 @@ static herr_t start(hid_t plist, const char *name, void *data)
  * Another thread of a program may be in libhdf5, which it locks for itself: the lock would stay locked in the new process
  * for ever. In what libhdf5 calls back the lock is this thread's, here and there.
  */
-static void start_beside_threads(struct start *s)
+static void start_beside_threads(struct child_start *s)
 {
     int from = 0;
-    if (!guest_is() || H5Piterate(H5P_FILE_ACCESS_DEFAULT, &from, start, s) != 1)
-        start(H5P_DEFAULT, "", s);
+    if (!guest_is() || H5Piterate(H5P_FILE_ACCESS_DEFAULT, &from, child_start_reader, s) != 1)
+        child_start_reader(H5P_DEFAULT, "", s);
 }
 
 int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct why *why)
 {
     struct child *c = *out = calloc(1, sizeof *c);
-    struct start s = {
+    struct child_start s = {
         .child = c, .files = files, .file = file, .limit = limit, .parent = getpid()
     };
     int *line = s.line;
@@ -152,7 +152,7 @@ int child_start(struct child **out, int files, char *const *file, uint64_t limit
     if (c->pid < 0)
         close(line[0]);
     else
-        c->line = line[0], enlist(c);
+        c->line = line[0], child_enlist(c);
     pthread_mutex_unlock(&lock);
     return c->pid < 0 ? (c->pid = 0, no_child(why, strerror(s.trouble))) : 0;
 }
@@ -195,7 +195,7 @@ static int child_gone(struct child *c, struct why *why)
 }
 
 /* All pieces of an answer, out of shared memory */
-static int take(struct child *c, struct taker *t, struct why *why)
+static int child_take(struct child *c, struct taker *t, struct why *why)
 {
     struct reply r;
     bool begun = false;
@@ -219,5 +219,5 @@ static int take(struct child *c, struct taker *t, struct why *why)
 int child_ask(struct child *c, const struct request *q, struct taker *t, struct why *why)
 {
     if (!line_send(c->line, q, sizeof *q)) return child_gone(c, why);
-    return take(c, t, why);
+    return child_take(c, t, why);
 }

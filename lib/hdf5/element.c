@@ -101,7 +101,7 @@ char *element_text(hid_t set, hid_t attr, size_t *length, bool *no_memory)
 }
 
 /* n strings of variable length, or of `width` bytes each, one after another */
-static char *join(char *const *variable, const char *fixed, size_t width, hssize_t n)
+static char *element_join(char *const *variable, const char *fixed, size_t width, hssize_t n)
 {
     char *out = malloc((size_t)n * (MOST_LINE + 1) + 1), *to = out;
     for (hssize_t k = 0; out && k < n; k++) {
@@ -130,7 +130,7 @@ char *element_lines(hid_t set, size_t *length, bool *no_memory)
         H5Tset_size(type, H5T_VARIABLE), H5Tset_cset(type, H5Tget_cset(disk));
         if (H5Dread(set, variable ? type : disk, H5S_ALL, H5S_ALL, H5P_DEFAULT, list) >= 0)
             *no_memory = !(
-                out = join(variable ? list : NULL, variable ? NULL : (const char *)list, width, n));
+                out = element_join(variable ? list : NULL, variable ? NULL : (const char *)list, width, n));
         for (hssize_t k = 0; variable && k < n; k++) H5free_memory(list[k]);
         H5Tclose(type);
     }

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int by_path(const void *one, const void *other, void *objects)
+static int child_by_path(const void *one, const void *other, void *objects)
 {
     const struct listed *l = objects, *a = &l[*(const int64_t *)one],
                         *b = &l[*(const int64_t *)other];
@@ -19,7 +19,7 @@ static int sort(struct list *s, struct why *why)
     if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
         return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
     for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
-    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, by_path, s->object);
+    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, child_by_path, s->object);
     return 0;
 }
 
@@ -49,7 +49,7 @@ void list_free(struct list *s)
 }
 
 /* The one of this path, PATH@NAME of an attribute */
-static const struct listed *find(const struct list *s, const char *path, bool attribute)
+static const struct listed *child_find(const struct list *s, const char *path, bool attribute)
 {
     for (int64_t lo = 0, hi = s->count; lo < hi;) {
         int64_t k = lo + (hi - lo) / 2;
@@ -64,14 +64,14 @@ static const struct listed *find(const struct list *s, const char *path, bool at
 
 const struct listed *list_find(const struct list *s, const char *path)
 {
-    return find(s, path, false);
+    return child_find(s, path, false);
 }
 
 const struct listed *list_attribute(const struct list *s, const char *path, const char *name)
 {
     char whole[OBJECT_PATH + OBJECT_NAME];
     snprintf(whole, sizeof whole, "%s@%s", path, name);
-    const struct listed *l = find(s, whole, true);
+    const struct listed *l = child_find(s, whole, true);
     return l && l->object.data ? l : NULL;
 }
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* A block of a dataset, in pieces that are whole in its last dimensions. */
-static int put_block(hid_t set, hid_t type, int rank, const hsize_t *first, const hsize_t *count,
+static int serve_put_block(hid_t set, hid_t type, int rank, const hsize_t *first, const hsize_t *count,
                      struct sink *sink)
 {
     size_t most, element = H5Tget_size(type);
@@ -56,13 +56,13 @@ static const struct served_entry *find_numbers(const struct served *s, const str
 }
 
 /* Block of a dataset that is asked for */
-struct block {
+struct serve_block {
     hsize_t first[OBJECT_RANK], count[OBJECT_RANK];
     hsize_t stored; /* numbers of the dataset that have to be in the file */
 };
 
 static int answer_block(struct served *s, const struct served_entry *e, const struct request *q,
-                        const struct block *b, struct sink *sink, struct why *why)
+                        const struct serve_block *b, struct sink *sink, struct why *why)
 {
     const struct object *o = &e->object;
     struct reply reply = { .there = true, .size = column_size(q->type) };
@@ -72,7 +72,7 @@ static int answer_block(struct served *s, const struct served_entry *e, const st
     if (set < 0) return why->status;
     if (set != e->set) reply.work = e->chunk;
     int bad = sink->begin(sink, &reply) ||
-              put_block(set, column_native(q->type), (int)o->rank, b->first, b->count, sink);
+              serve_put_block(set, column_native(q->type), (int)o->rank, b->first, b->count, sink);
     if (set != e->set) H5Dclose(set);
     return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
                          element_wanted(q->type))
@@ -85,7 +85,7 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
     const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    struct block b = { .first = { 0 } };
+    struct serve_block b = { .first = { 0 } };
     hsize_t row = 1, rows = o->rank ? e->shape[0] : 1;
     for (uint32_t k = 0; k < o->rank; k++) {
         b.count[k] = e->shape[k];
@@ -108,7 +108,7 @@ static int answer_part(struct served *s, const struct request *q, struct sink *s
     const struct served_entry *e = find_numbers(s, q, why);
     if (!e) return why->status;
     const struct object *o = &e->object;
-    struct block b = { .first = { 0 } };
+    struct serve_block b = { .first = { 0 } };
     hsize_t *first = b.first, *count = b.count, width = 1;
     for (uint32_t k = 0; k < o->rank; k++) {
         count[k] = e->shape[k];
@@ -205,7 +205,7 @@ static int answer_raw(struct served *s, const struct request *q, struct sink *si
     hid_t disk = o->class == 's' ? H5Dget_type(set) : -1;
     if (disk >= 0) H5Tset_cset(type, H5Tget_cset(disk)), H5Tclose(disk);
     int bad =
-        sink->begin(sink, &reply) || put_block(set, type, (int)o->rank, first, e->shape, sink);
+        sink->begin(sink, &reply) || serve_put_block(set, type, (int)o->rank, first, e->shape, sink);
     if (o->class == 's') H5Tclose(type);
     if (set != e->set) H5Dclose(set);
     return bad ? why_set(why, EX_DATAERR, "%s: cannot be read (damaged?)", q->path) : 0;

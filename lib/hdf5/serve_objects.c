@@ -15,7 +15,7 @@ enum {
 };
 
 /* Objects that are gathered, and whose attributes they are */
-struct gathered {
+struct serve_gathered {
     struct objects objects;
     const char *path; /* of the object whose attributes they are */
     bool group;       /* they go under "path@name" */
@@ -24,7 +24,7 @@ struct gathered {
 };
 
 /* One attribute: what it is, and its data. */
-static int gather(struct gathered *g, const char *name, hid_t attr)
+static int serve_gather(struct serve_gathered *g, const char *name, hid_t attr)
 {
     struct object o = { 0 };
     hsize_t shape[H5S_MAX_RANK] = { 0 }, points = 1;
@@ -75,21 +75,21 @@ static int gather(struct gathered *g, const char *name, hid_t attr)
 static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *info, void *data)
 {
     (void)info;
-    struct gathered *g = data;
+    struct serve_gathered *g = data;
     if (g->count++ == MOST_ATTRIBUTES)
         return why_set(g->why, EX_DATAERR, "%s: more than %d attributes", g->path, MOST_ATTRIBUTES),
                -1;
     hid_t attr = H5Aopen(from, name, H5P_DEFAULT);
     if (attr < 0)
         return why_set(g->why, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path, name), -1;
-    int e = gather(g, name, attr);
+    int e = serve_gather(g, name, attr);
     H5Aclose(attr);
     return e ? -1 : 0;
 }
 
 int serve_attributes(struct served *s, const struct request *q, struct sink *sink, struct why *why)
 {
-    struct gathered g = { .path = *q->path ? q->path : "/", .why = why };
+    struct serve_gathered g = { .path = *q->path ? q->path : "/", .why = why };
     struct reply reply = { 0 };
     hid_t object = H5Oopen(s->file, g.path, H5P_DEFAULT);
     if (object < 0 ||
@@ -136,7 +136,7 @@ static void *small_data(const struct served *s, const struct served_entry *e, st
     return data;
 }
 
-static int add_group_attributes(struct served *s, const char *path, struct gathered *g)
+static int add_group_attributes(struct served *s, const char *path, struct serve_gathered *g)
 {
     hid_t group = H5Gopen2(s->file, *path ? path : "/", H5P_DEFAULT);
     g->path = path, g->group = true, g->count = 0;
@@ -148,7 +148,7 @@ static int add_group_attributes(struct served *s, const char *path, struct gathe
 
 void *serve_objects(struct served *s, size_t *size, struct why *why)
 {
-    struct gathered g = { .why = why };
+    struct serve_gathered g = { .why = why };
     size_t sent = 0;
     for (int64_t k = 0; k < s->count && !why->status; k++) {
         const struct served_entry *e = &s->entry[k];

@@ -205,7 +205,7 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     return w->why->status ? -1 : 0;
 }
 
-static int by_path(const void *one, const void *other, void *entries)
+static int served_by_path(const void *one, const void *other, void *entries)
 {
     const struct served_entry *e = entries;
     return strcmp(e[*(const int64_t *)one].path, e[*(const int64_t *)other].path);
@@ -216,7 +216,7 @@ static int sort_entries(struct served *s, struct why *why)
     if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
         return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
     for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
-    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, by_path, s->entry);
+    qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, served_by_path, s->entry);
     return 0;
 }
 

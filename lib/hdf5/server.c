@@ -186,7 +186,7 @@ static int answer_image(struct server *s, struct why *why)
                : 0;
 }
 
-static int answer(struct server *s, const struct request *q, struct why *why)
+static int server_answer(struct server *s, const struct request *q, struct why *why)
 {
     struct reply done = { .there = true };
     if (q->op == REQUEST_IMAGE) return answer_image(s, why);
@@ -209,7 +209,7 @@ static void serve(struct server *s)
         struct why why = { 0 };
         if (n == 1) continue; // the last pieces are not waited for
         if (n != sizeof q) break;
-        if (!answer(s, &q, &why)) continue;
+        if (!server_answer(s, &q, &why)) continue;
         s->reply = (struct reply){ .status = why.status ? why.status : EX_SOFTWARE };
         snprintf(s->reply.text, sizeof s->reply.text, "%s", why.text);
         if (!send_reply(s)) break;

@@ -50,7 +50,7 @@ const char *source_where(const struct source *s)
     return s->where;
 }
 
-static int ask(struct source *s, const struct request *q, struct taker *t, struct why *why)
+static int source_ask(struct source *s, const struct request *q, struct taker *t, struct why *why)
 {
     void *given = t->out;
     int e;
@@ -89,7 +89,7 @@ int source_next(struct source *s, struct source_document *d, bool *more, struct 
     struct taker t = { 0 };
     list_free(&s->list);
     *more = false;
-    if (ask(s, &q, &t, why)) return why->status;
+    if (source_ask(s, &q, &t, why)) return why->status;
     if (!t.reply.there) return free(t.out), 0;
     snprintf(s->name, sizeof s->name, "%.290s", t.reply.text);
     snprintf(s->where, sizeof s->where, t.reply.number > 1 ? "%.250s: document %lld" : "%.250s",
@@ -140,7 +140,7 @@ int source_unload(struct source *s, struct why *why)
 {
     struct request q = request_of(REQUEST_UNLOAD, "");
     struct taker t = { .out = &q };
-    return s->child && s->large ? ask(s, &q, &t, why) : 0;
+    return s->child && s->large ? source_ask(s, &q, &t, why) : 0;
 }
 
 int source_release(struct source *s, struct why *why)
@@ -148,14 +148,14 @@ int source_release(struct source *s, struct why *why)
     struct request q = request_of(REQUEST_RELEASE, "");
     struct taker t = { .out = &q };
     list_free(&s->list);
-    return s->child && s->large ? ask(s, &q, &t, why) : 0;
+    return s->child && s->large ? source_ask(s, &q, &t, why) : 0;
 }
 
 int source_pour(struct source *s, source_sink pour, void *to, struct why *why)
 {
     struct request q = request_of(REQUEST_IMAGE, "");
     struct taker t = { .pour = pour, .out = to };
-    return ask(s, &q, &t, why);
+    return source_ask(s, &q, &t, why);
 }
 
 int source_rows(struct source *s, const char *path, struct slab rows, void *out, struct why *why)
@@ -174,7 +174,7 @@ int source_rows(struct source *s, const char *path, struct slab rows, void *out,
             return source_draw(s, t.size, why);
     }
     q.type = type, q.start = start, q.n = n, q.width = width;
-    return ask(s, &q, &t, why);
+    return source_ask(s, &q, &t, why);
 }
 
 int source_part(struct source *s, const char *path, int64_t row, struct slab rows, void *out,
@@ -196,7 +196,7 @@ int source_part(struct source *s, const char *path, int64_t row, struct slab row
             return source_draw(s, t.size, why);
     }
     q.type = type, q.start = row, q.from = first, q.n = n, q.width = width;
-    return ask(s, &q, &t, why);
+    return source_ask(s, &q, &t, why);
 }
 
 void *source_read_all(struct source *s, const char *path, enum column_type type, uint64_t *count,
@@ -217,7 +217,7 @@ void *source_read_all(struct source *s, const char *path, enum column_type type,
         free(out);
         *count = 0;
     }
-    if (ask(s, &q, &t, why)) return NULL;
+    if (source_ask(s, &q, &t, why)) return NULL;
     *count = t.size / column_size(type);
     return t.out;
 }
@@ -251,7 +251,7 @@ char *source_text(struct source *s, const char *path, const char *name, struct w
         return text;
     }
     if (name) snprintf(q.name, sizeof q.name, "%s", name);
-    if (ask(s, &q, &t, why)) return NULL;
+    if (source_ask(s, &q, &t, why)) return NULL;
     if (!t.reply.there) free(t.out), t.out = NULL;
     return t.out;
 }
@@ -261,7 +261,7 @@ char *source_lines(struct source *s, const char *path, struct why *why)
     struct request q = request_of(REQUEST_TEXT, path);
     struct taker t = { 0 };
     q.n = 1;
-    if (!list_find(&s->list, path) || ask(s, &q, &t, why)) return NULL;
+    if (!list_find(&s->list, path) || source_ask(s, &q, &t, why)) return NULL;
     if (!t.reply.there) free(t.out), t.out = NULL;
     return t.out;
 }
@@ -278,7 +278,7 @@ int source_attribute(struct source *s, const char *path, const char *name, struc
         listed_numbers(l, 0, n, numbers.type, numbers.to))
         return 0;
     snprintf(q.name, sizeof q.name, "%s", name);
-    return ask(s, &q, &t, why);
+    return source_ask(s, &q, &t, why);
 }
 
 /* Cut into strings; false where it is something else. */
@@ -314,7 +314,7 @@ void *source_raw(struct source *s, const char *path, uint64_t *size, struct why 
 {
     struct request q = request_of(REQUEST_RAW, path);
     struct taker t = { 0 };
-    if (ask(s, &q, &t, why)) return NULL;
+    if (source_ask(s, &q, &t, why)) return NULL;
     *size = t.size;
     return t.out;
 }
@@ -323,7 +323,7 @@ void *source_attributes(struct source *s, const char *path, uint64_t *size, stru
 {
     struct request q = request_of(REQUEST_ATTRIBUTES, path);
     struct taker t = { 0 };
-    if (ask(s, &q, &t, why)) return NULL;
+    if (source_ask(s, &q, &t, why)) return NULL;
     *size = t.size;
     return t.out;
 }

@@ -25,12 +25,12 @@ enum {
     PIECE = 1 << 19 /* bytes whose checksum is taken while they are in a core's second cache */
 };
 
-static void store(unsigned char *p, uint64_t x, int bytes)
+static void stream_store(unsigned char *p, uint64_t x, int bytes)
 {
     for (int k = 0; k < bytes; k++) p[k] = (unsigned char)(x >> (8 * k));
 }
 
-static uint64_t load(const unsigned char *p, int bytes)
+static uint64_t stream_load(const unsigned char *p, int bytes)
 {
     uint64_t x = 0;
     for (int k = 0; k < bytes; k++) x |= (uint64_t)p[k] << (8 * k);
@@ -41,20 +41,20 @@ void document_header(unsigned char u[DOCUMENT_USERBLOCK], uint64_t length, uint3
 {
     memset(u, 0, DOCUMENT_USERBLOCK);
     memcpy(u, MAGIC, sizeof MAGIC);
-    store(u + AT_VERSION, DOCUMENT_VERSION, 4);
-    store(u + AT_FLAGS, length ? 0 : DOCUMENT_UNFINISHED, 4);
-    store(u + AT_LENGTH, length, 8);
-    store(u + AT_CRC, crc, 4);
-    store(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
+    stream_store(u + AT_VERSION, DOCUMENT_VERSION, 4);
+    stream_store(u + AT_FLAGS, length ? 0 : DOCUMENT_UNFINISHED, 4);
+    stream_store(u + AT_LENGTH, length, 8);
+    stream_store(u + AT_CRC, crc, 4);
+    stream_store(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
 }
 
 int64_t document_length(const unsigned char u[DOCUMENT_USERBLOCK])
 {
     if (memcmp(u, MAGIC, sizeof MAGIC) != 0 ||
-        load(u + AT_HEADER_CRC, 4) != document_crc(0, u, AT_HEADER_CRC))
+        stream_load(u + AT_HEADER_CRC, 4) != document_crc(0, u, AT_HEADER_CRC))
         return -1;
-    if (load(u + AT_FLAGS, 4) & DOCUMENT_UNFINISHED) return 0;
-    uint64_t length = load(u + AT_LENGTH, 8);
+    if (stream_load(u + AT_FLAGS, 4) & DOCUMENT_UNFINISHED) return 0;
+    uint64_t length = stream_load(u + AT_LENGTH, 8);
     return length > INT64_MAX || length < DOCUMENT_USERBLOCK ? -1 : (int64_t)length;
 }
 
@@ -170,7 +170,7 @@ static int file_open(struct stream *s, struct why *why)
 }
 
 /* Reads from a pipe until the buffer holds `want` bytes; where it ends early, *have < want. */
-static int fill(struct stream *s, size_t *have, size_t want, struct why *why)
+static int stream_fill(struct stream *s, size_t *have, size_t want, struct why *why)
 {
     while (*have < want) {
         if (*have == s->room) { // grows with what arrives: the header's length is not trusted
@@ -195,7 +195,7 @@ static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t wa
         *have = s->size - s->at < want ? s->size - s->at : want;
         return 0;
     }
-    int status = fill(s, have, want, why);
+    int status = stream_fill(s, have, want, why);
     *bytes = s->buffer;
     return status;
 }
@@ -241,14 +241,14 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
 {
     const unsigned char *h = im->bytes;
     if (have < DOCUMENT_USERBLOCK) return refuse(s, why, "truncated in its header");
-    if (load(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
+    if (stream_load(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
         return refuse(s, why, "damaged header (its checksum is wrong)");
-    uint64_t version = load(h + AT_VERSION, 4), length = load(h + AT_LENGTH, 8);
-    uint32_t crc = (uint32_t)load(h + AT_CRC, 4);
+    uint64_t version = stream_load(h + AT_VERSION, 4), length = stream_load(h + AT_LENGTH, 8);
+    uint32_t crc = (uint32_t)stream_load(h + AT_CRC, 4);
     if (version > DOCUMENT_VERSION)
         return why_set(why, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
                        s->name, (unsigned long long)version, DOCUMENT_VERSION);
-    im->unfinished = load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
+    im->unfinished = stream_load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
     if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, why, "damaged header");
     size_t want = im->unfinished ? SIZE_MAX : length;
     uint32_t is = 0;
@@ -270,7 +270,7 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct why 
 }
 
 /* A foreign HDF5 file: all that the file or pipe still holds. */
-static int read_foreign(struct stream *s, struct image *im, size_t have, struct why *why)
+static int stream_read_foreign(struct stream *s, struct image *im, size_t have, struct why *why)
 {
     im->foreign = true;
     if (peek(s, &im->bytes, &have, SIZE_MAX, why)) return why->status;
@@ -305,7 +305,7 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
             if (have >= sizeof MAGIC && !memcmp(im->bytes, MAGIC, sizeof MAGIC))
                 status = read_own(s, im, have, why);
             else if (!s->in_file && is_hdf5(im->bytes, have))
-                status = read_foreign(s, im, have, why);
+                status = stream_read_foreign(s, im, have, why);
             else
                 status = refuse(s, why, "neither an nsd document nor an HDF5 file");
             s->at += im->size;

@@ -58,7 +58,7 @@ static const struct {
 
 enum { NAMES = sizeof names / sizeof names[0] };
 
-static const char *name_of(enum import_column c)
+static const char *imported_name_of(enum import_column c)
 {
     for (int k = 0; k < NAMES; k++)
         if (names[k].column == c) return names[k].name;
@@ -162,7 +162,7 @@ static int read_numbers(const struct import_columns *c, struct words *w, double 
         if (read_word(w, which, word, &number)) return w->soup->why->status;
         if (had[which] && number != x[which])
             return soup_fault(w->soup, "two columns %s, with %.10g and %.10g: which one is meant?",
-                              name_of(which), x[which], number);
+                              imported_name_of(which), x[which], number);
         had[which] = true, x[which] = number;
     }
     return words_next(w, &word) ? word_fault(w, word, "is one more than there are columns") : 0;

@@ -37,15 +37,15 @@ static int read_bytes(struct imported *to, const char *name, const char *bytes, 
                    name);
 }
 
-struct work {
+struct import_file_work {
     const char *path;
     int fd;
     int64_t size, frame;
 };
 
-static int read_open(void *with, struct bounded *to, struct why *why)
+static int import_file_read_open(void *with, struct bounded *to, struct why *why)
 {
-    const struct work *f = with;
+    const struct import_file_work *f = with;
     struct imported it = { 0 };
     int64_t n = 0;
     char *bytes = malloc((size_t)f->size + 1);
@@ -68,14 +68,14 @@ static int read_open(void *with, struct bounded *to, struct why *why)
 
 /* ---- what comes of it ---- */
 
-static int by_number(const void *one, const void *other)
+static int import_file_by_number(const void *one, const void *other)
 {
     const int32_t a = *(const int32_t *)one, b = *(const int32_t *)other;
     return (a > b) - (a < b);
 }
 
 /* The types that there are, sorted; to be freed */
-static int32_t *list_types(const struct imported_ball *ball, int64_t n, int32_t *types,
+static int32_t *import_file_list_types(const struct imported_ball *ball, int64_t n, int32_t *types,
                            const char *name, struct why *why)
 {
     int32_t *type = malloc((TYPES_MOST + 1) * sizeof *type), last = -1;
@@ -83,14 +83,14 @@ static int32_t *list_types(const struct imported_ball *ball, int64_t n, int32_t 
     *types = 0;
     for (int64_t i = 0; i < n; i++) {
         if (ball[i].type == last ||
-            (*types && bsearch(&ball[i].type, type, (size_t)*types, sizeof *type, by_number)))
+            (*types && bsearch(&ball[i].type, type, (size_t)*types, sizeof *type, import_file_by_number)))
             continue;
         if (*types == TYPES_MOST) {
             why_set(why, EX_DATAERR, "%s: more than %d types", name, TYPES_MOST);
             break;
         }
         type[(*types)++] = last = ball[i].type;
-        qsort(type, (size_t)*types, sizeof *type, by_number);
+        qsort(type, (size_t)*types, sizeof *type, import_file_by_number);
     }
     return type;
 }
@@ -108,7 +108,7 @@ static int set_kinds(struct packing *p, const int32_t *type, int32_t types, stru
     return 0;
 }
 
-static int set_body(struct packing *p, int64_t i, const struct imported_ball *b, const char *name,
+static int import_file_set_body(struct packing *p, int64_t i, const struct imported_ball *b, const char *name,
                     struct why *why)
 {
     double mass, inertia;
@@ -127,7 +127,7 @@ static int set_body(struct packing *p, int64_t i, const struct imported_ball *b,
 }
 
 /* The box, where it is periodic; the plane has none across it. */
-static int set_cell(struct packing *p, const struct imported_head *h,
+static int import_file_set_cell(struct packing *p, const struct imported_head *h,
                     const struct import_wish *wish, const char *name, struct why *why)
 {
     struct cell *c = &p->cell;
@@ -149,14 +149,14 @@ static int make_packing(struct packing *p, const struct imported_head *h,
                         const struct imported_ball *ball, const struct import_wish *wish,
                         const char *name, struct why *why)
 {
-    int32_t types = 0, *type = list_types(ball, h->n, &types, name, why);
+    int32_t types = 0, *type = import_file_list_types(ball, h->n, &types, name, why);
     if (!why->status && !packing_init(p, wish->dim, h->n, why)) {
         p->dt = 1; // the scene has one
-        if (!set_kinds(p, type, types, why) && !set_cell(p, h, wish, name, why))
+        if (!set_kinds(p, type, types, why) && !import_file_set_cell(p, h, wish, name, why))
             for (int64_t i = 0; i < h->n && !why->status; i++) {
-                if (set_body(p, i, &ball[i], name, why)) break;
+                if (import_file_set_body(p, i, &ball[i], name, why)) break;
                 const int32_t *k =
-                    bsearch(&ball[i].type, type, (size_t)types, sizeof *type, by_number);
+                    bsearch(&ball[i].type, type, (size_t)types, sizeof *type, import_file_by_number);
                 p->kind[i] = k ? (int32_t)(k - type) : 0;
             }
         struct why trouble = { 0 };
@@ -178,7 +178,7 @@ int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t
     return why->status;
 }
 
-static int open_plain(const char *path, int64_t *size, struct why *why)
+static int import_file_open_plain(const char *path, int64_t *size, struct why *why)
 {
     struct stat st;
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // of a FIFO it would wait
@@ -199,17 +199,17 @@ int import_file(struct packing *p, const char *path, const struct import_wish *w
                 struct import_said *said, struct why *why)
 {
     *said = (struct import_said){ 0 };
-    struct work f = { .path = path, .frame = wish->frame };
+    struct import_file_work f = { .path = path, .frame = wish->frame };
     void *answer = NULL;
     size_t n = 0;
-    if ((f.fd = open_plain(path, &f.size, why)) < 0) return why->status;
+    if ((f.fd = import_file_open_plain(path, &f.size, why)) < 0) return why->status;
     if (ondem_looks(f.fd)) {
         close(f.fd);
         if (wish->frame == -1 || wish->frame == 0) return ondem_read(p, path, wish->dim, said, why);
         return why_set(why, EX_DATAERR, "%s: no frame %lld: there is one", path,
                        (long long)wish->frame);
     }
-    const struct bounded_task task = { read_open, &f, path, (uint64_t)f.size };
+    const struct bounded_task task = { import_file_read_open, &f, path, (uint64_t)f.size };
     bounded_run(&task, &answer, &n, why);
     close(f.fd);
     if (why->status) return why->status;

@@ -15,7 +15,7 @@ static const char *const sections[] = {
 };
 
 /* The number of atoms is in one of the first lines of the head. */
-static bool looks(const char *bytes, int64_t n)
+static bool import_lammps_data_looks(const char *bytes, int64_t n)
 {
     const char *at = bytes, *end = bytes + (n < 4096 ? n : 4096);
     for (int line = 0; line < 12 && at < end; line++) {
@@ -62,7 +62,7 @@ static bool is_equals(struct word word)
 }
 
 /* "units = cgs", which write_data has in the title, "# units: cgs", "units cgs" */
-static int read_units(struct data *d)
+static int import_lammps_data_read_units(struct data *d)
 {
     struct words w = *d->w;
     struct word word;
@@ -122,7 +122,7 @@ static int read_head_line(struct data *d, struct word first)
     return 0;
 }
 
-static void set_box(struct data *d)
+static void import_lammps_data_set_box(struct data *d)
 {
     struct imported_head *h = &d->to->head;
     if (!(d->has[0] && d->has[1] && d->has[2])) return;
@@ -134,7 +134,7 @@ static void set_box(struct data *d)
 }
 
 /* Goes to the next line that has words; *word: the first */
-static int next_line(struct data *d, int64_t i, const char *what, struct word *word)
+static int import_lammps_data_next_line(struct data *d, int64_t i, const char *what, struct word *word)
 {
     do
         if (!words_line(d->w))
@@ -150,7 +150,7 @@ static void unread(struct words *w, struct word word)
     w->at = word.s;
 }
 
-static int count_words(struct words w)
+static int import_lammps_data_count_words(struct words w)
 {
     struct word word;
     int n = 0;
@@ -159,7 +159,7 @@ static int count_words(struct words w)
 }
 
 /* Atoms # style. Of style sphere: id type diameter density x y z, and perhaps three images */
-static int read_atoms(struct data *d)
+static int import_lammps_data_read_atoms(struct data *d)
 {
     static const enum import_column sphere[] = { IMPORT_ID,      IMPORT_TYPE,  IMPORT_DIAMETER,
                                                  IMPORT_DENSITY, IMPORT_X,     IMPORT_Y,
@@ -171,9 +171,9 @@ static int read_atoms(struct data *d)
     d->read = true;
     for (int64_t i = 0; i < d->atoms; i++) {
         struct imported_ball b;
-        if (next_line(d, i, "atoms", &word)) return d->w->soup->why->status;
+        if (import_lammps_data_next_line(d, i, "atoms", &word)) return d->w->soup->why->status;
         unread(d->w, word);
-        int n = count_words(*d->w);
+        int n = import_lammps_data_count_words(*d->w);
         if (n != 7 && n != 10)
             return soup_fault(
                 d->w->soup,
@@ -189,7 +189,7 @@ static int read_atoms(struct data *d)
     return 0;
 }
 
-static int by_id(const void *one, const void *other)
+static int import_lammps_data_by_id(const void *one, const void *other)
 {
     const struct ref *a = one, *b = other;
     return (a->id > b->id) - (a->id < b->id);
@@ -202,7 +202,7 @@ static int sort_balls(struct data *d)
         return why_set(d->w->soup->why, EX_SOFTWARE, "no memory for the balls of a file");
     for (int64_t i = 0; i < d->atoms; i++)
         d->sorted[i] = (struct ref){ d->to->ball[i].id, &d->to->ball[i] };
-    qsort(d->sorted, (size_t)d->atoms, sizeof *d->sorted, by_id);
+    qsort(d->sorted, (size_t)d->atoms, sizeof *d->sorted, import_lammps_data_by_id);
     return 0;
 }
 
@@ -214,9 +214,9 @@ static int read_velocities(struct data *d)
     if (!d->sorted && sort_balls(d)) return d->w->soup->why->status;
     for (int64_t i = 0; i < d->atoms; i++) {
         double x[7] = { 0 };
-        if (next_line(d, i, "velocities", &word)) return d->w->soup->why->status;
+        if (import_lammps_data_next_line(d, i, "velocities", &word)) return d->w->soup->why->status;
         unread(d->w, word);
-        int n = count_words(*d->w);
+        int n = import_lammps_data_count_words(*d->w);
         if (n != 4 && n != 7)
             return soup_fault(d->w->soup, "%d words, and 4 or 7 are needed: id vx vy vz wx wy wz",
                               n);
@@ -224,7 +224,7 @@ static int read_velocities(struct data *d)
             if (words_number(d->w, &x[k])) return d->w->soup->why->status;
         bool whole = x[0] >= 0 && x[0] <= INT32_MAX && x[0] == (double)(int32_t)x[0];
         const struct ref key = { whole ? (int32_t)x[0] : -1, NULL };
-        const struct ref *r = bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, by_id);
+        const struct ref *r = bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, import_lammps_data_by_id);
         if (!r) return word_fault(d->w, word, "is the id of no atom");
         r->ball->v = v3(x[1], x[2], x[3]), r->ball->w = v3(x[4], x[5], x[6]);
     }
@@ -262,7 +262,7 @@ static int read_sections(struct data *d, struct word word)
                                           "does not have: write spheres");
         if (is_foreign(word))
             return word_fault(d->w, word, "are not of atom_style sphere, of which balls are read");
-        if (atoms ? read_atoms(d) : velocities ? read_velocities(d) : 0)
+        if (atoms ? import_lammps_data_read_atoms(d) : velocities ? read_velocities(d) : 0)
             return d->w->soup->why->status;
         more = skip_section(d->w, &word);
     }
@@ -273,12 +273,12 @@ static int read_data(struct data *d)
 {
     struct word word = { 0 };
     d->w->comments = true;
-    if (read_units(d)) return d->w->soup->why->status;
+    if (import_lammps_data_read_units(d)) return d->w->soup->why->status;
     while (words_line(d->w)) { // behind the first line, a title
-        if (read_units(d)) return d->w->soup->why->status;
+        if (import_lammps_data_read_units(d)) return d->w->soup->why->status;
         if (!words_next(d->w, &word)) continue;
         if (is_section(word)) {
-            set_box(d);
+            import_lammps_data_set_box(d);
             return read_sections(d, word);
         }
         if (read_head_line(d, word)) return d->w->soup->why->status;
@@ -286,7 +286,7 @@ static int read_data(struct data *d)
     return 0;
 }
 
-static int read(struct imported *to, struct words *w, int64_t k)
+static int import_lammps_data_read(struct imported *to, struct words *w, int64_t k)
 {
     struct data d = { .to = to, .w = w };
     if (k != -1 && k != 0) return soup_fault(w->soup, "no frame %lld: there is one", (long long)k);
@@ -297,4 +297,4 @@ static int read(struct imported *to, struct words *w, int64_t k)
     return bad;
 }
 
-const struct import_format import_lammps_data = { "a LAMMPS data file", looks, read };
+const struct import_format import_lammps_data = { "a LAMMPS data file", import_lammps_data_looks, import_lammps_data_read };

@@ -10,16 +10,16 @@
 
 static const char CURE[] = "dump ... id type x y z vx vy vz omegax omegay omegaz radius mass";
 
-static bool looks(const char *bytes, int64_t n)
+static bool import_lammps_dump_looks(const char *bytes, int64_t n)
 {
     (void)n;
     return !strncmp(bytes, "ITEM:", 5);
 }
 
 /* A frame's item, by the first word behind ITEM: */
-enum item { UNITS, STEP, NUMBER, BOX, ATOMS, OTHER };
+enum import_lammps_dump_item { UNITS, STEP, NUMBER, BOX, ATOMS, OTHER };
 
-static enum item item_of(struct word name)
+static enum import_lammps_dump_item item_of(struct word name)
 {
     return word_is(name, "timestep") ? STEP
            : word_is(name, "units")  ? UNITS
@@ -46,7 +46,7 @@ static int read_ends(struct imported_head *h, struct words *w, bool *tilted, boo
     return h->says && k != 3 ? soup_fault(w->soup, "needs three of pp, ff, ss, mm, sm ...") : 0;
 }
 
-static int read_box(struct imported_head *h, struct words *w)
+static int import_lammps_dump_read_box(struct imported_head *h, struct words *w)
 {
     bool tilted, general;
     double x[3][4] = { { 0 } };
@@ -87,7 +87,7 @@ static int read_whole(struct words *w, int64_t least, const char *what, int64_t 
 }
 
 /* The lines of n atoms, kept or only counted */
-static int read_atoms(struct imported *to, struct words *w, int64_t n, bool kept)
+static int import_lammps_dump_read_atoms(struct imported *to, struct words *w, int64_t n, bool kept)
 {
     struct import_columns c = { 0 };
     struct imported_ball b;
@@ -108,7 +108,7 @@ static int read_atoms(struct imported *to, struct words *w, int64_t n, bool kept
 }
 
 /* The line behind UNITS */
-static int read_units(struct imported *to, struct words *w)
+static int import_lammps_dump_read_units(struct imported *to, struct words *w)
 {
     struct word name;
     if (!words_line(w) || !words_next(w, &name))
@@ -117,7 +117,7 @@ static int read_units(struct imported *to, struct words *w)
 }
 
 /* The next frame. *more: false where there is none. kept: false: it is only gone through. */
-static int read_frame(struct imported *to, struct words *w, bool kept, bool *more)
+static int import_lammps_dump_read_frame(struct imported *to, struct words *w, bool kept, bool *more)
 {
     struct word word, name;
     int64_t n = -1;
@@ -127,37 +127,37 @@ static int read_frame(struct imported *to, struct words *w, bool kept, bool *mor
         if (!words_next(w, &word)) continue; // an empty line
         if (!word_is(word, "item:") || !words_next(w, &name))
             return word_fault(w, word, "where ITEM: NAME should be");
-        enum item item = item_of(name);
+        enum import_lammps_dump_item item = item_of(name);
         *more = true;
         if (item == ATOMS) {
             if (n < 0) return soup_fault(w->soup, "ATOMS before NUMBER OF ATOMS");
-            if (read_atoms(to, w, n, kept)) return w->soup->why->status;
+            if (import_lammps_dump_read_atoms(to, w, n, kept)) return w->soup->why->status;
             words_line(w);
             return 0;
         }
         if (item == STEP && read_whole(w, INT64_MIN, "step", &to->head.step))
             return w->soup->why->status;
         if (item == NUMBER && read_whole(w, 0, "number of atoms", &n)) return w->soup->why->status;
-        if (item == BOX && read_box(&to->head, w)) return w->soup->why->status;
-        if (item == UNITS && read_units(to, w)) return w->soup->why->status;
+        if (item == BOX && import_lammps_dump_read_box(&to->head, w)) return w->soup->why->status;
+        if (item == UNITS && import_lammps_dump_read_units(to, w)) return w->soup->why->status;
         if (item == OTHER && !words_line(w)) break; // TIME: a line
     } while (words_line(w));
     return *more ? soup_fault(w->soup, "the frame ends before its atoms (truncated?)") : 0;
 }
 
-static int count_frames(struct words w, int64_t *frames)
+static int import_lammps_dump_count_frames(struct words w, int64_t *frames)
 {
     struct imported none = { 0 };
     bool more = true;
     for (*frames = 0;; ++*frames)
-        if (read_frame(&none, &w, false, &more) || !more) return w.soup->why->status;
+        if (import_lammps_dump_read_frame(&none, &w, false, &more) || !more) return w.soup->why->status;
 }
 
-static int read(struct imported *to, struct words *w, int64_t k)
+static int import_lammps_dump_read(struct imported *to, struct words *w, int64_t k)
 {
     int64_t frames = 0;
     bool more = true;
-    if (count_frames(*w, &frames)) return w->soup->why->status;
+    if (import_lammps_dump_count_frames(*w, &frames)) return w->soup->why->status;
     int64_t wanted = k < 0 ? frames + k : k;
     w->soup->at = 1; // the lines are counted again
     if (wanted < 0 || wanted >= frames) {
@@ -166,9 +166,9 @@ static int read(struct imported *to, struct words *w, int64_t k)
                           (long long)frames);
     }
     for (int64_t f = 0; f <= wanted; f++)
-        if (read_frame(to, w, f == wanted, &more)) return w->soup->why->status;
+        if (import_lammps_dump_read_frame(to, w, f == wanted, &more)) return w->soup->why->status;
     import_to_si(to);
     return 0;
 }
 
-const struct import_format import_lammps_dump = { "a LAMMPS dump", looks, read };
+const struct import_format import_lammps_dump = { "a LAMMPS dump", import_lammps_dump_looks, import_lammps_dump_read };

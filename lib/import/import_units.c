@@ -24,7 +24,7 @@ static const struct import_units systems[] = {
 
 enum { SYSTEMS = sizeof systems / sizeof systems[0] };
 
-static const struct import_units *find(struct word name)
+static const struct import_units *import_units_find(struct word name)
 {
     for (int k = 0; k < SYSTEMS; k++)
         if (word_is(name, systems[k].name)) return &systems[k];
@@ -33,14 +33,14 @@ static const struct import_units *find(struct word name)
 
 bool import_are_units(struct word name)
 {
-    return find(name) != NULL;
+    return import_units_find(name) != NULL;
 }
 
 int import_find_units(const struct import_units **units, struct words *w, struct word name)
 {
     static const char cure[] = "units si, cgs, micro, nano and lj are read: convert the file";
     char trouble[120];
-    *units = find(name);
+    *units = import_units_find(name);
     if (*units && (*units)->length > 0) return 0;
     snprintf(trouble, sizeof trouble, "%s; %s",
              *units ? "are units of atoms" : "is no unit system of LAMMPS", cure);

@@ -7,14 +7,14 @@
 
 #include <string.h>
 
-static bool looks(const char *bytes, int64_t n)
+static bool import_yade_looks(const char *bytes, int64_t n)
 {
     (void)n;
     return !strncmp(bytes, "#format ", 8);
 }
 
 /* x_y_z_r_matId: the columns' names between underscores */
-static int read_format(struct import_columns *c, struct words *w, bool *attributes)
+static int import_yade_read_format(struct import_columns *c, struct words *w, bool *attributes)
 {
     struct word format;
     if (!words_next(w, &format)) return soup_fault(w->soup, "#format of nothing");
@@ -46,7 +46,7 @@ static int read_comment(struct import_columns *c, struct words *w)
     return 0;
 }
 
-static int count_words(struct words w)
+static int import_yade_count_words(struct words w)
 {
     struct word word;
     int n = 0;
@@ -54,7 +54,7 @@ static int count_words(struct words w)
     return n;
 }
 
-static int read(struct imported *to, struct words *w, int64_t k)
+static int import_yade_read(struct imported *to, struct words *w, int64_t k)
 {
     struct import_columns c = { 0 };
     bool attributes = false;
@@ -64,14 +64,14 @@ static int read(struct imported *to, struct words *w, int64_t k)
         if (!words_next(w, &word)) continue;
         struct imported_ball b;
         if (word_is(word, "#format")) {
-            if (read_format(&c, w, &attributes)) return w->soup->why->status;
+            if (import_yade_read_format(&c, w, &attributes)) return w->soup->why->status;
         } else if (*word.s == '#') {
             if (word.n > 1) w->at = word.s + 1;
             if (attributes && read_comment(&c, w)) return w->soup->why->status;
         } else {
             w->at = word.s;
             // attributes without names are read over
-            for (int n = attributes && c.n == 4 ? count_words(*w) : 0; c.n < n;)
+            for (int n = attributes && c.n == 4 ? import_yade_count_words(*w) : 0; c.n < n;)
                 if (import_add_column(&c, w, IMPORT_OTHER)) return w->soup->why->status;
             if (import_line(&c, w, &to->head, &b) || imported_add(to, &b, w->soup->why))
                 return w->soup->why->status;
@@ -80,4 +80,4 @@ static int read(struct imported *to, struct words *w, int64_t k)
     return 0;
 }
 
-const struct import_format import_yade_text = { "a table of Yade", looks, read };
+const struct import_format import_yade_text = { "a table of Yade", import_yade_looks, import_yade_read };

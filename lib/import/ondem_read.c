@@ -25,7 +25,7 @@ struct material {
 };
 
 /* A sphere that is one of a clump's */
-struct member {
+struct ondem_read_member {
     int64_t clump, id, material;
     vec3 x; /* m, in the axes of the clump */
     double r;
@@ -41,12 +41,12 @@ struct file {
     int materials;
     struct material *material;
     int64_t members, members_room;
-    struct member *member; /* [members] by their clumps */
+    struct ondem_read_member *member; /* [members] by their clumps */
     int64_t n;             /* bodies so far */
     int32_t walls;         /* walls so far */
 };
 
-static int fault(const struct file *f, const char *place, const char *trouble)
+static int ondem_read_fault(const struct file *f, const char *place, const char *trouble)
 {
     return why_set(f->why, EX_DATAERR, "%.150s: %.100s: %.120s", f->path, place, trouble);
 }
@@ -65,7 +65,7 @@ static int read_shape_names(struct file *f)
 {
     char *text = source_lines(f->in, "/ONDEM/Scene/shape_names", f->why);
     if (f->why->status) return f->why->status;
-    if (!text) return fault(f, "/ONDEM/Scene/shape_names", "no list of the names of shapes");
+    if (!text) return ondem_read_fault(f, "/ONDEM/Scene/shape_names", "no list of the names of shapes");
     for (const char *s = text; *s; s++) f->kinds_of_shape += *s == '\n';
     f->shape = calloc((size_t)f->kinds_of_shape + 1, sizeof *f->shape);
     if (!f->shape) why_set(f->why, EX_SOFTWARE, "no memory for the shapes");
@@ -98,10 +98,10 @@ static double scalar(struct file *f, const char *group, const char *name)
     return x;
 }
 
-static int read_material(struct file *f, const char *group)
+static int ondem_read_material(struct file *f, const char *group)
 {
     char path[PATH];
-    if (f->materials == MATERIALS_MOST) return fault(f, group, "too many materials");
+    if (f->materials == MATERIALS_MOST) return ondem_read_fault(f, group, "too many materials");
     struct material *m = &f->material[f->materials++];
     const double id = scalar(f, group, "id");
     m->friction = scalar(f, group, "shear_friction");
@@ -109,11 +109,11 @@ static int read_material(struct file *f, const char *group)
     m->label = source_text(f->in, path, NULL, f->why);
     if (f->why->status) return f->why->status;
     if (!(id >= 0 && id <= INT32_MAX && id == floor(id)))
-        return fault(f, group, "no id of a material");
+        return ondem_read_fault(f, group, "no id of a material");
     m->id = (int64_t)id;
     const bool named = m->label && *m->label && strlen(m->label) < 200;
     for (const char *c = m->label; named && *c; c++)
-        if ((unsigned char)*c < ' ') return fault(f, group, "a label with control characters");
+        if ((unsigned char)*c < ' ') return ondem_read_fault(f, group, "a label with control characters");
     if (named) return 0;
     free(m->label);
     snprintf(path, sizeof path, "%" PRId64, m->id);
@@ -121,7 +121,7 @@ static int read_material(struct file *f, const char *group)
     return m->label ? 0 : why_set(f->why, EX_SOFTWARE, "no memory for the materials");
 }
 
-static int read_materials(struct file *f)
+static int ondem_read_materials(struct file *f)
 {
     const char *path;
     const uint64_t *shape;
@@ -130,12 +130,12 @@ static int read_materials(struct file *f)
     const struct object *o;
     for (int64_t k = 0; (o = source_object(f->in, k, &path, &shape)); k++)
         if (!o->attribute && o->kind == OBJECT_GROUP && child_of("/ONDEM/Materials", path) &&
-            read_material(f, path))
+            ondem_read_material(f, path))
             return f->why->status;
     return 0;
 }
 
-static int32_t kind_of(const struct file *f, int64_t id)
+static int32_t ondem_read_kind_of(const struct file *f, int64_t id)
 {
     for (int k = 0; k < f->materials; k++)
         if (f->material[k].id == id) return k;
@@ -145,14 +145,14 @@ static int32_t kind_of(const struct file *f, int64_t id)
 /* ---- bodies ---- */
 
 /* The columns of a block, of n bodies */
-struct block {
+struct ondem_read_block {
     const char *path;
     int64_t n;
     double *x, *v, *w, *q, *mass, *volume, *inertia, *radius, *sides, *reach, *mean;
     int64_t *id, *shape, *material, *clump, *dofs, *axis, *sense, *row;
 };
 
-static void block_free(struct block *b)
+static void block_free(struct ondem_read_block *b)
 {
     free(b->x), free(b->v), free(b->w), free(b->q), free(b->mass), free(b->inertia);
     free(b->volume);
@@ -160,7 +160,7 @@ static void block_free(struct block *b)
     free(b->material), free(b->clump), free(b->dofs), free(b->axis), free(b->sense), free(b->row);
 }
 
-static void *read_column(struct file *f, const struct block *b, const char *name, bool whole,
+static void *read_column(struct file *f, const struct ondem_read_block *b, const char *name, bool whole,
                          int width, bool needed)
 {
     char path[PATH];
@@ -168,13 +168,13 @@ static void *read_column(struct file *f, const struct block *b, const char *name
     snprintf(path, sizeof path, "%.200s/%s", b->path, name);
     if (f->why->status) return NULL;
     if (!source_has(f->in, path)) {
-        if (needed) fault(f, path, "no such column");
+        if (needed) ondem_read_fault(f, path, "no such column");
         return NULL;
     }
     int rank = source_shape(f->in, path, shape);
     if (rank != (width > 1 ? 2 : 1) || shape[0] != (uint64_t)b->n ||
         (width > 1 && shape[1] != (uint64_t)width))
-        return fault(f, path, "not a row for each body"), NULL;
+        return ondem_read_fault(f, path, "not a row for each body"), NULL;
     void *out = malloc((size_t)b->n * (size_t)width * 8 + 1);
     if (!out)
         why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
@@ -185,7 +185,7 @@ static void *read_column(struct file *f, const struct block *b, const char *name
     return out;
 }
 
-static int read_columns(struct file *f, struct block *b)
+static int ondem_read_columns(struct file *f, struct ondem_read_block *b)
 {
     b->x = read_column(f, b, "Points", false, 3, true);
     b->id = read_column(f, b, "PointData/body_id", true, 1, true);
@@ -209,7 +209,7 @@ static int read_columns(struct file *f, struct block *b)
     return f->why->status;
 }
 
-static int body_fault(const struct file *f, const struct block *b, int64_t i, const char *trouble)
+static int body_fault(const struct file *f, const struct ondem_read_block *b, int64_t i, const char *trouble)
 {
     return why_set(f->why, EX_DATAERR, "%.150s: %.60s: body %" PRId64 ": %.140s", f->path, b->path,
                    b->id[i], trouble);
@@ -267,31 +267,31 @@ static int box_row(struct file *f, const double *sides, double *reach, int32_t *
 
 static int by_clump(const void *one, const void *other)
 {
-    const struct member *a = one, *b = other;
+    const struct ondem_read_member *a = one, *b = other;
     if (a->clump != b->clump) return a->clump < b->clump ? -1 : 1;
     return (a->id > b->id) - (a->id < b->id);
 }
 
-static int add_members(struct file *f, const struct block *b, const double *at)
+static int ondem_read_add_members(struct file *f, const struct ondem_read_block *b, const double *at)
 {
     for (int64_t i = 0; i < b->n; i++) {
         if (b->clump[i] < 0 || !b->radius || !(b->radius[i] > 0) || !all_finite(at + 3 * i, 3))
             continue;
         if (f->members == f->members_room) {
             int64_t room = f->members_room ? 2 * f->members_room : 256;
-            struct member *more = realloc(f->member, (size_t)room * sizeof *more);
+            struct ondem_read_member *more = realloc(f->member, (size_t)room * sizeof *more);
             if (!more) return why_set(f->why, EX_SOFTWARE, "no memory for the clumps");
             f->member = more, f->members_room = room;
         }
         f->member[f->members++] =
-            (struct member){ b->clump[i], b->id[i], b->material[i],
+            (struct ondem_read_member){ b->clump[i], b->id[i], b->material[i],
                              v3(at[3 * i], at[3 * i + 1], at[3 * i + 2]), b->radius[i] };
     }
     return 0;
 }
 
 /* The members of the clump with this id, sorted by their own */
-static const struct member *members_of(const struct file *f, int64_t clump, int64_t *n)
+static const struct ondem_read_member *members_of(const struct file *f, int64_t clump, int64_t *n)
 {
     int64_t lo = 0, hi = f->members;
     while (lo < hi) {
@@ -306,10 +306,10 @@ static const struct member *members_of(const struct file *f, int64_t clump, int6
 }
 
 /* The balls of a clump about its centre, in its principal axes; the moments are those that the file has for it. */
-static int clump_row(struct file *f, const struct block *b, int64_t i, double *reach, int32_t *row)
+static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i, double *reach, int32_t *row)
 {
     int64_t n;
-    const struct member *m = members_of(f, b->id[i], &n);
+    const struct ondem_read_member *m = members_of(f, b->id[i], &n);
     const double *I = b->inertia ? b->inertia + 9 * i : NULL, mass = b->mass ? b->mass[i] : 0;
     struct shape s = { 0 };
     struct solid balls = { 0 };
@@ -334,7 +334,7 @@ static int clump_row(struct file *f, const struct block *b, int64_t i, double *r
     return keep_shape(f, &s, "clump", row);
 }
 
-static int add_wall(struct file *f, const struct block *b, int64_t i, int32_t kind)
+static int ondem_read_add_wall(struct file *f, const struct ondem_read_block *b, int64_t i, int32_t kind)
 {
     const int64_t axis = b->axis ? b->axis[i] : -1, sense = b->sense ? b->sense[i] : 0;
     const double *x = b->x + 3 * i, zero[3] = { 0 }, *v = b->v ? b->v + 3 * i : zero;
@@ -351,7 +351,7 @@ static int add_wall(struct file *f, const struct block *b, int64_t i, int32_t ki
 }
 
 /* The shape's row in the packing, and the radius of the ball around the body */
-static int read_shape(struct file *f, const struct block *b, int64_t i, enum shape_kind is,
+static int ondem_read_shape(struct file *f, const struct ondem_read_block *b, int64_t i, enum shape_kind is,
                       int32_t *row, double *reach)
 {
     *row = 0;
@@ -376,21 +376,21 @@ static int read_shape(struct file *f, const struct block *b, int64_t i, enum sha
                                   "read, in /nsd/shape");
 }
 
-static int add_body(struct file *f, const struct block *b, int64_t i)
+static int ondem_read_add_body(struct file *f, const struct ondem_read_block *b, int64_t i)
 {
     struct packing *p = f->p;
     if (b->clump && b->clump[i] >= 0) return 0; // what a clump is made of
     if (b->shape[i] < 0 || b->shape[i] >= f->kinds_of_shape)
         return body_fault(f, b, i, "shape_type is none of /ONDEM/Scene/shape_names");
     const enum shape_kind is = f->shape[b->shape[i]];
-    int32_t kind = kind_of(f, b->material[i]);
+    int32_t kind = ondem_read_kind_of(f, b->material[i]);
     if (kind < 0 && is == CLUMP) { // that of its members
         int64_t members;
-        const struct member *m = members_of(f, b->id[i], &members);
-        kind = members ? kind_of(f, m->material) : f->materials ? 0 : -1;
+        const struct ondem_read_member *m = members_of(f, b->id[i], &members);
+        kind = members ? ondem_read_kind_of(f, m->material) : f->materials ? 0 : -1;
     }
     if (kind < 0) return body_fault(f, b, i, "material_id is none of /ONDEM/Materials");
-    if (is == WALL) return add_wall(f, b, i, kind);
+    if (is == WALL) return ondem_read_add_wall(f, b, i, kind);
     const int64_t dofs = b->dofs ? b->dofs[i] : 0;
     if (dofs != 0 && dofs != FIXED)
         return body_fault(f, b, i, "blocked_dofs: a body is free (0) or fixed (63)");
@@ -398,7 +398,7 @@ static int add_body(struct file *f, const struct block *b, int64_t i)
     const int64_t k = f->n++;
     int32_t row;
     double reach = 0;
-    if (read_shape(f, b, i, is, &row, &reach)) return f->why->status;
+    if (ondem_read_shape(f, b, i, is, &row, &reach)) return f->why->status;
     p->x[k] = v3(b->x[3 * i], b->x[3 * i + 1], b->x[3 * i + 2]), p->radius[k] = reach;
     if (b->v) p->v[k] = v3(b->v[3 * i], b->v[3 * i + 1], b->v[3 * i + 2]);
     if (b->w) p->w[k] = v3(b->w[3 * i], b->w[3 * i + 1], b->w[3 * i + 2]);
@@ -427,11 +427,11 @@ static int for_blocks(struct file *f, int (*each)(struct file *, const char *))
     for (int64_t k = 0; (o = source_object(f->in, k, &path, &shape)); k++) {
         const char *name = child_of("/VTKHDF", path);
         if (o->attribute || o->kind != OBJECT_GROUP || !name || !strcmp(name, "Assembly")) continue;
-        if (++blocks > BLOCKS_MOST) return fault(f, path, "too many blocks");
+        if (++blocks > BLOCKS_MOST) return ondem_read_fault(f, path, "too many blocks");
         if (each(f, path)) return f->why->status;
     }
     return blocks ? 0
-                  : fault(f, "/VTKHDF", "no block of bodies (files before October 2026 have none)");
+                  : ondem_read_fault(f, "/VTKHDF", "no block of bodies (files before October 2026 have none)");
 }
 
 static int64_t rows_of(struct file *f, const char *block)
@@ -440,7 +440,7 @@ static int64_t rows_of(struct file *f, const char *block)
     uint64_t shape[4] = { 0 };
     snprintf(path, sizeof path, "%.200s/Points", block);
     if (source_shape(f->in, path, shape) != 2 || shape[1] != 3 || shape[0] > INT32_MAX)
-        return fault(f, path, "not of shape bodies x 3"), -1;
+        return ondem_read_fault(f, path, "not of shape bodies x 3"), -1;
     return (int64_t)shape[0];
 }
 
@@ -449,13 +449,13 @@ static int count_block(struct file *f, const char *path)
 {
     int64_t n = rows_of(f, path);
     f->n += n < 0 ? 0 : n;
-    if (!f->why->status && f->n > INT32_MAX) fault(f, path, "too many bodies");
+    if (!f->why->status && f->n > INT32_MAX) ondem_read_fault(f, path, "too many bodies");
     return f->why->status;
 }
 
 static int read_members(struct file *f, const char *path)
 {
-    struct block b = { .path = path, .n = rows_of(f, path) };
+    struct ondem_read_block b = { .path = path, .n = rows_of(f, path) };
     double *at = NULL;
     if (!f->why->status)
         at = read_column(f, &b, "PointData/clump_relative_position", false, 3, false);
@@ -464,7 +464,7 @@ static int read_members(struct file *f, const char *path)
         b.id = read_column(f, &b, "PointData/body_id", true, 1, true);
         b.material = read_column(f, &b, "PointData/material_id", true, 1, true);
         b.radius = read_column(f, &b, "PointData/radius", false, 1, true);
-        if (!f->why->status) add_members(f, &b, at);
+        if (!f->why->status) ondem_read_add_members(f, &b, at);
     }
     free(at);
     block_free(&b);
@@ -473,15 +473,15 @@ static int read_members(struct file *f, const char *path)
 
 static int read_block(struct file *f, const char *path)
 {
-    struct block b = { .path = path, .n = rows_of(f, path) };
-    if (!f->why->status && !read_columns(f, &b))
+    struct ondem_read_block b = { .path = path, .n = rows_of(f, path) };
+    if (!f->why->status && !ondem_read_columns(f, &b))
         for (int64_t i = 0; i < b.n && !f->why->status; i++) {
             const bool wall =
                 b.shape[i] >= 0 && b.shape[i] < f->kinds_of_shape && f->shape[b.shape[i]] == WALL;
             if (wall && f->walls == f->p->walls)
-                fault(f, path, "more walls than there can be");
+                ondem_read_fault(f, path, "more walls than there can be");
             else
-                add_body(f, &b, i);
+                ondem_read_add_body(f, &b, i);
         }
     block_free(&b);
     return f->why->status;
@@ -489,19 +489,19 @@ static int read_block(struct file *f, const char *path)
 
 /* ---- in the order of their ids ---- */
 
-struct place {
+struct ondem_read_place {
     int32_t id;
     int64_t was;
 };
 
-static int by_id(const void *one, const void *other)
+static int ondem_read_by_id(const void *one, const void *other)
 {
-    const struct place *a = one, *b = other;
+    const struct ondem_read_place *a = one, *b = other;
     return (a->id > b->id) - (a->id < b->id);
 }
 
 /* array[k] = what was at place[k].was */
-static void gather(void *array, size_t size, const struct place *place, int64_t n, quat *space)
+static void ondem_read_gather(void *array, size_t size, const struct ondem_read_place *place, int64_t n, quat *space)
 {
     char *room = (char *)space;
     for (int64_t k = 0; array && k < n; k++)
@@ -513,20 +513,20 @@ static int sort_bodies(struct file *f)
 {
     struct packing *p = f->p;
     const int64_t n = p->n;
-    struct place *place = malloc(((size_t)n + 1) * sizeof *place);
+    struct ondem_read_place *place = malloc(((size_t)n + 1) * sizeof *place);
     quat *room = malloc(((size_t)n + 1) * sizeof *room);
     if (!place || !room) why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
-    for (int64_t k = 0; !f->why->status && k < n; k++) place[k] = (struct place){ p->id[k], k };
+    for (int64_t k = 0; !f->why->status && k < n; k++) place[k] = (struct ondem_read_place){ p->id[k], k };
     if (!f->why->status) {
-        qsort(place, (size_t)n, sizeof *place, by_id);
-        gather(p->x, sizeof *p->x, place, n, room), gather(p->v, sizeof *p->v, place, n, room);
-        gather(p->w, sizeof *p->w, place, n, room), gather(p->q, sizeof *p->q, place, n, room);
-        gather(p->radius, sizeof *p->radius, place, n, room);
-        gather(p->mass, sizeof *p->mass, place, n, room);
-        gather(p->inertia, sizeof *p->inertia, place, n, room);
-        gather(p->id, sizeof *p->id, place, n, room),
-            gather(p->kind, sizeof *p->kind, place, n, room);
-        gather(p->shape, sizeof *p->shape, place, n, room);
+        qsort(place, (size_t)n, sizeof *place, ondem_read_by_id);
+        ondem_read_gather(p->x, sizeof *p->x, place, n, room), ondem_read_gather(p->v, sizeof *p->v, place, n, room);
+        ondem_read_gather(p->w, sizeof *p->w, place, n, room), ondem_read_gather(p->q, sizeof *p->q, place, n, room);
+        ondem_read_gather(p->radius, sizeof *p->radius, place, n, room);
+        ondem_read_gather(p->mass, sizeof *p->mass, place, n, room);
+        ondem_read_gather(p->inertia, sizeof *p->inertia, place, n, room);
+        ondem_read_gather(p->id, sizeof *p->id, place, n, room),
+            ondem_read_gather(p->kind, sizeof *p->kind, place, n, room);
+        ondem_read_gather(p->shape, sizeof *p->shape, place, n, room);
     }
     free(place), free(room);
     return f->why->status;
@@ -549,7 +549,7 @@ static int read_cell(struct file *f)
     return packing_alloc_images(f->p, f->why);
 }
 
-static int read_laws(struct file *f, struct import_said *said)
+static int ondem_read_laws(struct file *f, struct import_said *said)
 {
     struct packing *p = f->p;
     const uint64_t n = (uint64_t)p->kinds * (uint64_t)p->kinds;
@@ -569,7 +569,7 @@ static int read_laws(struct file *f, struct import_said *said)
            source_read(f->in, "/nsd/material/et", COLUMN_F64, n, p->et, f->why);
 }
 
-static int read_scene(struct file *f, struct import_said *said)
+static int ondem_read_scene(struct file *f, struct import_said *said)
 {
     struct packing *p = f->p;
     double dt = 0, g[3] = { NAN, NAN, NAN };
@@ -584,16 +584,16 @@ static int read_scene(struct file *f, struct import_said *said)
     return f->why->status;
 }
 
-static int read_open(struct file *f, int dim, struct import_said *said)
+static int ondem_read_open(struct file *f, int dim, struct import_said *said)
 {
     if (!source_has(f->in, "/ONDEM"))
         return why_set(
             f->why, EX_DATAERR,
             "%s: an HDF5 file without the group /ONDEM: a document is read by \"document\"",
             f->path);
-    if (dim != 3) return fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
+    if (dim != 3) return ondem_read_fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
     int64_t most;
-    if (read_shape_names(f) || read_materials(f) || for_blocks(f, count_block) ||
+    if (read_shape_names(f) || ondem_read_materials(f) || for_blocks(f, count_block) ||
         for_blocks(f, read_members))
         return f->why->status;
     if (f->members) qsort(f->member, (size_t)f->members, sizeof *f->member, by_clump);
@@ -609,7 +609,7 @@ static int read_open(struct file *f, int dim, struct import_said *said)
         free(p->kind_name[k]);
         p->kind_name[k] = f->material[k].label, f->material[k].label = NULL;
     }
-    if (for_blocks(f, read_block) || read_scene(f, said) || read_laws(f, said))
+    if (for_blocks(f, read_block) || ondem_read_scene(f, said) || ondem_read_laws(f, said))
         return f->why->status;
     p->walls = f->walls; // what was not needed stays empty behind them
     return packing_resize(p, f->n, f->why) || sort_bodies(f) ? f->why->status : 0;
@@ -631,7 +631,7 @@ int ondem_read(struct packing *p, const char *path, int dim, struct import_said 
     *p = (struct packing){ 0 };
     if (!name) return why_set(why, EX_SOFTWARE, "no memory for a name");
     if (!source_open(&f.in, 1, &name, why) && !next_document(f.in, path, why)) {
-        read_open(&f, dim, said);
+        ondem_read_open(&f, dim, said);
         struct why trouble = { 0 };
         if (!why->status && packing_check(p, &trouble))
             why_set(why, trouble.status, "%.200s: %.180s", path, trouble.text);

@@ -44,7 +44,7 @@ char *scene_file_slurp(FILE *f, const char *name, size_t *n, struct why *why)
 }
 
 /* How many frames there are in all documents of a file; -1: trouble */
-static int64_t count_frames(char *path, struct why *why)
+static int64_t scene_file_count_frames(char *path, struct why *why)
 {
     struct reader *in;
     int64_t frames = 0, all = 0;
@@ -55,11 +55,11 @@ static int64_t count_frames(char *path, struct why *why)
 }
 
 /* Frame k of the file, from 0, or from the end: -1 is the last */
-static int read_frame(struct frame *f, char *path, int64_t k, struct why *why)
+static int scene_file_read_frame(struct frame *f, char *path, int64_t k, struct why *why)
 {
     struct reader *in;
     bool more = true;
-    int64_t wanted = k < -1 ? count_frames(path, why) + k : k;
+    int64_t wanted = k < -1 ? scene_file_count_frames(path, why) + k : k;
     if (why->status) return why->status;
     if (!reader_open(&in, 1, &path, why)) {
         if (k == -1) reader_last(in, f, &more, why);
@@ -74,7 +74,7 @@ static int read_frame(struct frame *f, char *path, int64_t k, struct why *why)
 }
 
 /* The balls of another program's file, as the scene's group asks for them */
-static int read_foreign(struct scene_bodies *b, int dim, const char *path, struct why *why)
+static int scene_file_read_foreign(struct scene_bodies *b, int dim, const char *path, struct why *why)
 {
     struct import_said said;
     struct import_wish wish = { .dim = dim, .frame = b->frame, .has_repeats = b->has_repeats };
@@ -84,7 +84,7 @@ static int read_foreign(struct scene_bodies *b, int dim, const char *path, struc
     return 0;
 }
 
-static int read_document(struct scene_bodies *b, int dim, const char *dir, struct why *why)
+static int scene_file_read_document(struct scene_bodies *b, int dim, const char *dir, struct why *why)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
@@ -94,8 +94,8 @@ static int read_document(struct scene_bodies *b, int dim, const char *dir, struc
     if (!path || !b->document)
         why_set(why, EX_SOFTWARE, "no memory for a document");
     else if (b->foreign)
-        read_foreign(b, dim, path, why);
-    else if (!read_frame(&f, path, b->frame, why))
+        scene_file_read_foreign(b, dim, path, why);
+    else if (!scene_file_read_frame(&f, path, b->frame, why))
         *b->document = f.packing, f.packing = (struct packing){ 0 };
     if (why->status) free(b->document), b->document = NULL;
     frame_free(&f);
@@ -112,7 +112,7 @@ int scene_file_parse(struct scene *s, const char *text, size_t n, const char *na
         return name ? why_set(why, trouble.status, "%s:%s", name, trouble.text)
                     : why_set(why, trouble.status, "%s", trouble.text);
     for (int64_t g = 0; g < s->groups && !why->status; g++)
-        if (s->bodies[g].from == SCENE_DOCUMENT) read_document(&s->bodies[g], s->dim, dir, why);
+        if (s->bodies[g].from == SCENE_DOCUMENT) scene_file_read_document(&s->bodies[g], s->dim, dir, why);
     if (!why->status) mesh_files_read(s, &files, why);
     if (!why->status) scene_parts_split(s, why);
     if (why->status) scene_free(s);

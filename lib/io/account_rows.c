@@ -6,13 +6,13 @@
 static const char home[] = "/nsd/account";
 
 /* A column each, from the table of what is watched */
-struct columns {
+struct report_rows_columns {
     struct column c[ACCOUNT_ROWS + 2];
 };
 
-static struct columns columns(void)
+static struct report_rows_columns columns(void)
 {
-    struct columns t = { { { "steps", "1", COLUMN_I64, 1, offsetof(struct account, steps) } } };
+    struct report_rows_columns t = { { { "steps", "1", COLUMN_I64, 1, offsetof(struct account, steps) } } };
     for (int k = 0; k < ACCOUNT_ROWS; k++)
         t.c[1 + k] = (struct column){ account_watched[k].name, account_watched[k].units, COLUMN_F64,
                                       4, offsetof(struct account, worst[k]) };
@@ -20,7 +20,7 @@ static struct columns columns(void)
 }
 
 /* Counts and steps that are some; ids are only shown */
-static int check(const struct account *a, struct why *why)
+static int report_rows_check(const struct account *a, struct why *why)
 {
     const double most = 9007199254740992; // 2^53: integers beyond it are none that are exact
     if (a->steps < 0) return why_set(why, EX_DATAERR, "%s/steps: is negative", home);
@@ -37,7 +37,7 @@ static int check(const struct account *a, struct why *why)
 
 int64_t account_rows_count(const struct source *source, int64_t n)
 {
-    struct columns t = columns();
+    struct report_rows_columns t = columns();
     for (const struct column *c = t.c; c->name; c++) {
         char path[80];
         uint64_t shape[4];
@@ -50,7 +50,7 @@ int64_t account_rows_count(const struct source *source, int64_t n)
 int account_rows_read(struct source *source, int64_t start, int64_t n, struct account *account,
                       struct why *why)
 {
-    struct columns t = columns();
+    struct report_rows_columns t = columns();
     char path[80];
     for (const struct column *c = t.c; c->name; c++) {
         const struct column one[] = { *c, { 0 } };
@@ -60,13 +60,13 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
             return why->status;
     }
     for (int64_t i = 0; i < n; i++)
-        if (check(&account[i], why)) return why->status;
+        if (report_rows_check(&account[i], why)) return why->status;
     return 0;
 }
 
 int account_rows_write(struct table_write *s, const struct account *account, struct why *why)
 {
-    struct columns t = columns();
+    struct report_rows_columns t = columns();
     bool first = !table_write_grows(s, "/nsd/account/steps/value");
     if (table_write_columns(s, home, "/value", RECORDS(t.c, 1, account), CHUNK_FRAMES, why))
         return why->status;

@@ -37,7 +37,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
 }
 
 /* The number of rows of a dataset of so many dimensions */
-static int count_rows(struct source *r, const char *path, int rank, int32_t *n, struct why *why)
+static int wall_tables_count_rows(struct source *r, const char *path, int rank, int32_t *n, struct why *why)
 {
     uint64_t shape[4];
     if (source_shape(r, path, shape) != rank || shape[0] > 1 << 24)
@@ -70,7 +70,7 @@ static int read_signals(struct source *r, const struct signals *of, struct packi
     snprintf(boundary, sizeof boundary, "%s/boundary", group);
     snprintf(rows, sizeof rows, "%s/row", group);
     if (!source_has(r, group)) return 0;
-    if (count_rows(r, boundary, 1, &n, why) || count_rows(r, rows, 2, &m, why) ||
+    if (wall_tables_count_rows(r, boundary, 1, &n, why) || wall_tables_count_rows(r, rows, 2, &m, why) ||
         drives_alloc(d, n, m, why) ||
         table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), why) ||
         source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, why))
@@ -92,12 +92,12 @@ static int read_drives(struct source *r, struct packing *p, struct why *why)
                : 0;
 }
 
-static int read_mesh(struct source *r, struct packing *p, struct why *why)
+static int wall_tables_read_mesh(struct source *r, struct packing *p, struct why *why)
 {
     const char *vertex = BOUNDARY "/mesh/vertex", *element = BOUNDARY "/mesh/element";
     int32_t n = 0, m = 0;
     if (!source_has(r, BOUNDARY "/mesh")) return 0;
-    if (count_rows(r, vertex, 2, &n, why) || count_rows(r, element, 2, &m, why) ||
+    if (wall_tables_count_rows(r, vertex, 2, &n, why) || wall_tables_count_rows(r, element, 2, &m, why) ||
         mesh_alloc(&p->mesh, n, m, why) ||
         source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, why) ||
         source_rows(r, element, (struct slab){ COLUMN_I32, 0, m, 3 }, p->mesh.element, why))
@@ -110,7 +110,7 @@ static int read_planes(struct source *r, int64_t k, struct packing *p, struct wh
 {
     int32_t n = 0;
     if (!source_has(r, "/walls/plane")) return 0;
-    if (count_rows(r, "/walls/plane/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
+    if (wall_tables_count_rows(r, "/walls/plane/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
         table_read_columns(r, "/walls/plane", "", 0, RECORDS(layout_plane, n, p->wall), why))
         return why->status;
     return read_loads(r, "/walls/load", k, p, why);
@@ -121,7 +121,7 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
     const char *body = BOUNDARY "/body";
     int32_t n = 0;
     if (!source_has(r, body)) return read_planes(r, k, p, why);
-    if (count_rows(r, BOUNDARY "/body/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
+    if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, why) || packing_alloc_walls(p, n, why) ||
         table_read_columns(r, body, "", 0, RECORDS(layout_plane, n, p->wall), why) ||
         (source_has(r, BOUNDARY "/body/shape") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), why)) ||
@@ -132,7 +132,7 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
         (source_has(r, BOUNDARY "/body/belt") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_belt, n, p->wall), why)) ||
         read_loads(r, BOUNDARY "/load", k, p, why) || read_drives(r, p, why) ||
-        read_mesh(r, p, why))
+        wall_tables_read_mesh(r, p, why))
         return why->status;
     return 0;
 }

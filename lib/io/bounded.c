@@ -43,7 +43,7 @@ static void bound(uint64_t size)
 }
 
 /* The process has ended: with an answer, a reason, or broken down */
-static int judge(int status, const char *name, const struct why *said, struct why *why)
+static int bounded_judge(int status, const char *name, const struct why *said, struct why *why)
 {
     if (WIFEXITED(status) && !WEXITSTATUS(status)) return 0;
     if (WIFEXITED(status) && said->status) return why_set(why, said->status, "%s", said->text);
@@ -53,7 +53,7 @@ static int judge(int status, const char *name, const struct why *said, struct wh
                    name, signal ? strsignal(signal) : "it ended");
 }
 
-static int take(int fd, void **answer, size_t *n, struct why *why)
+static int bounded_take(int fd, void **answer, size_t *n, struct why *why)
 {
     struct stat st;
     *answer = NULL, *n = 0;
@@ -84,7 +84,7 @@ int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struc
     else {
         while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
         said->text[sizeof said->text - 1] = 0;
-        if (!judge(status, task->name, said, why)) take(to.fd, answer, n, why);
+        if (!bounded_judge(status, task->name, said, why)) bounded_take(to.fd, answer, n, why);
     }
     if (said != MAP_FAILED) munmap(said, sizeof *said);
     if (to.fd >= 0) close(to.fd);

@@ -26,7 +26,7 @@ int cell_tables_open(struct source *source, bool repeats[3], struct why *why)
 }
 
 /* Edges, constant or of frame k: three lengths, or three vectors */
-static int read_edges(struct source *source, int64_t k, struct cell *c, struct why *why)
+static int cell_tables_read_edges(struct source *source, int64_t k, struct cell *c, struct why *why)
 {
     const char *moving = "/particles/all/box/edges/value", *still = "/particles/all/box/edges";
     uint64_t shape[4];
@@ -54,7 +54,7 @@ static int read_edges(struct source *source, int64_t k, struct cell *c, struct w
 }
 
 /* What moves the edges, and what they yield to */
-static int read_drive(struct source *doc, struct cell *c, struct why *why)
+static int cell_tables_read_drive(struct source *doc, struct cell *c, struct why *why)
 {
     uint64_t n = 0;
     if (!source_has(doc, "/nsd/cell")) return 0;
@@ -102,7 +102,7 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
     struct cell *c = &p->cell;
     memcpy(c->repeats, repeats, sizeof c->repeats);
     if (!cell_repeats(c)) return 0;
-    if (read_edges(source, k, c, why) || read_drive(source, c, why) || read_size(source, c, why) ||
+    if (cell_tables_read_edges(source, k, c, why) || cell_tables_read_drive(source, c, why) || read_size(source, c, why) ||
         packing_alloc_images(p, why) ||
         (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, why)))
         return why->status;

@@ -164,7 +164,7 @@ static int write_moments(struct table_write *s, const struct contacts *t, struct
     return e;
 }
 
-static int write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
+static int contact_rows_write_forces(struct table_write *s, const struct contacts *t, double dt, struct why *why)
 {
     const hsize_t shape[2] = { (hsize_t)t->n, 3 };
     vec3 *force = malloc((size_t)(t->n + 1) * sizeof *force);
@@ -199,7 +199,7 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct why 
         (t->found && table_write_columns(s, "/contacts", "", RECORDS(layout_found, t->n, t->found),
                                          CHUNK_CONTACTS, why)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, why)) ||
-        (forces && write_forces(s, t, f->packing.dt, why)) ||
+        (forces && contact_rows_write_forces(s, t, f->packing.dt, why)) ||
         table_write_number(s, "/contacts/step", COLUMN_I64, &f->packing.step, NULL, why))
         return why->status;
     if (s->growing) s->contacts += t->n;

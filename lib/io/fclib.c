@@ -16,7 +16,7 @@ struct raw {
 };
 
 /* group/name */
-static const char *join(char path[64], const char *group, const char *name)
+static const char *fclib_join(char path[64], const char *group, const char *name)
 {
     snprintf(path, 64, "%s/%s", group, name);
     return path;
@@ -28,7 +28,7 @@ static double *read_vector(struct source *source, const char *group, const char 
 {
     char path[64];
     uint64_t length;
-    double *x = source_read_all(source, join(path, group, name), COLUMN_F64, &length, why);
+    double *x = source_read_all(source, fclib_join(path, group, name), COLUMN_F64, &length, why);
     if (!x) return NULL;
     if (count >= 0 && length != (uint64_t)count)
         why_set(why, EX_DATAERR, "%s: %llu values, %lld are needed", path,
@@ -48,18 +48,18 @@ static int stored_read(struct stored *S, struct source *source, const char *grou
     int32_t *const number[] = { &S->m, &S->n, &S->nz, &S->nzmax };
     const char *const name[] = { "m", "n", "nz", "nzmax" };
     for (int k = 0; k < 4; k++)
-        if (source_read(source, join(path, group, name[k]), COLUMN_I32, 1, number[k], why))
+        if (source_read(source, fclib_join(path, group, name[k]), COLUMN_I32, 1, number[k], why))
             return why->status;
     uint64_t np = 0, ni = 0, nx = 0;
-    S->p = source_read_all(source, join(path, group, "p"), COLUMN_I32, &np, why);
-    if (S->p) S->i = source_read_all(source, join(path, group, "i"), COLUMN_I32, &ni, why);
-    if (S->i) S->x = source_read_all(source, join(path, group, "x"), COLUMN_F64, &nx, why);
+    S->p = source_read_all(source, fclib_join(path, group, "p"), COLUMN_I32, &np, why);
+    if (S->p) S->i = source_read_all(source, fclib_join(path, group, "i"), COLUMN_I32, &ni, why);
+    if (S->i) S->x = source_read_all(source, fclib_join(path, group, "x"), COLUMN_F64, &nx, why);
     S->np = np, S->ni = ni, S->nx = nx;
     return S->x ? 0 : why->status;
 }
 
 /* An m x n matrix */
-static int read_matrix(struct sparse *A, struct source *source, const char *group, int64_t m,
+static int fclib_read_matrix(struct sparse *A, struct source *source, const char *group, int64_t m,
                        int64_t n, struct why *why)
 {
     struct stored S = { 0 };
@@ -73,11 +73,11 @@ static int read_matrix(struct sparse *A, struct source *source, const char *grou
 }
 
 /* spacedim and mu, which every problem has */
-static int read_law(struct raw *R, struct source *source, const char *group, struct why *why)
+static int fclib_read_law(struct raw *R, struct source *source, const char *group, struct why *why)
 {
     char path[64];
     int32_t d;
-    if (source_read(source, join(path, group, "spacedim"), COLUMN_I32, 1, &d, why))
+    if (source_read(source, fclib_join(path, group, "spacedim"), COLUMN_I32, 1, &d, why))
         return why->status;
     if (d != 2 && d != 3) return why_set(why, EX_DATAERR, "%s: is %d, not 2 or 3", path, d);
     R->d = d;
@@ -97,27 +97,27 @@ static int read_local(struct raw *R, struct source *source, struct why *why)
     if (source_has(source, "/fclib_local/V") || source_has(source, "/fclib_local/R"))
         return why_set(why, EX_DATAERR, "%s: a mixed problem (V, R, s), which is not solved here",
                        group);
-    if (read_law(R, source, group, why)) return why->status;
+    if (fclib_read_law(R, source, group, why)) return why->status;
     int64_t nd = R->n * R->d;
     if (!(R->q = read_vector(source, group, "vectors/q", nd, NULL, why))) return why->status;
-    return read_matrix(&R->W, source, "/fclib_local/W", nd, nd, why);
+    return fclib_read_matrix(&R->W, source, "/fclib_local/W", nd, nd, why);
 }
 
 static int read_global(struct raw *R, struct source *source, struct why *why)
 {
     const char *group = "/fclib_global";
     struct global *P = &R->global;
-    if (read_law(R, source, group, why)) return why->status;
+    if (fclib_read_law(R, source, group, why)) return why->status;
     int64_t nd = R->n * R->d;
     if (!(R->q = read_vector(source, group, "vectors/w", nd, NULL, why))) return why->status;
     if (!(P->f = read_vector(source, group, "vectors/f", -1, &P->nv, why))) return why->status;
-    if (read_matrix(&P->M, source, "/fclib_global/M", P->nv, P->nv, why)) return why->status;
-    if (read_matrix(&P->H, source, "/fclib_global/H", P->nv, nd, why)) return why->status;
+    if (fclib_read_matrix(&P->M, source, "/fclib_global/M", P->nv, P->nv, why)) return why->status;
+    if (fclib_read_matrix(&P->H, source, "/fclib_global/H", P->nv, nd, why)) return why->status;
     if (!source_has(source, "/fclib_global/G")) return 0;
     if (!(P->b = read_vector(source, group, "vectors/b", -1, &P->nl, why))) return why->status;
     if (P->nl > INT32_MAX - P->nv)
         return why_set(why, EX_DATAERR, "%s/vectors/b: too many unknowns", group);
-    return read_matrix(&P->G, source, "/fclib_global/G", P->nv, P->nl, why);
+    return fclib_read_matrix(&P->G, source, "/fclib_global/G", P->nv, P->nl, why);
 }
 
 static void raw_free(struct raw *R)

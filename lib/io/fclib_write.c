@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-static int short_of_memory(struct why *why)
+static int fclib_short_of_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
 }
@@ -47,7 +47,7 @@ int fclib_store_solution(const struct fclib *F, int64_t file, const double *u, c
     if (remove_old(file, group, why)) return why->status;
     int64_t nv = F->motion.nv, nl = F->motion.nl;
     if (F->global) {
-        if (!(v = malloc((size_t)(nv + nl + 1) * sizeof *v))) return short_of_memory(why);
+        if (!(v = malloc((size_t)(nv + nl + 1) * sizeof *v))) return fclib_short_of_memory(why);
         motion_of(&F->motion, r, v);
     }
     int e = write_vector(file, group, "u", nd, u, why);
@@ -79,8 +79,8 @@ static int write_bonded_W(const struct assembly *A, hid_t file, struct why *why)
     struct stored S = { 0 };
     int64_t rows = A->p->n * A->p->d;
     double *q = malloc((size_t)(rows + 1) * sizeof *q);
-    int e = q ? bonded_local(A, &W, q, why) : short_of_memory(why);
-    if (!e && !stored_columns(&S, &W)) e = short_of_memory(why);
+    int e = q ? bonded_local(A, &W, q, why) : fclib_short_of_memory(why);
+    if (!e && !stored_columns(&S, &W)) e = fclib_short_of_memory(why);
     if (!e) e = stored_write(&S, file, "/fclib_local/W", why);
     if (!e) e = write_vector(file, "/fclib_local", "vectors/q", rows, q, why);
     sparse_free(&W), stored_free(&S), free(q);
@@ -92,7 +92,7 @@ static int write_bonded_MH(const struct assembly *A, hid_t file, struct why *why
     struct global P;
     struct stored M = { 0 }, H = { 0 };
     int e = bonded_global(A, &P, why);
-    if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H))) e = short_of_memory(why);
+    if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H))) e = fclib_short_of_memory(why);
     if (!e) e = stored_write(&M, file, "/fclib_global/M", why);
     if (!e) e = stored_write(&H, file, "/fclib_global/H", why);
     if (!e) e = write_vector(file, "/fclib_global/vectors", "f", P.nv, P.f, why);
@@ -157,7 +157,7 @@ static int write_vectors(const struct assembly *A, bool global, hid_t file, stru
     if (!e) e = write_info(file, global ? "/fclib_global/info" : "/fclib_local/info", why);
     if (!e) e = write_ints(file, group, "spacedim", 1, &d, why);
     double *mu = malloc((size_t)(n + 1) * sizeof *mu);
-    if (!mu) return short_of_memory(why);
+    if (!mu) return fclib_short_of_memory(why);
     for (int64_t c = 0; c < n; c++)
         mu[c] = slot_bundle(A->p, A->slot[c])->mu[slot_lane(A->slot[c])];
     if (!e) e = write_vector(file, group, "vectors/mu", n, mu, why);

@@ -74,7 +74,7 @@ int flow_link(struct table_write *s, const struct packing *p, struct why *why)
 /* ---- reading ---- */
 
 /* How many pours, or removals, there are: the width of their datasets; -1: not as it should be */
-static int32_t count_of(struct source *s, const char *path, struct why *why)
+static int32_t roster_count_of(struct source *s, const char *path, struct why *why)
 {
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
@@ -137,8 +137,8 @@ int flow_tables_read_numbers(struct source *s, struct packing *p, struct why *wh
 int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     if (!source_has(s, flow)) return 0;
-    int32_t pours = count_of(s, "/nsd/flow/poured/value", why);
-    int32_t removals = pours < 0 ? -1 : count_of(s, "/nsd/flow/removed/value", why);
+    int32_t pours = roster_count_of(s, "/nsd/flow/poured/value", why);
+    int32_t removals = pours < 0 ? -1 : roster_count_of(s, "/nsd/flow/removed/value", why);
     if (removals < 0 || packing_alloc_passages(p, pours, removals, why)) return why->status;
     if (source_attribute(s, flow, "first_id", (struct numbers){ COLUMN_I32, -1, &p->first_id },
                          why) ||

@@ -29,7 +29,7 @@ static bool may_lack(const struct source *s, const struct body_column *b, const 
 }
 
 /* Steps and times of the frames. A frame counts when all of its motion is there. */
-static int count_frames(struct frame_read *r, struct why *why)
+static int frame_read_count_frames(struct frame_read *r, struct why *why)
 {
     uint64_t m, shape[4];
     int64_t n;
@@ -63,7 +63,7 @@ int frame_read_open(struct frame_read *r, struct source *source, struct why *why
 {
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
-        if (count_frames(r, why) || cell_tables_open(source, r->repeats, why)) return why->status;
+        if (frame_read_count_frames(r, why) || cell_tables_open(source, r->repeats, why)) return why->status;
         if (memory_rows_open(&r->memory, source, why)) return why->status;
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, why))
             return why->status;
@@ -104,7 +104,7 @@ static int read_pairs(struct source *doc, const struct column *c, bool optional,
     return 0;
 }
 
-static int read_material(struct source *doc, struct packing *p, struct why *why)
+static int frame_read_material(struct source *doc, struct packing *p, struct why *why)
 {
     char *names = source_text(doc, "/nsd/material", "kinds", why);
     int32_t kinds = 0;
@@ -196,7 +196,7 @@ static int read_time_step(struct frame_read *r, int64_t k, double t0, struct pac
 
 /* Step and time of frame k, and from where its time is counted: a document whose time is step dt need not
    say it, and what one says that contradicts its times is not believed. */
-static int read_clock(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
+static int frame_read_clock(struct frame_read *r, int64_t k, struct packing *p, struct why *why)
 {
     const double most = (double)((int64_t)1 << STEPS_LOG2);
     double origin[2] = { 0 };
@@ -254,10 +254,10 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
     int dim;
     if (source_attribute(r->source, "/nsd", "dim", (struct numbers){ COLUMN_I32, -1, &dim }, why) ||
         packing_init(p, dim, n, why) || read_parameters(r->source, p, why) ||
-        read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
+        frame_read_material(r->source, p, why) || shape_tables_read(r->source, p, why) ||
         boundary_tables_read(r->source, k, p, why) || flow_tables_read(r->source, k, p, why) ||
         pull_tables_read(r->source, p, why) || pair_law_tables_read(r->source, k, p, why) ||
-        read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why))
+        frame_read_clock(r, k, p, why) || cell_tables_read(r->source, k, r->repeats, p, why))
         return why->status;
     if (flow_tables_read_numbers(r->source, p, why) || outside_tables_read(r->source, p, why) ||
         name_tables_read(r->source, p, why) || sum_tables_read(r->source, k, p, why))
@@ -343,7 +343,7 @@ end:
     return why->status;
 }
 
-static int read_foreign(struct frame_read *r, struct frame *f, struct why *why)
+static int frame_read_foreign(struct frame_read *r, struct frame *f, struct why *why)
 {
     struct source *source = r->source;
     if (fclib_read(&f->problem, source, why)) return why->status;
@@ -364,7 +364,7 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct w
     if (source_frame(r->source, why)) return why->status;
     f->history = source_text(r->source, "/nsd/history", NULL, why);
     if (why->status) return why->status;
-    if (!r->step) return read_foreign(r, f, why);
+    if (!r->step) return frame_read_foreign(r, f, why);
     if (are_wanted(r, k, &f->packing)) {
         f->distributed = r->distributed;
         if (hand_over(r, k, &f->packing, f->distributed->n, why)) return why->status;

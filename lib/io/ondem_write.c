@@ -24,7 +24,7 @@ static const char *const shape_names[SHAPES] = { "sphere", "box",   "polyhedron"
 static const char *const group_names[] = { "Points", "Others" };
 
 /* A body of the file; NaN and -1: does not apply */
-struct row {
+struct ondem_row {
     int64_t body_id, shape_type, material_id, clump_id, blocked_dofs, wall_axis, wall_sense, shape;
     double x[3], velocity[3], angular_velocity[3], orientation[4], mass, volume, inertia[9], radius,
         dimensions[3], relative_position[3], relative_orientation[4], reach, mean_inertia;
@@ -36,56 +36,56 @@ static const struct {
     int width;
     size_t at;
 } columns[] = {
-    { "body_id", true, true, 1, offsetof(struct row, body_id) },
-    { "shape_type", true, true, 1, offsetof(struct row, shape_type) },
-    { "material_id", true, true, 1, offsetof(struct row, material_id) },
-    { "clump_id", true, true, 1, offsetof(struct row, clump_id) },
-    { "velocity", false, true, 3, offsetof(struct row, velocity) },
-    { "angular_velocity", false, true, 3, offsetof(struct row, angular_velocity) },
-    { "orientation", false, true, 4, offsetof(struct row, orientation) },
-    { "mass", false, true, 1, offsetof(struct row, mass) },
-    { "volume", false, true, 1, offsetof(struct row, volume) },
-    { "inertia", false, true, 9, offsetof(struct row, inertia) },
-    { "blocked_dofs", true, true, 1, offsetof(struct row, blocked_dofs) },
-    { "radius", false, true, 1, offsetof(struct row, radius) },
-    { "dimensions", false, false, 3, offsetof(struct row, dimensions) },
-    { "clump_relative_position", false, false, 3, offsetof(struct row, relative_position) },
-    { "clump_relative_orientation", false, false, 4, offsetof(struct row, relative_orientation) },
-    { "wall_axis", true, false, 1, offsetof(struct row, wall_axis) },
-    { "wall_sense", true, false, 1, offsetof(struct row, wall_sense) },
-    { "nsd_shape", true, false, 1, offsetof(struct row, shape) },
-    { "nsd_radius", false, false, 1, offsetof(struct row, reach) },
-    { "nsd_inertia", false, false, 1, offsetof(struct row, mean_inertia) },
+    { "body_id", true, true, 1, offsetof(struct ondem_row, body_id) },
+    { "shape_type", true, true, 1, offsetof(struct ondem_row, shape_type) },
+    { "material_id", true, true, 1, offsetof(struct ondem_row, material_id) },
+    { "clump_id", true, true, 1, offsetof(struct ondem_row, clump_id) },
+    { "velocity", false, true, 3, offsetof(struct ondem_row, velocity) },
+    { "angular_velocity", false, true, 3, offsetof(struct ondem_row, angular_velocity) },
+    { "orientation", false, true, 4, offsetof(struct ondem_row, orientation) },
+    { "mass", false, true, 1, offsetof(struct ondem_row, mass) },
+    { "volume", false, true, 1, offsetof(struct ondem_row, volume) },
+    { "inertia", false, true, 9, offsetof(struct ondem_row, inertia) },
+    { "blocked_dofs", true, true, 1, offsetof(struct ondem_row, blocked_dofs) },
+    { "radius", false, true, 1, offsetof(struct ondem_row, radius) },
+    { "dimensions", false, false, 3, offsetof(struct ondem_row, dimensions) },
+    { "clump_relative_position", false, false, 3, offsetof(struct ondem_row, relative_position) },
+    { "clump_relative_orientation", false, false, 4, offsetof(struct ondem_row, relative_orientation) },
+    { "wall_axis", true, false, 1, offsetof(struct ondem_row, wall_axis) },
+    { "wall_sense", true, false, 1, offsetof(struct ondem_row, wall_sense) },
+    { "nsd_shape", true, false, 1, offsetof(struct ondem_row, shape) },
+    { "nsd_radius", false, false, 1, offsetof(struct ondem_row, reach) },
+    { "nsd_inertia", false, false, 1, offsetof(struct ondem_row, mean_inertia) },
 };
 
 enum { COLUMNS = sizeof columns / sizeof columns[0] };
 
-struct rows {
+struct ondem_rows {
     int64_t n, room, next_id;
-    struct row *row;
+    struct ondem_row *row;
 };
 
 /* ---- rows ---- */
 
-static struct row *add_row(struct rows *b, struct why *why)
+static struct ondem_row *ondem_add_row(struct ondem_rows *b, struct why *why)
 {
     if (b->n == b->room) {
         int64_t room = b->room ? 2 * b->room : 256;
-        struct row *more = realloc(b->row, (size_t)room * sizeof *more);
+        struct ondem_row *more = realloc(b->row, (size_t)room * sizeof *more);
         if (!more) return why_set(why, EX_SOFTWARE, "no memory for an export"), NULL;
         b->row = more, b->room = room;
     }
-    struct row *r = &b->row[b->n++];
+    struct ondem_row *r = &b->row[b->n++];
     // every number is one that does not apply until it is set
     double *real = r->x;
-    const size_t reals = (sizeof *r - offsetof(struct row, x)) / sizeof *real;
-    *r = (struct row){ -1,    -1, -1, -1,    -1, -1,    -1,    -1,    { 0 }, { 0 }, { 0 },
+    const size_t reals = (sizeof *r - offsetof(struct ondem_row, x)) / sizeof *real;
+    *r = (struct ondem_row){ -1,    -1, -1, -1,    -1, -1,    -1,    -1,    { 0 }, { 0 }, { 0 },
                        { 0 }, 0,  0,  { 0 }, 0,  { 0 }, { 0 }, { 0 }, 0,     0 };
     for (size_t k = 0; k < reals; k++) real[k] = NAN;
     return r;
 }
 
-static void put3(double out[3], vec3 x)
+static void ondem_put3(double out[3], vec3 x)
 {
     out[0] = x.x, out[1] = x.y, out[2] = x.z;
 }
@@ -109,18 +109,18 @@ static bool is_box(const struct shape *s, vec3 *half)
     return true;
 }
 
-static void set_motion(struct row *r, vec3 x, vec3 v, vec3 w, quat q)
+static void set_motion(struct ondem_row *r, vec3 x, vec3 v, vec3 w, quat q)
 {
-    put3(r->x, x), put3(r->velocity, v), put3(r->angular_velocity, w), put4(r->orientation, q);
+    ondem_put3(r->x, x), ondem_put3(r->velocity, v), ondem_put3(r->angular_velocity, w), put4(r->orientation, q);
 }
 
 /* The balls of a clump, bodies of their own that have no mass */
-static int add_members(struct rows *b, const struct packing *p, int64_t i, struct why *why)
+static int ondem_add_members(struct ondem_rows *b, const struct packing *p, int64_t i, struct why *why)
 {
     const struct shape *s = &p->shapes.s[p->shape[i]];
     const quat one = { 1, 0, 0, 0 };
     for (int32_t k = 0; k < s->vertices; k++) {
-        struct row *r = add_row(b, why);
+        struct ondem_row *r = ondem_add_row(b, why);
         if (!r) return why->status;
         vec3 from = v3_scale(p->radius[i], s->vertex[k]), away = quat_turn(p->q[i], from);
         set_motion(r, v3_add(p->x[i], away), v3_add(p->v[i], v3_cross(p->w[i], away)), p->w[i],
@@ -128,15 +128,15 @@ static int add_members(struct rows *b, const struct packing *p, int64_t i, struc
         r->body_id = b->next_id++, r->shape_type = SPHERE, r->material_id = p->kind[i];
         r->clump_id = p->id[i], r->radius = p->radius[i] * s->ball[k];
         r->blocked_dofs = p->mass[i] > 0 ? 0 : FIXED;
-        put3(r->relative_position, from), put4(r->relative_orientation, one);
+        ondem_put3(r->relative_position, from), put4(r->relative_orientation, one);
     }
     return 0;
 }
 
-static int add_body(struct rows *b, const struct packing *p, int64_t i, struct why *why)
+static int ondem_add_body(struct ondem_rows *b, const struct packing *p, int64_t i, struct why *why)
 {
     const struct shape *s = packing_shape(p, i);
-    struct row *r = add_row(b, why);
+    struct ondem_row *r = ondem_add_row(b, why);
     double volume, inertia;
     vec3 half;
     if (!r) return why->status;
@@ -158,10 +158,10 @@ static int add_body(struct rows *b, const struct packing *p, int64_t i, struct w
                     : s->form == SHAPE_HULL && !(s->round > 0) ? POLYHEDRON
                                                                : OTHER;
     if (!s) r->radius = p->radius[i];
-    if (r->shape_type == BOX) put3(r->dimensions, v3_scale(2 * p->radius[i], half));
+    if (r->shape_type == BOX) ondem_put3(r->dimensions, v3_scale(2 * p->radius[i], half));
     if (r->shape_type == CLUMP) r->material_id = -1;
     if (s) r->shape = p->shape[i], r->reach = p->radius[i], r->mean_inertia = p->inertia[i];
-    return r->shape_type == CLUMP ? add_members(b, p, i, why) : 0;
+    return r->shape_type == CLUMP ? ondem_add_members(b, p, i, why) : 0;
 }
 
 /* The axis that a plane lies across, 0 to 2, and the side where bodies are; -1: it is no such wall */
@@ -174,7 +174,7 @@ static int axis_of(const struct wall *w, vec3 n, int *sense)
 }
 
 /* Planes across an axis; *id: what each wall is called, -1: it is left out */
-static int add_walls(struct rows *b, const struct packing *p, int64_t *id, struct why *why)
+static int add_walls(struct ondem_rows *b, const struct packing *p, int64_t *id, struct why *why)
 {
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
@@ -182,7 +182,7 @@ static int add_walls(struct rows *b, const struct packing *p, int64_t *id, struc
             axis = wall_there(w, p->t) ? axis_of(w, wall_normal(p, w, p->t), &sense) : -1;
         id[k] = -1;
         if (axis < 0) continue;
-        struct row *r = add_row(b, why);
+        struct ondem_row *r = ondem_add_row(b, why);
         if (!r) return why->status;
         const vec3 x = wall_at(p, w, p->t);
         const quat one = { 1, 0, 0, 0 };
@@ -203,7 +203,7 @@ struct choice {
 };
 
 /* A member of all structs of an array */
-struct member {
+struct ondem_member {
     const char *first; /* that of the first struct */
     size_t stride;     /* bytes of a struct */
     bool whole;        /* of type int64_t, else double */
@@ -211,7 +211,7 @@ struct member {
 };
 
 /* A dataset of n rows, gathered from structs */
-static int put_column(hid_t file, const char *path, struct choice of, struct member m,
+static int put_column(hid_t file, const char *path, struct choice of, struct ondem_member m,
                       struct why *why)
 {
     const hsize_t shape[2] = { (hsize_t)of.n, (hsize_t)m.width };
@@ -241,7 +241,7 @@ static int put_scalar(hid_t file, const char *group, const char *name, bool whol
 }
 
 /* Texts of any length, as h5py has lists of them */
-static int put_texts(hid_t file, const char *path, const char *const *text, int n, struct why *why)
+static int ondem_put_texts(hid_t file, const char *path, const char *const *text, int n, struct why *why)
 {
     const hsize_t shape = (hsize_t)n;
     hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate_simple(1, &shape, NULL),
@@ -287,7 +287,7 @@ static int put_cells(hid_t file, const char *block, const char *name, int64_t n,
 }
 
 /* Is there a value of this column in any body? */
-static bool is_used(const struct rows *b, int c)
+static bool is_used(const struct ondem_rows *b, int c)
 {
     for (int64_t i = 0; i < b->n; i++) {
         const char *at = (const char *)&b->row[i] + columns[c].at;
@@ -299,7 +299,7 @@ static bool is_used(const struct rows *b, int c)
     return false;
 }
 
-static int put_block(hid_t file, int group, const struct rows *b, struct choice of, struct why *why)
+static int ondem_put_block(hid_t file, int group, const struct ondem_rows *b, struct choice of, struct why *why)
 {
     char block[60], path[160];
     const char *rows = b->row ? (const char *)b->row : "";
@@ -309,7 +309,7 @@ static int put_block(hid_t file, int group, const struct rows *b, struct choice 
         h5_write(file, path, h5_vector(H5T_NATIVE_INT64, 1, &of.n), NULL, why))
         return why->status;
     snprintf(path, sizeof path, "%s/Points", block);
-    const struct member points = { rows + offsetof(struct row, x), sizeof *b->row, false, 3 };
+    const struct ondem_member points = { rows + offsetof(struct ondem_row, x), sizeof *b->row, false, 3 };
     if (put_column(file, path, of, points, why) || put_cells(file, block, "Vertices", of.n, why) ||
         put_cells(file, block, "Lines", 0, why) || put_cells(file, block, "Polygons", 0, why) ||
         put_cells(file, block, "Strips", 0, why))
@@ -317,7 +317,7 @@ static int put_block(hid_t file, int group, const struct rows *b, struct choice 
     for (int k = 0; k < COLUMNS; k++) {
         if (!columns[k].always && !is_used(b, k)) continue;
         snprintf(path, sizeof path, "%s/PointData/%s", block, columns[k].name);
-        const struct member m = { rows + columns[k].at, sizeof *b->row, columns[k].whole,
+        const struct ondem_member m = { rows + columns[k].at, sizeof *b->row, columns[k].whole,
                                   columns[k].width };
         if (put_column(file, path, of, m, why) ||
             (columns[k].width == 4 && put_attribute(file, path, "order", "wxyz", why)))
@@ -329,7 +329,7 @@ static int put_block(hid_t file, int group, const struct rows *b, struct choice 
                : 0;
 }
 
-static int put_blocks(hid_t file, const struct rows *b, struct why *why)
+static int put_blocks(hid_t file, const struct ondem_rows *b, struct why *why)
 {
     int64_t *row = malloc(((size_t)b->n + 1) * sizeof *row);
     if (!row) return why_set(why, EX_SOFTWARE, "no memory for an export");
@@ -340,7 +340,7 @@ static int put_blocks(hid_t file, const struct rows *b, struct why *why)
         struct choice of = { 0, row };
         for (int64_t i = 0; i < b->n; i++)
             if ((b->row[i].shape_type != SPHERE) == group) row[of.n++] = i;
-        put_block(file, group, b, of, why);
+        ondem_put_block(file, group, b, of, why);
     }
     free(row);
     return why->status;
@@ -358,13 +358,13 @@ static int put_scene(hid_t file, const struct packing *p, struct why *why)
            h5_attr(file, scene, "timestep", h5_scalar(H5T_NATIVE_DOUBLE, &p->dt), why) ||
            h5_attr(file, scene, "iteration", h5_scalar(H5T_NATIVE_INT64, &p->step), why) ||
            h5_write(file, "/ONDEM/Scene/gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), NULL, why) ||
-           put_texts(file, "/ONDEM/Scene/units", units, 3, why) ||
-           put_texts(file, "/ONDEM/Scene/display_group_names", group_names, 2, why) ||
-           put_texts(file, "/ONDEM/Scene/shape_names", shape_names, SHAPES, why);
+           ondem_put_texts(file, "/ONDEM/Scene/units", units, 3, why) ||
+           ondem_put_texts(file, "/ONDEM/Scene/display_group_names", group_names, 2, why) ||
+           ondem_put_texts(file, "/ONDEM/Scene/shape_names", shape_names, SHAPES, why);
 }
 
 /* kg/m^3: of the bodies of a kind; NaN without any */
-static double density_of(const struct rows *b, int32_t kind)
+static double density_of(const struct ondem_rows *b, int32_t kind)
 {
     double mass = 0, volume = 0;
     for (int64_t i = 0; i < b->n; i++)
@@ -373,7 +373,7 @@ static double density_of(const struct rows *b, int32_t kind)
     return volume > 0 ? mass / volume : NAN;
 }
 
-static int put_materials(hid_t file, const struct packing *p, const struct rows *b, struct why *why)
+static int put_materials(hid_t file, const struct packing *p, const struct ondem_rows *b, struct why *why)
 {
     for (int32_t k = 0; k < p->kinds && !why->status; k++) {
         char group[60], path[80];
@@ -418,7 +418,7 @@ static const struct {
 };
 
 /* Contacts that push or pull, of bodies that are in the file; a clump's is the clump's */
-static int put_contacts(hid_t file, const struct packing *p, const struct contacts *t,
+static int ondem_put_contacts(hid_t file, const struct packing *p, const struct contacts *t,
                         const int64_t *wall_id, struct why *why)
 {
     static const char group[] = "/ONDEM/Interactions/hard_contact";
@@ -434,15 +434,15 @@ static int put_contacts(hid_t file, const struct packing *p, const struct contac
         struct interaction *it = &list[n++];
         *it = (struct interaction){ a,     p->id[c->b], { 0 },    { 0 }, -along,
                                     { 0 }, INFINITY,    INFINITY, c->mu, -c->gap };
-        put3(it->normal, c->n), put3(it->point, c->x);
-        put3(it->shear_force, v3_axpy(force, -along, c->n));
+        ondem_put3(it->normal, c->n), ondem_put3(it->point, c->x);
+        ondem_put3(it->shear_force, v3_axpy(force, -along, c->n));
     }
     if (!h5_group(file, group, why))
         h5_attr(file, group, "count", h5_scalar(H5T_NATIVE_INT64, &n), why);
     for (size_t k = 0; k < sizeof of_contacts / sizeof *of_contacts && !why->status; k++) {
         char path[120];
         snprintf(path, sizeof path, "%s/%s", group, of_contacts[k].name);
-        const struct member m = { (const char *)list + of_contacts[k].at, sizeof *list,
+        const struct ondem_member m = { (const char *)list + of_contacts[k].at, sizeof *list,
                                   of_contacts[k].whole, of_contacts[k].width };
         put_column(file, path, (struct choice){ n, NULL }, m, why);
     }
@@ -473,7 +473,7 @@ static int put_extension(hid_t file, const struct packing *p, struct why *why)
                      NULL, why))
             return why->status;
     for (int k = 0; k < 3; k++)
-        repeats[k] = p->cell.repeats[k], put3(edge + 3 * k, p->cell.edge[k]);
+        repeats[k] = p->cell.repeats[k], ondem_put3(edge + 3 * k, p->cell.edge[k]);
     if (cell_repeats(&p->cell) &&
         (h5_write(file, "/nsd/cell/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, &p->cell.origin), NULL,
                   why) ||
@@ -497,7 +497,7 @@ static void *image_of(hid_t file, size_t *size, struct why *why)
 void *ondem_write(const struct packing *p, const struct contacts *contacts, size_t *size,
                   struct why *why)
 {
-    struct rows b = { 0 };
+    struct ondem_rows b = { 0 };
     void *bytes = NULL;
     h5_start();
     hid_t access = H5Pcreate(H5P_FILE_ACCESS), plist = H5Pcreate(H5P_FILE_CREATE);
@@ -508,10 +508,10 @@ void *ondem_write(const struct packing *p, const struct contacts *contacts, size
     if (file < 0 || !wall_id) why_set(why, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++)
         if (p->id[i] >= b.next_id) b.next_id = (int64_t)p->id[i] + 1;
-    for (int64_t i = 0; i < p->n && !why->status; i++) add_body(&b, p, i, why);
+    for (int64_t i = 0; i < p->n && !why->status; i++) ondem_add_body(&b, p, i, why);
     if (!why->status && !add_walls(&b, p, wall_id, why) && !put_blocks(file, &b, why) &&
         !put_scene(file, p, why) && !put_materials(file, p, &b, why) &&
-        (!contacts || !contacts->found || !put_contacts(file, p, contacts, wall_id, why)) &&
+        (!contacts || !contacts->found || !ondem_put_contacts(file, p, contacts, wall_id, why)) &&
         !put_extension(file, p, why))
         bytes = image_of(file, size, why);
     if (file >= 0) H5Fclose(file);

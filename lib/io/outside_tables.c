@@ -13,7 +13,7 @@
 /* ---- to a document ---- */
 
 /* A row of numbers of the frame */
-static struct dataset row_of(const char *path, int rank, const hsize_t *shape, const void *data,
+static struct dataset external_force_tables_row_of(const char *path, int rank, const hsize_t *shape, const void *data,
                              const char *units)
 {
     return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
@@ -33,15 +33,15 @@ static int write_boundaries(struct table_write *s, const struct packing *p, stru
         x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
         if (p->outside.push) push[w] = p->outside.push[w];
     }
-    if (!table_write_rows(s, row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), why) &&
-        !table_write_rows(s, row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), why))
-        table_write_rows(s, row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), why);
+    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), why) &&
+        !table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), why))
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), why);
     free(x), free(push);
     return why->status;
 }
 
 /* Of bodies, without which a column has 0 */
-static int write_forces(struct table_write *s, const struct packing *p, bool any, struct why *why)
+static int external_force_tables_write_forces(struct table_write *s, const struct packing *p, bool any, struct why *why)
 {
     int64_t n = any ? p->n : 0;
     const hsize_t shape[2] = { (hsize_t)n, 3 };
@@ -63,7 +63,7 @@ static int write_forces(struct table_write *s, const struct packing *p, bool any
     return why->status;
 }
 
-static int write_words(struct table_write *s, const struct outside *o, struct why *why)
+static int external_force_tables_write_words(struct table_write *s, const struct outside *o, struct why *why)
 {
     const hsize_t length = (hsize_t)o->length;
     if (table_write_span(s, EXTERNAL_HOME "/answer", s->words, o->length, why) ||
@@ -90,7 +90,7 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
         why_set(why, EX_SOFTWARE, "no memory for forces that last");
     else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, why) &&
              !table_write_rows(
-                 s, row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), why) &&
+                 s, external_force_tables_row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), why) &&
              !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, why) &&
              !table_write_rows(s,
                                (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
@@ -115,11 +115,11 @@ int outside_tables_write(struct table_write *s, const struct frame *f, struct wh
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
     if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, why) ||
-        table_write_rows(s, row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), why) ||
-        table_write_rows(s, row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), why) ||
-        write_boundaries(s, p, why) || write_forces(s, p, forces, why))
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), why) ||
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), why) ||
+        write_boundaries(s, p, why) || external_force_tables_write_forces(s, p, forces, why))
         return why->status;
-    return write_words(s, o, why);
+    return external_force_tables_write_words(s, o, why);
 }
 
 /* ---- from a document ---- */

@@ -22,7 +22,7 @@ static int check_symmetric(const struct packing *p, const struct column *c, cons
     return 0;
 }
 
-static int read_columns(struct source *s, const struct column *columns, struct packing *p,
+static int pair_law_tables_read_columns(struct source *s, const struct column *columns, struct packing *p,
                         struct why *why)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
@@ -40,10 +40,10 @@ static int read_columns(struct source *s, const struct column *columns, struct p
     return why->status;
 }
 
-static int read_laws(struct source *s, struct packing *p, struct why *why)
+static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct why *why)
 {
-    if (packing_alloc_laws(p, why) || read_columns(s, layout_law, p, why)) return why->status;
-    return source_has(s, "/nsd/law/impact") ? read_columns(s, layout_impact, p, why) : 0;
+    if (packing_alloc_laws(p, why) || pair_law_tables_read_columns(s, layout_law, p, why)) return why->status;
+    return source_has(s, "/nsd/law/impact") ? pair_law_tables_read_columns(s, layout_impact, p, why) : 0;
 }
 
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why *why)
@@ -65,7 +65,7 @@ static int read_bonds(struct source *s, int64_t k, struct packing *p, struct why
 int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct why *why)
 {
     if (!source_has(s, law)) return 0;
-    if (read_laws(s, p, why)) return why->status;
+    if (pair_law_tables_read_laws(s, p, why)) return why->status;
     return source_has(s, bonds) ? read_bonds(s, k, p, why) : 0;
 }
 

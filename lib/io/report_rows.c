@@ -33,7 +33,7 @@ static bool part_is_there(const struct report *rep, int k)
 }
 
 /* The reports whose numbers in these columns are there: a killed writer's may differ. */
-static void count_rows(struct report_rows *r, const struct column *columns)
+static void report_rows_count_rows(struct report_rows *r, const struct column *columns)
 {
     for (const struct column *c = columns; c->name; c++) {
         uint64_t shape[4];
@@ -55,10 +55,10 @@ int report_rows_open(struct report_rows *r, struct source *source, struct why *w
     snprintf(path, sizeof path, "%s/time", r->group);
     if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
         r->solves = (int64_t)shape[0];
-    count_rows(r, layout_report);
-    count_rows(r, layout_velocity);
-    count_rows(r, layout_balance);
-    for (int k = 0; k < PARTS; k++) count_rows(r, parts[k].columns);
+    report_rows_count_rows(r, layout_report);
+    report_rows_count_rows(r, layout_velocity);
+    report_rows_count_rows(r, layout_balance);
+    for (int k = 0; k < PARTS; k++) report_rows_count_rows(r, parts[k].columns);
     r->solves = account_rows_count(source, r->solves);
     if (!why->status) r->solves = table_read_rising(r->solved, r->solves);
     return why->status;
@@ -93,7 +93,7 @@ static int read_history(struct source *doc, const char *group, struct report *re
 }
 
 /* Numbers of a step are finite, else it is not made; a solve of a problem without bodies may end with any errors. */
-static int read_table(const struct report_rows *r, int64_t at, struct records records,
+static int report_rows_read_table(const struct report_rows *r, int64_t at, struct records records,
                       struct why *why)
 {
     return (source_has(r->source, "/particles/all") ? table_read_finite : table_read_columns)(
@@ -113,7 +113,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
     if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return why_set(why, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
-    if (read_table(r, at, RECORDS(layout_report, n, r->ahead.row), why) ||
+    if (report_rows_read_table(r, at, RECORDS(layout_report, n, r->ahead.row), why) ||
         source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, why) ||
         account_rows_read(r->source, at, n, r->ahead.account, why))
         return why->status;
@@ -122,19 +122,19 @@ static int read_ahead(struct report_rows *r, int64_t at, struct why *why)
             return why_set(why, EX_DATAERR, "%s: a time is not finite", time);
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
-    if (velocity && read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), why))
+    if (velocity && report_rows_read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), why))
         return why->status;
     for (int64_t i = 0; i < n && !velocity; i++)
         r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
-    if (balanced && read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), why))
+    if (balanced && report_rows_read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), why))
         return why->status;
     bool has[PARTS];
     for (int k = 0; k < PARTS; k++) {
         snprintf(time, sizeof time, "%s/%s/value", r->group, parts[k].columns[0].name);
         has[k] = balanced && source_has(r->source, time);
-        if (has[k] && read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), why))
+        if (has[k] && report_rows_read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), why))
             return why->status;
     }
     for (int64_t i = 0; i < n; i++) {

@@ -15,7 +15,7 @@ enum {
 };
 
 /* How many bodies a pour can bring in all; infinite where the scene sets no end to it */
-static double most_of(const struct scene_pour *o)
+static double roster_most_of(const struct scene_pour *o)
 {
     double by_time = o->by_mass ? INFINITY : floor(o->rate * fmax(o->until - o->from, 0)) + 1;
     return fmin(o->count, by_time);
@@ -27,7 +27,7 @@ void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struc
     double bound = (double)p->n;
     *most = *chunk = 0;
     if (flow_read(&flow, p, why)) return;
-    for (int32_t k = 0; k < flow.scene.pours; k++) bound += most_of(&flow.scene.pour[k]);
+    for (int32_t k = 0; k < flow.scene.pours; k++) bound += roster_most_of(&flow.scene.pour[k]);
     flow_free(&flow);
     if (isinf(bound)) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
     bound = fmin(fmax(bound, 1), INT32_MAX);
@@ -42,7 +42,7 @@ void roster_free(struct roster *r)
     *r = (struct roster){ 0 };
 }
 
-static int grow(struct roster *r, struct why *why)
+static int roster_grow(struct roster *r, struct why *why)
 {
     if (r->rows < r->room) return 0;
     size_t room = r->room ? 2 * (size_t)r->room : 256;
@@ -58,7 +58,7 @@ static int grow(struct roster *r, struct why *why)
 }
 
 /* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
-static int64_t row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
+static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
                       struct why *why)
 {
     while (from < r->rows && r->id[from] != p->id[i]) from++;
@@ -66,7 +66,7 @@ static int64_t row_of(struct roster *r, const struct packing *p, int64_t i, int6
         if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
         return why_set(why, EX_DATAERR, "other bodies than the trajectory's"), -1;
     }
-    if (grow(r, why)) return -1;
+    if (roster_grow(r, why)) return -1;
     for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
         if (r->id[k] == p->id[i])
             return why_set(why, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
@@ -75,7 +75,7 @@ static int64_t row_of(struct roster *r, const struct packing *p, int64_t i, int6
 }
 
 /* Has the column a dataset of [frames][rows]? That of ids says which bodies a frame has. */
-static bool moves(const struct body_column *b)
+static bool roster_moves(const struct body_column *b)
 {
     return b->traits & BODY_MOVES || b == &body_columns[BODY_id];
 }
@@ -88,7 +88,7 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
         const struct column *c = &b->column;
         const hsize_t shape[2] = { n, (hsize_t)c->width };
         char path[80];
-        if (moves(b) || !column_array(c, p)) continue;
+        if (roster_moves(b) || !column_array(c, p)) continue;
         layout_body_path(b, path);
         if (table_write_rows(s,
                              (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
@@ -106,7 +106,7 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
     *row = malloc(((size_t)p->n + 1) * sizeof **row);
     if (!*row) return why_set(why, EX_SOFTWARE, "no memory for the roster");
     for (int64_t i = 0; i < p->n; i++) {
-        (*row)[i] = row_of(r, p, i, at, why);
+        (*row)[i] = roster_row_of(r, p, i, at, why);
         if (why->status) return why->status;
         if ((*row)[i] >= had && first == p->n) first = i;
         at = (*row)[i] + 1;
@@ -157,7 +157,7 @@ int roster_write(struct roster *r, struct table_write *s, const struct packing *
                  const int64_t *row, struct why *why)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (!moves(b) || !column_array(&b->column, p)) continue;
+        if (!roster_moves(b) || !column_array(&b->column, p)) continue;
         if (write_spread(r, s, b, p, row, why)) return why->status;
     }
     return 0;
@@ -198,14 +198,14 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
     const struct column *c = &b->column;
     const int64_t n = p->n;
     char path[80], *out = column_array(c, p);
-    if (moves(b))
+    if (roster_moves(b))
         moving_path(b, path);
     else
         layout_body_path(b, path);
     if (b->traits & BODY_OPTIONAL && !source_has(s, path)) return 0;
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
-    const bool moving = moves(b);
+    const bool moving = roster_moves(b);
     if (rank < 1 + moving) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
     int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)

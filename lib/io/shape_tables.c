@@ -11,19 +11,19 @@
 enum { PER_BYTE = 16 }; /* vertices that are seen behind a face while a byte is read */
 
 /* What all shapes have, a row each: numbers, and how many of the rows of vertices and corners */
-struct row {
+struct shape_tables_row {
     int32_t form, vertices, faces, corners;
     double round, volume, moment[3];
 };
 
 static const struct column layout_rows[] = {
-    { "form", "1", COLUMN_I32, 1, offsetof(struct row, form) },
-    { "vertices", "1", COLUMN_I32, 1, offsetof(struct row, vertices) },
-    { "faces", "1", COLUMN_I32, 1, offsetof(struct row, faces) },
-    { "corners", "1", COLUMN_I32, 1, offsetof(struct row, corners) },
-    { "round", "1", COLUMN_F64, 1, offsetof(struct row, round) },
-    { "volume", "1", COLUMN_F64, 1, offsetof(struct row, volume) },
-    { "moment", "1", COLUMN_F64, 3, offsetof(struct row, moment) },
+    { "form", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, form) },
+    { "vertices", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, vertices) },
+    { "faces", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, faces) },
+    { "corners", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, corners) },
+    { "round", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, round) },
+    { "volume", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, volume) },
+    { "moment", "1", COLUMN_F64, 3, offsetof(struct shape_tables_row, moment) },
     { 0 },
 };
 
@@ -62,13 +62,13 @@ static void listing_drop(struct listing *l)
 }
 
 /* Where the next shape begins in the lists */
-struct place {
+struct shape_tables_place {
     const struct listing *of;
     uint64_t vertices, faces, corners;
 };
 
 /* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
-static int make_shape(struct source *r, struct shape *s, const struct row *row, struct place *at,
+static int shape_tables_make_shape(struct source *r, struct shape *s, const struct shape_tables_row *row, struct shape_tables_place *at,
                       int dim, struct why *why)
 {
     const struct listing *l = at->of;
@@ -99,18 +99,18 @@ static int make_shape(struct source *r, struct shape *s, const struct row *row, 
 }
 
 /* The table of shapes */
-struct table {
+struct shape_tables_table {
     int32_t n;
-    const struct row *row; /* [n] */
+    const struct shape_tables_row *row; /* [n] */
     const char *names;     /* a line each */
     struct listing lists;
 };
 
 /* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
-static int make_shapes(struct source *r, struct packing *p, const struct table *t, struct why *why)
+static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t, struct why *why)
 {
     const char *names = t->names;
-    struct place at = { .of = &t->lists };
+    struct shape_tables_place at = { .of = &t->lists };
     for (int32_t k = 0; k < t->n && !why->status; k++) {
         struct shape s = { 0 };
         struct why trouble = { 0 };
@@ -119,7 +119,7 @@ static int make_shapes(struct source *r, struct packing *p, const struct table *
             return why_set(why, EX_DATAERR, SHAPE "@names: fewer names than shapes");
         char *name = strndup(names, (size_t)(end - names));
         names = end + 1;
-        make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
+        shape_tables_make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
         if (trouble.status)
             why_set(why, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
         if (trouble.status) free(name);
@@ -134,11 +134,11 @@ static int make_shapes(struct source *r, struct packing *p, const struct table *
 int shape_tables_read(struct source *r, struct packing *p, struct why *why)
 {
     uint64_t n[4];
-    struct table t = { 0 };
+    struct shape_tables_table t = { 0 };
     if (!source_has(r, SHAPE)) return 0;
     if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
         return why_set(why, EX_DATAERR, SHAPE "/form: not a list of shapes");
-    struct row *row = calloc((size_t)n[0], sizeof *row);
+    struct shape_tables_row *row = calloc((size_t)n[0], sizeof *row);
     char *names = row ? source_text(r, SHAPE, "names", why) : NULL;
     if (!row || (!names && !why->status)) why_set(why, EX_SOFTWARE, "no memory for the shapes");
     t.n = (int32_t)n[0], t.row = row, t.names = names;
@@ -152,15 +152,15 @@ int shape_tables_read(struct source *r, struct packing *p, struct why *why)
 
 /* ---- to a document ---- */
 
-static int write_rows(hid_t file, const struct shapes *t, struct why *why)
+static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct why *why)
 {
     const hsize_t n = (hsize_t)t->n - 1, wide[2] = { n, 3 };
-    struct row *row = calloc((size_t)n + 1, sizeof *row);
+    struct shape_tables_row *row = calloc((size_t)n + 1, sizeof *row);
     double *out = calloc((size_t)n + 1, sizeof row->moment);
     if (!row || !out) why_set(why, EX_SOFTWARE, "no memory for the shapes");
     for (int32_t k = 1; k < t->n && row && out; k++) {
         const struct shape *s = &t->s[k];
-        row[k - 1] = (struct row){ s->form,
+        row[k - 1] = (struct shape_tables_row){ s->form,
                                    s->vertices,
                                    s->faces,
                                    s->corners,
@@ -218,7 +218,7 @@ int shape_tables_write(hid_t file, const struct packing *p, struct why *why)
 {
     size_t length = 1;
     if (p->shapes.n < 2) return 0;
-    if (write_rows(file, &p->shapes, why) || write_lists(file, &p->shapes, why)) return why->status;
+    if (shape_tables_write_rows(file, &p->shapes, why) || write_lists(file, &p->shapes, why)) return why->status;
     for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
     char *names = calloc(length, 1), *at = names;
     if (!names) return why_set(why, EX_SOFTWARE, "no memory for the shapes");

@@ -14,7 +14,7 @@ static int check_finite(const char *path, const struct column *c, int64_t n, con
     return 0;
 }
 
-static int read_columns(struct source *s, const char *group, const char *tail, int64_t start,
+static int tables_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
                         struct records o, bool finite, struct why *why)
 {
     for (const struct column *c = o.columns; c->name; c++) {
@@ -34,13 +34,13 @@ static int read_columns(struct source *s, const char *group, const char *tail, i
 int table_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
                        struct records o, struct why *why)
 {
-    return read_columns(s, group, tail, start, o, false, why);
+    return tables_read_columns(s, group, tail, start, o, false, why);
 }
 
 int table_read_finite(struct source *s, const char *group, const char *tail, int64_t start,
                       struct records o, struct why *why)
 {
-    return read_columns(s, group, tail, start, o, true, why);
+    return tables_read_columns(s, group, tail, start, o, true, why);
 }
 
 int table_read_span(struct source *r, struct table_spans table, int64_t k, struct span *span,

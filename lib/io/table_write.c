@@ -9,7 +9,7 @@
 
 /* Room for bodies to come, in datasets of [frames][bodies]; in frames before they came, their rows
    say so: their id is -1, their numbers are no numbers. */
-static void make_room(const struct table_write *s, const struct dataset *o, hsize_t most[4],
+static void tables_make_room(const struct table_write *s, const struct dataset *o, hsize_t most[4],
                       hsize_t chunk[4], hid_t plist)
 {
     const double none = NAN;
@@ -22,7 +22,7 @@ static void make_room(const struct table_write *s, const struct dataset *o, hsiz
                       o->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
 }
 
-static hid_t create(const struct table_write *s, const struct dataset *o, struct why *why)
+static hid_t tables_create(const struct table_write *s, const struct dataset *o, struct why *why)
 {
     const char *path = o->path;
     const hsize_t *shape = o->shape;
@@ -36,7 +36,7 @@ static hid_t create(const struct table_write *s, const struct dataset *o, struct
     hid_t file = s->file, plist = h5_dataset_plist();
     for (int k = 0; k < rank; k++) later = later && shape[k];
     if (later) h5_fill_later(plist);
-    make_room(s, o, most, chunk, plist);
+    tables_make_room(s, o, most, chunk, plist);
     char parent[80];
     snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
     if (h5_group(file, parent, why)) {
@@ -58,7 +58,7 @@ static hid_t create(const struct table_write *s, const struct dataset *o, struct
     return -1;
 }
 
-static hid_t find(const struct table_write *s, const char *path)
+static hid_t tables_find(const struct table_write *s, const char *path)
 {
     for (int i = 0; i < s->count; i++)
         if (!strcmp(s->open[i].path, path)) return s->open[i].set;
@@ -67,10 +67,10 @@ static hid_t find(const struct table_write *s, const char *path)
 
 bool table_write_grows(const struct table_write *s, const char *path)
 {
-    return find(s, path) >= 0;
+    return tables_find(s, path) >= 0;
 }
 
-static int append(hid_t set, const struct dataset *o)
+static int tables_append(hid_t set, const struct dataset *o)
 {
     const int rank = o->rank;
     const hsize_t *shape = o->shape;
@@ -98,16 +98,16 @@ int table_write_rows(struct table_write *s, struct dataset o, struct why *why)
     if (!s->growing)
         return h5_write(s->file, o.path, h5_array(column_native(o.type), o.rank, o.shape, o.data),
                         o.units, why);
-    hid_t set = find(s, o.path);
+    hid_t set = tables_find(s, o.path);
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
             return why_set(why, EX_SOFTWARE, "%s: too many datasets", o.path);
-        set = create(s, &o, why);
+        set = tables_create(s, &o, why);
         if (set < 0) return why->status;
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", o.path);
         s->open[s->count++].set = set;
     }
-    return append(set, &o) ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
+    return tables_append(set, &o) ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
                            : 0;
 }
 
@@ -133,7 +133,7 @@ int table_write_span(struct table_write *s, const char *group, int64_t start, in
 static int64_t last_frame(const struct table_write *s, const char *path)
 {
     hsize_t size[4] = { 1 };
-    hid_t set = find(s, path), space = set < 0 ? -1 : H5Dget_space(set);
+    hid_t set = tables_find(s, path), space = set < 0 ? -1 : H5Dget_space(set);
     if (space >= 0) H5Sget_simple_extent_dims(space, size, NULL), H5Sclose(space);
     return (int64_t)size[0] - 1;
 }

@@ -9,7 +9,7 @@
 #include <string.h>
 
 /* A group, or a dataset and its data; with attributes */
-struct item {
+struct unknown_item {
     struct object object;
     hsize_t shape[OBJECT_RANK];
     char *path;
@@ -22,7 +22,7 @@ struct item {
 struct unknown {
     int owners;
     int64_t count, room;
-    struct item *item;
+    struct unknown_item *item;
 };
 
 /* Groups whose members are looked through, and the names in them that nsd uses */
@@ -69,7 +69,7 @@ static bool is_unknown(const char *path)
     return false;
 }
 
-static int read_item(struct item *i, struct source *s, struct why *why)
+static int read_item(struct unknown_item *i, struct source *s, struct why *why)
 {
     const struct object *o = &i->object;
     uint64_t size;
@@ -85,17 +85,17 @@ static int read_item(struct item *i, struct source *s, struct why *why)
     return why->status;
 }
 
-static int add(struct unknown *u, const struct object *o, const char *path, const uint64_t *shape,
+static int unknown_add(struct unknown *u, const struct object *o, const char *path, const uint64_t *shape,
                struct source *s, struct why *why)
 {
     if (u->count == u->room) {
         int64_t room = u->room ? 2 * u->room : 16;
-        struct item *more = realloc(u->item, (size_t)room * sizeof *more);
+        struct unknown_item *more = realloc(u->item, (size_t)room * sizeof *more);
         if (!more) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
         u->item = more, u->room = room;
     }
-    struct item *i = &u->item[u->count++];
-    *i = (struct item){ .object = *o, .path = strdup(path) };
+    struct unknown_item *i = &u->item[u->count++];
+    *i = (struct unknown_item){ .object = *o, .path = strdup(path) };
     if (!i->path) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
     for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) i->shape[k] = shape[k];
     return read_item(i, s, why);
@@ -108,11 +108,11 @@ static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct w
     const uint64_t *shape;
     const struct object *o = source_object(s, k, &path, &shape);
     size_t n = strlen(path);
-    if (add(u, o, path, shape, s, why)) return k;
+    if (unknown_add(u, o, path, shape, s, why)) return k;
     for (k++; (o = source_object(s, k, &inner, &shape)); k++) {
         if (o->attribute) continue;
         if (strncmp(inner, path, n) != 0 || inner[n] != '/') break;
-        if (add(u, o, inner, shape, s, why)) break;
+        if (unknown_add(u, o, inner, shape, s, why)) break;
     }
     return k;
 }
@@ -161,14 +161,14 @@ void unknown_free(struct unknown *u)
 {
     if (!u || --u->owners) return;
     for (int64_t k = 0; k < u->count; k++) {
-        struct item *i = &u->item[k];
+        struct unknown_item *i = &u->item[k];
         free(i->path), free(i->text), free(i->data), free(i->attributes);
     }
     free(u->item);
     free(u);
 }
 
-static int write_attributes(const struct item *i, hid_t file, struct why *why)
+static int write_attributes(const struct unknown_item *i, hid_t file, struct why *why)
 {
     uint64_t at = 0;
     struct listed l;
@@ -193,7 +193,7 @@ static int write_attributes(const struct item *i, hid_t file, struct why *why)
     return why->status;
 }
 
-static int write_item(const struct item *i, hid_t file, struct why *why)
+static int write_item(const struct unknown_item *i, hid_t file, struct why *why)
 {
     const struct object *o = &i->object;
     if (o->kind == OBJECT_GROUP) {
@@ -216,7 +216,7 @@ static bool is_problem(const char *path)
 int unknown_write(const struct unknown *u, int64_t file, bool stale, struct why *why)
 {
     for (int64_t k = 0; u && k < u->count && !why->status; k++) {
-        const struct item *i = &u->item[k];
+        const struct unknown_item *i = &u->item[k];
         if ((stale && is_problem(i->path)) || h5_has(file, i->path)) continue;
         struct why trouble = { 0 };
         if (write_item(i, file, &trouble)) // HDF5 writes not all that it reads

@@ -42,13 +42,13 @@ struct step {
 };
 
 /* A PolyData that grows */
-struct block {
+struct vtkhdf_block {
     const char *name;
     int topology;
     int64_t steps, room;
     struct step *step;
     int64_t parts, parts_room, points, cells, corners;
-    struct extent {
+    struct vtkhdf_extent {
         int64_t points, cells, corners;
     } * part;      /* [parts] */
     uint64_t hash; /* of the last part's cells and columns */
@@ -57,7 +57,7 @@ struct block {
 
 struct vtkhdf {
     const struct vtkhdf_parts *parts;
-    struct block block[PARTS_MOST]; /* 0: grains, where bodies come and go */
+    struct vtkhdf_block block[PARTS_MOST]; /* 0: grains, where bodies come and go */
     int64_t frames, bodies;
     bool varies, shapes;
 };
@@ -83,7 +83,7 @@ void vtkhdf_free(struct vtkhdf *v)
     free(v);
 }
 
-static int failed(const char *path, struct why *why)
+static int vtkhdf_failed(const char *path, struct why *why)
 {
     return why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", path);
 }
@@ -98,7 +98,7 @@ int vtkhdf_group(hid_t file, const char *path, struct why *why)
     H5Pset_link_creation_order(plist, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
     hid_t group = H5Gcreate2(file, path, H5P_DEFAULT, plist, H5P_DEFAULT);
     H5Pclose(plist);
-    return group >= 0 && H5Gclose(group) >= 0 ? 0 : failed(path, why);
+    return group >= 0 && H5Gclose(group) >= 0 ? 0 : vtkhdf_failed(path, why);
 }
 
 /* VTK takes texts in ASCII, of just their length. */
@@ -111,7 +111,7 @@ static int ascii(hid_t file, const char *path, const char *name, const char *tex
     bool good = at >= 0 && H5Awrite(at, type, text) >= 0;
     if (at >= 0) good &= H5Aclose(at) >= 0;
     H5Tclose(type), H5Sclose(space);
-    return good ? 0 : failed(path, why);
+    return good ? 0 : vtkhdf_failed(path, why);
 }
 
 int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct why *why)
@@ -139,7 +139,7 @@ static hid_t make_growing(hid_t file, const char *path, hid_t disk, int width, s
     H5Pset_chunk(plist, width > 1 ? 2 : 1, chunk);
     hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, H5P_DEFAULT);
     H5Pclose(plist), H5Sclose(space);
-    if (set < 0) failed(path, why);
+    if (set < 0) vtkhdf_failed(path, why);
     return set;
 }
 
@@ -152,14 +152,14 @@ struct added {
 };
 
 /* Rows at the end of a dataset of rows, which is made, of type `disk`, where there is none */
-static int append(hid_t file, const char *path, hid_t disk, struct added o, struct why *why)
+static int vtkhdf_append(hid_t file, const char *path, hid_t disk, struct added o, struct why *why)
 {
     const int width = o.width;
     const int64_t n = o.n;
     hsize_t size[2] = { 0, (hsize_t)width }, rows[2] = { (hsize_t)n, (hsize_t)width };
     hid_t set = h5_has(file, path) ? H5Dopen2(file, path, H5P_DEFAULT)
                                    : make_growing(file, path, disk, width, why);
-    if (set < 0) return why->status ? why->status : failed(path, why);
+    if (set < 0) return why->status ? why->status : vtkhdf_failed(path, why);
     hid_t space = H5Dget_space(set);
     H5Sget_simple_extent_dims(space, size, NULL), H5Sclose(space);
     const hsize_t start[2] = { size[0], 0 };
@@ -172,15 +172,15 @@ static int append(hid_t file, const char *path, hid_t disk, struct added o, stru
         H5Sclose(to), H5Sclose(from);
     }
     if (H5Dclose(set) < 0) good = false;
-    return good ? 0 : failed(path, why);
+    return good ? 0 : vtkhdf_failed(path, why);
 }
 
-static int append_to(const struct block *b, hid_t file, const char *name, struct added o,
+static int append_to(const struct vtkhdf_block *b, hid_t file, const char *name, struct added o,
                      struct why *why)
 {
     char path[120];
     snprintf(path, sizeof path, "%s/%s", b->name, name);
-    return append(file, path, o.type, o, why);
+    return vtkhdf_append(file, path, o.type, o, why);
 }
 
 /* ---- blocks that grow ---- */
@@ -194,7 +194,7 @@ static uint64_t hash_more(uint64_t h, const void *data, size_t size)
     return h;
 }
 
-static int add_step(struct block *b, struct step s, struct why *why)
+static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct why *why)
 {
     if (b->steps == b->room) {
         int64_t room = b->room ? 2 * b->room : 64;
@@ -206,21 +206,21 @@ static int add_step(struct block *b, struct step s, struct why *why)
     return 0;
 }
 
-static int add_part(struct block *b, int64_t points, int64_t cells, int64_t corners,
+static int vtkhdf_add_part(struct vtkhdf_block *b, int64_t points, int64_t cells, int64_t corners,
                     struct why *why)
 {
     if (b->parts == b->parts_room) {
         int64_t room = b->parts_room ? 2 * b->parts_room : 64;
-        struct extent *more = realloc(b->part, (size_t)room * sizeof *more);
+        struct vtkhdf_extent *more = realloc(b->part, (size_t)room * sizeof *more);
         if (!more) return why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
         b->part = more, b->parts_room = room;
     }
-    if (b->part) b->part[b->parts++] = (struct extent){ points, cells, corners };
+    if (b->part) b->part[b->parts++] = (struct vtkhdf_extent){ points, cells, corners };
     return 0;
 }
 
 /* Offsets of the cells: from 0, one more than there are cells; and one 0 of the other kinds of cells */
-static int append_offsets(const struct block *b, hid_t file, int64_t cells, const int64_t *end,
+static int append_offsets(const struct vtkhdf_block *b, hid_t file, int64_t cells, const int64_t *end,
                           struct why *why)
 {
     const int64_t zero = 0;
@@ -246,21 +246,21 @@ static bool single_will_do(const struct packing *p)
     return p->n && 6e-8 * (far + least) < 1e-3 * least;
 }
 
-static int append_points(struct block *b, hid_t file, int64_t n, const vec3 *x, struct why *why)
+static int append_points(struct vtkhdf_block *b, hid_t file, int64_t n, const vec3 *x, struct why *why)
 {
     char path[120];
     snprintf(path, sizeof path, "%s/Points", b->name);
     hid_t disk = b->single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE;
-    return append(file, path, disk, (struct added){ H5T_NATIVE_DOUBLE, 3, n, x }, why);
+    return vtkhdf_append(file, path, disk, (struct added){ H5T_NATIVE_DOUBLE, 3, n, x }, why);
 }
 
 /* Moments without cells have the last part, which is empty: VTK 9.5 counts parts by the cells before. */
-static int add_nothing(struct block *b, struct why *why)
+static int add_nothing(struct vtkhdf_block *b, struct why *why)
 {
-    return add_step(b, (struct step){ .part = -1 }, why);
+    return vtkhdf_add_step(b, (struct step){ .part = -1 }, why);
 }
 
-static int end_nothing(struct block *b, hid_t file, struct why *why)
+static int end_nothing(struct vtkhdf_block *b, hid_t file, struct why *why)
 {
     bool any = false;
     for (int64_t f = 0; f < b->steps; f++) {
@@ -273,11 +273,11 @@ static int end_nothing(struct block *b, hid_t file, struct why *why)
     snprintf(name, sizeof name, "%s/Connectivity", topology_name[b->topology]);
     return append_offsets(b, file, 0, NULL, why) || append_points(b, file, 0, NULL, why) ||
            append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, 0, NULL }, why) ||
-           add_part(b, 0, 0, 0, why);
+           vtkhdf_add_part(b, 0, 0, 0, why);
 }
 
 /* The moment's cells; where they are those of the moment before, only their points */
-static int add_cells(struct block *b, hid_t file, const struct vtkhdf_cells *c, struct why *why)
+static int add_cells(struct vtkhdf_block *b, hid_t file, const struct vtkhdf_cells *c, struct why *why)
 {
     uint64_t hash = hash_more(0xcbf29ce484222325, c->corner, (size_t)c->corners * 8);
     hash = hash_more(hash, c->end, (size_t)c->cells * 8);
@@ -285,7 +285,7 @@ static int add_cells(struct block *b, hid_t file, const struct vtkhdf_cells *c, 
         hash = hash_more(hash, c->column[k].value, (size_t)c->cells * 4);
     if (!c->cells) return add_nothing(b, why);
     struct step s = { b->parts, b->points, b->cells, b->corners };
-    const struct extent *last = b->parts ? &b->part[b->parts - 1] : NULL;
+    const struct vtkhdf_extent *last = b->parts ? &b->part[b->parts - 1] : NULL;
     bool same = last && last->points == c->points && last->cells == c->cells &&
                 last->corners == c->corners && hash == b->hash;
     if (same)
@@ -294,7 +294,7 @@ static int add_cells(struct block *b, hid_t file, const struct vtkhdf_cells *c, 
         char name[40];
         b->topology = c->lines ? LINES : POLYGONS, b->hash = hash;
         snprintf(name, sizeof name, "%s/Connectivity", topology_name[b->topology]);
-        if (add_part(b, c->points, c->cells, c->corners, why) ||
+        if (vtkhdf_add_part(b, c->points, c->cells, c->corners, why) ||
             append_offsets(b, file, c->cells, c->end, why) ||
             append_to(b, file, name, (struct added){ H5T_NATIVE_INT64, 1, c->corners, c->corner },
                       why))
@@ -309,11 +309,11 @@ static int add_cells(struct block *b, hid_t file, const struct vtkhdf_cells *c, 
     }
     if (append_points(b, file, c->points, c->x, why)) return why->status;
     b->points += c->points;
-    return add_step(b, s, why);
+    return vtkhdf_add_step(b, s, why);
 }
 
 /* The grains of a frame where they come and go: a part each */
-static int add_grains(struct block *b, hid_t file, const struct packing *p, struct why *why)
+static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *p, struct why *why)
 {
     b->topology = VERTICES;
     if (!p->n) return add_nothing(b, why);
@@ -321,7 +321,7 @@ static int add_grains(struct block *b, hid_t file, const struct packing *p, stru
     if (!number) return why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
     for (int64_t i = 0; i <= p->n; i++) number[i] = i;
     struct step s = { b->parts, b->points, b->cells, b->corners };
-    if (!add_step(b, s, why) && !add_part(b, p->n, p->n, p->n, why) &&
+    if (!vtkhdf_add_step(b, s, why) && !vtkhdf_add_part(b, p->n, p->n, p->n, why) &&
         !append_offsets(b, file, p->n, number + 1, why) &&
         !append_to(b, file, "Vertices/Connectivity",
                    (struct added){ H5T_NATIVE_INT64, 1, p->n, number }, why))
@@ -375,7 +375,7 @@ int vtkhdf_frame(struct vtkhdf *v, hid_t file, const struct packing *p, struct w
 
 /* ---- what is told at the end ---- */
 
-static struct h5_data numbers(int64_t n, const int64_t *value)
+static struct h5_data vtkhdf_numbers(int64_t n, const int64_t *value)
 {
     return h5_vector(H5T_NATIVE_INT64, (hsize_t)n, value);
 }
@@ -388,7 +388,7 @@ static struct h5_data table(int64_t n, int width, const int64_t *value)
 }
 
 /* A dataset of the block */
-static int put(hid_t file, const char *block, const char *name, struct h5_data data,
+static int vtkhdf_put(hid_t file, const char *block, const char *name, struct h5_data data,
                struct why *why)
 {
     char path[160];
@@ -403,7 +403,7 @@ static int link_to(hid_t file, const char *from, const char *block, const char *
     snprintf(path, sizeof path, "%s/%s", block, name);
     if (make_parent(file, path, why)) return why->status;
     bool good = H5Lcreate_hard(file, from, file, path, H5P_DEFAULT, H5P_DEFAULT) >= 0;
-    return good ? 0 : failed(path, why);
+    return good ? 0 : vtkhdf_failed(path, why);
 }
 
 /* [frames][bodies][width] of /particles/all as [frames * bodies][width] of the grains, without its numbers */
@@ -425,7 +425,7 @@ static int make_virtual(const struct vtkhdf *v, hid_t file, const char *from, co
     hid_t set =
         good ? H5Dcreate2(file, path, H5T_IEEE_F64LE, to, H5P_DEFAULT, plist, H5P_DEFAULT) : -1;
     H5Pclose(plist), H5Sclose(to), H5Sclose(of);
-    return set >= 0 && H5Dclose(set) >= 0 ? 0 : failed(path, why);
+    return set >= 0 && H5Dclose(set) >= 0 ? 0 : vtkhdf_failed(path, why);
 }
 
 static int put_values(hid_t file, const char *block, int64_t frames, struct why *why)
@@ -447,7 +447,7 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
             *number = calloc((size_t)room + 1, sizeof *number);
     if (!zero || !number) why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
     for (int64_t i = 0; !why->status && i <= room; i++) number[i] = i;
-    int bad = why->status || put(file, block, "NumberOfPoints", numbers(1, &N), why);
+    int bad = why->status || vtkhdf_put(file, block, "NumberOfPoints", vtkhdf_numbers(1, &N), why);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         const int64_t cells = k == VERTICES ? N : 0;
@@ -457,14 +457,14 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
         const int64_t *value[4] = { &cells, &cells, number, number };
         for (int j = 0; j < 4 && !bad; j++) {
             snprintf(name, sizeof name, "%s/%s", topology_name[k], part[j]);
-            bad = put(file, block, name, numbers(rows[j], value[j]), why);
+            bad = vtkhdf_put(file, block, name, vtkhdf_numbers(rows[j], value[j]), why);
         }
     }
     bad = bad || make_virtual(v, file, "position", "Points", 3, why) ||
           put_values(file, block, F, why) ||
-          put(file, block, "Steps/PartOffsets", numbers(F, zero), why) ||
-          put(file, block, "Steps/CellOffsets", table(F, TOPOLOGIES, zero), why) ||
-          put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), why);
+          vtkhdf_put(file, block, "Steps/PartOffsets", vtkhdf_numbers(F, zero), why) ||
+          vtkhdf_put(file, block, "Steps/CellOffsets", table(F, TOPOLOGIES, zero), why) ||
+          vtkhdf_put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), why);
     for (int k = 0; k < VTK_COLUMNS && !bad; k++) {
         char name[60], from[60], offsets[80];
         if (!v->shapes && columns[k].at == offsetof(struct packing, shape)) continue;
@@ -473,19 +473,19 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct why *why)
         snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", columns[k].name);
         bad = columns[k].moves ? make_virtual(v, file, columns[k].from, name, columns[k].width, why)
                                : link_to(file, from, block, name, why) ||
-                                     put(file, block, offsets, numbers(F, zero), why);
+                                     vtkhdf_put(file, block, offsets, vtkhdf_numbers(F, zero), why);
     }
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = 1;
-    bad = bad || put(file, block, "Steps/NumberOfParts", numbers(F, zero), why);
+    bad = bad || vtkhdf_put(file, block, "Steps/NumberOfParts", vtkhdf_numbers(F, zero), why);
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = f * N;
-    if (!bad) put(file, block, "Steps/PointOffsets", numbers(F, zero), why);
+    if (!bad) vtkhdf_put(file, block, "Steps/PointOffsets", vtkhdf_numbers(F, zero), why);
     free(zero), free(number);
     return why->status;
 }
 
 /* A block of which the numbers of parts and moments are written, by way of value[] */
 struct ending {
-    const struct block *b;
+    const struct vtkhdf_block *b;
     hid_t file;
     int64_t *value;
 };
@@ -494,40 +494,40 @@ struct ending {
 static int put_parts(const struct ending *o, const char *name, size_t member, bool there,
                      struct why *why)
 {
-    const struct block *b = o->b;
+    const struct vtkhdf_block *b = o->b;
     for (int64_t i = 0; i < b->parts; i++)
         o->value[i] = there ? *(const int64_t *)((const char *)&b->part[i] + member) : 0;
-    return put(o->file, b->name, name, numbers(b->parts, o->value), why);
+    return vtkhdf_put(o->file, b->name, name, vtkhdf_numbers(b->parts, o->value), why);
 }
 
 /* One number of all moments, in column `at` of `width`, of which the others are 0 */
 static int put_step_column(const struct ending *o, const char *name, size_t member, int width,
                            int at, struct why *why)
 {
-    const struct block *b = o->b;
+    const struct vtkhdf_block *b = o->b;
     memset(o->value, 0, (size_t)(b->steps * width) * sizeof *o->value);
     for (int64_t f = 0; f < b->steps; f++)
         o->value[f * width + at] = *(const int64_t *)((const char *)&b->step[f] + member);
-    return put(o->file, b->name, name, table(b->steps, width, o->value), why);
+    return vtkhdf_put(o->file, b->name, name, table(b->steps, width, o->value), why);
 }
 
-static int end_block(struct block *b, hid_t file, struct why *why)
+static int end_block(struct vtkhdf_block *b, hid_t file, struct why *why)
 {
     if (end_nothing(b, file, why)) return why->status;
     int64_t room = TOPOLOGIES * b->steps + b->parts,
             *value = malloc(((size_t)room + 1) * sizeof *value);
     if (!value) return why_set(why, EX_SOFTWARE, "no memory for /VTKHDF");
     const struct ending o = { b, file, value };
-    int bad = put_parts(&o, "NumberOfPoints", offsetof(struct extent, points), true, why);
+    int bad = put_parts(&o, "NumberOfPoints", offsetof(struct vtkhdf_extent, points), true, why);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         bool there = k == b->topology;
         snprintf(name, sizeof name, "%s/NumberOfCells", topology_name[k]);
-        bad = put_parts(&o, name, offsetof(struct extent, cells), there, why);
+        bad = put_parts(&o, name, offsetof(struct vtkhdf_extent, cells), there, why);
         snprintf(name, sizeof name, "%s/NumberOfConnectivityIds", topology_name[k]);
-        bad = bad || put_parts(&o, name, offsetof(struct extent, corners), there, why);
+        bad = bad || put_parts(&o, name, offsetof(struct vtkhdf_extent, corners), there, why);
         snprintf(name, sizeof name, "%s/Connectivity", topology_name[k]);
-        if (!bad && !there) bad = put(file, b->name, name, numbers(0, value), why);
+        if (!bad && !there) bad = vtkhdf_put(file, b->name, name, vtkhdf_numbers(0, value), why);
     }
     bad = bad || put_values(file, b->name, b->steps, why) ||
           put_step_column(&o, "Steps/PartOffsets", offsetof(struct step, part), 1, 0, why) ||
@@ -537,7 +537,7 @@ static int end_block(struct block *b, hid_t file, struct why *why)
           put_step_column(&o, "Steps/ConnectivityIdOffsets", offsetof(struct step, corner),
                           TOPOLOGIES, b->topology, why);
     for (int64_t f = 0; !bad && f < b->steps; f++) value[f] = 1;
-    if (!bad) put(file, b->name, "Steps/NumberOfParts", numbers(b->steps, value), why);
+    if (!bad) vtkhdf_put(file, b->name, "Steps/NumberOfParts", vtkhdf_numbers(b->steps, value), why);
     free(value);
     return why->status;
 }
@@ -555,7 +555,7 @@ static int collect(const struct vtkhdf *v, hid_t file, struct why *why)
             h5_attr(file, block, "Index", h5_scalar(H5T_NATIVE_INT32, &index), why))
             return why->status;
         if (H5Lcreate_soft(block, file, path, H5P_DEFAULT, H5P_DEFAULT) < 0)
-            return failed(path, why);
+            return vtkhdf_failed(path, why);
     }
     return vtkhdf_type(file, "/VTKHDF", "PartitionedDataSetCollection", MINOR, why);
 }

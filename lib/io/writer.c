@@ -66,12 +66,12 @@ struct writer {
 
 static struct writer *writers; /* in such a program; used with the lock of libhdf5's user */
 
-static void enlist(struct writer *s)
+static void writer_enlist(struct writer *s)
 {
     if (guest_is()) s->next = writers, writers = s;
 }
 
-static void unlist(const struct writer *s)
+static void writer_unlist(const struct writer *s)
 {
     for (struct writer **k = &writers; *k; k = &(*k)->next)
         if (*k == s) {
@@ -115,7 +115,7 @@ static int output_failed(const struct writer *s, struct why *why, const char *tr
 }
 
 /* What kind of file it is that has been opened */
-static int look_at(struct writer *s, enum writer_kind kind, struct why *why)
+static int writer_look_at(struct writer *s, enum writer_kind kind, struct why *why)
 {
     struct stat st;
     bool regular = !fstat(s->fd, &st) && S_ISREG(st.st_mode);
@@ -140,10 +140,10 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     h5_start();
     s->doc.file = s->disk = s->library = -1;
     for (int k = 0; k < 2; k++) s->file[k].fd = s->file[k].old = -1;
-    enlist(s);
+    writer_enlist(s);
     s->name = path ? path : "standard output";
     s->fd = STDOUT_FILENO;
-    if (!path) return look_at(s, kind, why);
+    if (!path) return writer_look_at(s, kind, why);
     if (kind == WRITER_IN_PLACE && access(path, F_OK))
         return output_failed(s, why, strerror(errno));
     s->output = &s->file[0];
@@ -152,7 +152,7 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind, st
     s->waits = kind == WRITER_IN_PLACE || (kind == WRITER_COPY && s->output->old >= 0);
     if (kind == WRITER_IN_PLACE && s->output->old < 0)
         return output_failed(s, why, "not a regular file");
-    return look_at(s, kind, why);
+    return writer_look_at(s, kind, why);
 }
 
 int writer_take_place(struct writer *s, struct why *why)
@@ -168,7 +168,7 @@ static int64_t bodies_of(const struct frame *f)
 }
 
 /* The numbers of bodies that others have */
-static int fill(struct table_write *t, const char *path, struct why *why)
+static int writer_fill(struct table_write *t, const char *path, struct why *why)
 {
     int places = t->places;
     t->places = 0;
@@ -187,7 +187,7 @@ static bool find_path(const struct writer *s, char path[PATH_MAX])
     return n > 0;
 }
 
-static hid_t create(const char *path, hid_t access)
+static hid_t writer_create(const char *path, hid_t access)
 {
     hid_t plist = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_userblock(plist, DOCUMENT_USERBLOCK);
@@ -198,7 +198,7 @@ static hid_t create(const char *path, hid_t access)
 }
 
 /* There is something whole in it. */
-static int is_there(struct writer *s, struct why *why)
+static int writer_is_there(struct writer *s, struct why *why)
 {
     if (s->waits || (s->output && output_place(s->output, why))) return why->status;
     if (s->begun) output_keep(s->begun);
@@ -245,7 +245,7 @@ static int document_end(struct writer *s, struct why *why)
     return 0;
 }
 
-static int write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+static int writer_write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
 {
     return document_begin(s, why) || document_bytes(s, bytes, size, why) || document_end(s, why)
                ? why->status
@@ -286,7 +286,7 @@ int writer_pass(struct writer *s, struct reader *from, struct why *why)
         if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
         return why->status;
     }
-    return document_end(s, why) || is_there(s, why) ? why->status : 0;
+    return document_end(s, why) || writer_is_there(s, why) ? why->status : 0;
 }
 
 /* Writes a document of the core driver straight from libhdf5's memory, with its header. */
@@ -301,7 +301,7 @@ static int write_image(struct writer *s, hid_t file, struct why *why)
     unsigned char *bytes = *memory;
     uint32_t crc = document_crc(0, bytes + DOCUMENT_USERBLOCK, size - DOCUMENT_USERBLOCK);
     document_header(bytes, size, crc);
-    return write_all(s, bytes, size, why);
+    return writer_write_all(s, bytes, size, why);
 }
 
 static int stream_frame(struct writer *s, const struct frame *f, struct why *why)
@@ -309,7 +309,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     size_t step = (size_t)bodies_of(f) * 32;
     H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
-    struct table_write doc = { .file = create("document", access), .distributed = f->distributed };
+    struct table_write doc = { .file = writer_create("document", access), .distributed = f->distributed };
     H5Pclose(access);
     if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
     int e = frame_write_static(&doc, f, why) || frame_write_moment(&doc, f, why) ||
@@ -317,7 +317,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct why *why
             (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
             (f->foreign && f->u &&
              fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
-            fill(&doc, NULL, why) || for_vtk(s, doc.file, f, true, why) ||
+            writer_fill(&doc, NULL, why) || for_vtk(s, doc.file, f, true, why) ||
             write_image(s, doc.file, why);
     H5Fclose(doc.file);
     return e ? why->status : 0;
@@ -453,7 +453,7 @@ static struct common_part shared_of(const struct frame *f)
 }
 
 /* What is stored only with the first frame has to be true of all. */
-static int check_same(const struct writer *s, const struct frame *f, struct why *why)
+static int writer_check_same(const struct writer *s, const struct frame *f, struct why *why)
 {
     const struct common_part p = s->first, q = shared_of(f);
     if (p.pours != q.pours || p.removals != q.removals)
@@ -489,7 +489,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     H5Pset_file_locking(access, false, true);  // output_lock has seen to it
     H5Pset_meta_block_size(access, 0), H5Pset_small_data_block_size(access, 0);
     H5Pset_alignment(access, ALIGN_FROM, DOCUMENT_USERBLOCK); // the most that HDF5 allows
-    s->doc = (struct table_write){ .file = create(path, access), .growing = true };
+    s->doc = (struct table_write){ .file = writer_create(path, access), .growing = true };
     H5Pclose(access);
     if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
     s->library = descriptor_of(s->doc.file);
@@ -514,7 +514,7 @@ static int fill_frame(struct writer *s, const struct frame *f, struct why *why)
 {
     char path[PATH_MAX];
     if (!f->distributed) return 0;
-    return fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
+    return writer_fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
                                                                                       : 0;
 }
 
@@ -525,7 +525,7 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct why 
     bool first = s->doc.file < 0;
     if (!first && !still_there(s)) return output_failed(s, why, CUT_OFF);
     if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
-    if (check_same(s, f, why)) return why->status;
+    if (writer_check_same(s, f, why)) return why->status;
     if (frame_write_moment(&s->doc, f, why) || flush(s, why) || fill_frame(s, f, why) ||
         frame_write_step(&s->doc, f, why) || flush(s, why) ||
         for_vtk(s, s->doc.file, f, false, why))
@@ -575,7 +575,7 @@ int writer_frame(struct writer *s, const struct frame *f, struct why *why)
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
     int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
-    if (!e) return is_there(s, why);
+    if (!e) return writer_is_there(s, why);
     if (s->trajectory) trajectory_fails(s);
     return why->status;
 }
@@ -598,7 +598,7 @@ static int begin_again(struct writer *s, struct why *why)
     s->begun = s->output, s->output = &s->file[1], s->disk = -1;
     if (output_open(s->output, s->name, why)) return why->status;
     s->fd = s->output->fd;
-    return look_at(s, WRITER_TRAJECTORY, why);
+    return writer_look_at(s, WRITER_TRAJECTORY, why);
 }
 
 int writer_begin(struct writer *s, const struct frame *f, struct why *why)
@@ -617,7 +617,7 @@ int writer_close(struct writer *s, struct why *why)
     if (s->disk >= 0) close(s->disk);
     roster_free(&s->roster), vtkhdf_free(s->vtk);
     if (s->begun) output_drop(s->begun);
-    unlist(s);
+    writer_unlist(s);
     if (!s->output && close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
     if (s->output && e) output_drop(s->output);
     if (s->output && !e) e = output_close(s->output, why);
@@ -628,7 +628,7 @@ int writer_close(struct writer *s, struct why *why)
 void writer_drop(struct writer *s)
 {
     if (!s) return;
-    unlist(s);
+    writer_unlist(s);
     if (s->doc.file >= 0) table_write_close(&s->doc), H5Fclose(s->doc.file);
     if (s->disk >= 0) close(s->disk);
     roster_free(&s->roster);

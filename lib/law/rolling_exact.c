@@ -14,7 +14,7 @@ static bool slides(const double f[2], double w, double R, double y[2])
 }
 
 /* One part within its disc while the other cannot move: the nearest point to -b/w */
-static void alone(double w, const double b[2], double R, double y[2])
+static void rolling_exact_alone(double w, const double b[2], double R, double y[2])
 {
     double f[2] = { -b[0], -b[1] };
     if (slides(f, w, R, y)) return;
@@ -75,8 +75,8 @@ static void exact_discs(const struct rolling *q, double Rt, double Rm, double t[
     const double *bt = q->b + 1, *bm = q->b + 4, k = q->k, det = q->wt * q->wr - k * k;
     t[0] = t[1] = m[0] = m[1] = 0;
     if (Rt <= 0 || Rm <= 0 || k == 0) {
-        if (Rt > 0) alone(q->wt, bt, Rt, t);
-        if (Rm > 0) alone(q->wr, bm, Rm, m);
+        if (Rt > 0) rolling_exact_alone(q->wt, bt, Rt, t);
+        if (Rm > 0) rolling_exact_alone(q->wr, bm, Rm, m);
         return;
     }
     for (int i = 0; i < 2; i++) {

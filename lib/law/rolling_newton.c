@@ -11,7 +11,7 @@ struct point {
     bool at_limit[ROLLING_PARTS];
 };
 
-static void residual(const struct rolling *q, bool hat, struct point *y)
+static void rolling_newton_residual(const struct rolling *q, bool hat, struct point *y)
 {
     rolling_velocity(q, y->x, y->u);
     predict(q, q->rho, y->x, y->u, hat, y->tau);
@@ -72,7 +72,7 @@ static void slope_of_projection(const struct rolling *q, bool hat, const struct 
 }
 
 /* dx of (I - P T) dx = -Z; false where the matrix is singular */
-static bool direction(const struct rolling *q, bool hat, const struct point *y, double dx[ROLLING])
+static bool rolling_newton_direction(const struct rolling *q, bool hat, const struct point *y, double dx[ROLLING])
 {
     double T[ROLLING][ROLLING], P[ROLLING][ROLLING], M[ROLLING * ROLLING];
     slope_of_prediction(q, hat, y, T), slope_of_projection(q, hat, y, P);
@@ -102,14 +102,14 @@ bool rolling_newton(struct rolling *q, bool hat, const struct local_opt *opt)
            eps2 = opt->newton_eps * opt->newton_eps;
     struct point x = { .z2 = 0 }, y;
     memcpy(x.x, q->x, sizeof x.x);
-    residual(q, hat, &x);
+    rolling_newton_residual(q, hat, &x);
     for (int k = 0; k == 0 || k < opt->newton_max; k++) {
         double dx[ROLLING], s = 1;
-        if (!direction(q, hat, &x, dx)) return false;
+        if (!rolling_newton_direction(q, hat, &x, dx)) return false;
         q->steps++;
         for (;; s *= 0.5) {
             for (int i = 0; i < ROLLING; i++) y.x[i] = x.x[i] + s * dx[i];
-            residual(q, hat, &y);
+            rolling_newton_residual(q, hat, &y);
             double end2 = eps2 * (dot(y.x, y.x, ROLLING) + b2), least = 1 - 1e-4 * s;
             if (opt->newton_abs > 0) end2 = opt->newton_abs * opt->newton_abs;
             if (y.z2 <= end2) {

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* As many finite numbers as there are, from `least` to `most`, by commas; how many, or 0 with the reason */
-static int numbers(const char *name, const char *text, double *x, int least, int most,
+static int measures_numbers(const char *name, const char *text, double *x, int least, int most,
                    struct why *why)
 {
     const char *s = text;
@@ -22,10 +22,10 @@ static int numbers(const char *name, const char *text, double *x, int least, int
     return 0;
 }
 
-static int set_box(struct asked *a, const char *name, const char *text, struct why *why)
+static int measures_set_box(struct asked *a, const char *name, const char *text, struct why *why)
 {
     double b[6] = { 0, 0, 0, 0, -INFINITY, INFINITY };
-    int n = numbers(name, text, b, 4, 6, why);
+    int n = measures_numbers(name, text, b, 4, 6, why);
     if (!n) return why->status;
     if (n == 5) return why_set(why, EX_USAGE, "--box: '%s' has five numbers", text);
     for (int k = 0; k < n / 2; k++)
@@ -49,7 +49,7 @@ static int set_layers(struct asked *a, const char *name, const char *text, struc
 static int set_point(struct asked *a, const char *name, const char *text, struct why *why)
 {
     double x[3] = { 0 };
-    if (!numbers(name, text, x, 2, 3, why)) return why->status;
+    if (!measures_numbers(name, text, x, 2, 3, why)) return why->status;
     a->point = v3(x[0], x[1], x[2]);
     return 0;
 }
@@ -57,7 +57,7 @@ static int set_point(struct asked *a, const char *name, const char *text, struct
 static int set_plane(struct asked *a, const char *name, const char *text, struct why *why)
 {
     double x[3] = { 0 };
-    if (!numbers(name, text, x, 2, 3, why)) return why->status;
+    if (!measures_numbers(name, text, x, 2, 3, why)) return why->status;
     vec3 n = v3(x[0], x[1], x[2]);
     double size = v3_norm(n);
     if (!(size > 0 && size < INFINITY))
@@ -67,7 +67,7 @@ static int set_plane(struct asked *a, const char *name, const char *text, struct
 }
 
 /* Above 0 */
-static int set_number(double *to, const char *name, const char *text, struct why *why)
+static int measures_set_number(double *to, const char *name, const char *text, struct why *why)
 {
     char *end;
     double x = number_read(text, &end);
@@ -79,13 +79,13 @@ static int set_number(double *to, const char *name, const char *text, struct why
 
 static int set_radius(struct asked *a, const char *name, const char *text, struct why *why)
 {
-    return set_number(&a->radius, name, text, why);
+    return measures_set_number(&a->radius, name, text, why);
 }
 
 static int set_distance(struct asked *a, const char *name, const char *text, struct why *why)
 {
     double x = 0;
-    if (set_number(&x, name, text, why)) return why->status;
+    if (measures_set_number(&x, name, text, why)) return why->status;
     if (!isfinite(x)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
     a->distance = x;
     return 0;
@@ -94,7 +94,7 @@ static int set_distance(struct asked *a, const char *name, const char *text, str
 static int set_bins(struct asked *a, const char *name, const char *text, struct why *why)
 {
     double x = 0;
-    if (set_number(&x, name, text, why)) return why->status;
+    if (measures_set_number(&x, name, text, why)) return why->status;
     if (x != floor(x) || x > 1e6)
         return why_set(why, EX_USAGE, "--%s: %s must be a whole number, 1 to 1e6", name, text);
     a->bins = (int64_t)x;
@@ -114,7 +114,7 @@ static int set_only(struct asked *a, const char *name, const char *text, struct 
 static int set_finite(double *x, const char *name, const char *text, struct why *why)
 {
     double given = 0;
-    if (set_number(&given, name, text, why)) return why->status;
+    if (measures_set_number(&given, name, text, why)) return why->status;
     if (!isfinite(given)) return why_set(why, EX_USAGE, "--%s: %s must be finite", name, text);
     *x = given;
     return 0;
@@ -143,7 +143,7 @@ static const struct {
     const char *name;
     int (*set)(struct asked *, const char *name, const char *text, struct why *);
 } settings[] = {
-    { "box", set_box },           { "layers", set_layers }, { "point", set_point },
+    { "box", measures_set_box },           { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
     { "distance", set_distance }, { "only", set_only },     { "wear", set_wear },
     { "sample", set_sample },     { "tracer", set_tracer },

@@ -54,7 +54,7 @@ static double octant(double a, double b, double c)
 }
 
 /* The unit ball or disc with x[k] > a[k] for all k < dim. A bound of -1 or less is none. */
-static double beyond(int dim, const double a[3])
+static double ball_part_beyond(int dim, const double a[3])
 {
     double b[3] = { a[0], a[1], dim == 3 ? a[2] : 0 }, whole[3] = { a[0], a[1], a[2] };
     int times = 1;
@@ -65,7 +65,7 @@ static double beyond(int dim, const double a[3])
         } else if (a[k] < 0) {
             double mirrored[3] = { a[0], a[1], a[2] };
             mirrored[k] = -a[k], whole[k] = -1;
-            return beyond(dim, whole) - beyond(dim, mirrored);
+            return ball_part_beyond(dim, whole) - ball_part_beyond(dim, mirrored);
         }
     }
     return times * (dim == 3 ? octant(b[0], b[1], b[2]) : quadrant(1, b[0], b[1]));
@@ -90,7 +90,7 @@ double ball_in_box(int dim, vec3 x, double radius, const double lo[3], const dou
             a[k] = bound[side][k];
             if (side) sign = -sign;
         }
-        sum += sign * beyond(dim, a);
+        sum += sign * ball_part_beyond(dim, a);
     }
     return fmax(sum, 0) * unit;
 }

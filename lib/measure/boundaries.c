@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* What bodies do to a boundary, or to all fixed bodies */
-struct push {
+struct boundaries_push {
     int64_t contacts;
     vec3 force, torque; /* N, N m */
     double normal, tangential;
@@ -33,7 +33,7 @@ static double name_row(const struct packing *p, int32_t wall)
     return name ? names_find(&p->names, name, strlen(name)) : NAN;
 }
 
-static void add(struct push *to, const struct snapshot *s, int64_t i, double sign)
+static void boundaries_add(struct boundaries_push *to, const struct snapshot *s, int64_t i, double sign)
 {
     const double *r = s->s->found[i].r;
     to->contacts += branch_counts(s->s, i);
@@ -49,15 +49,15 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
     bool fixed = false;
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
     // boundary w at [w], fixed bodies behind them
-    struct push *push = calloc((size_t)p->walls + 1, sizeof *push);
+    struct boundaries_push *push = calloc((size_t)p->walls + 1, sizeof *push);
     if (!push) return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
-            add(&push[-1 - c->a], s, i, -1);
+            boundaries_add(&push[-1 - c->a], s, i, -1);
         else if (p->mass[c->a] == 0)
-            add(&push[p->walls], s, i, -1);
-        if (p->mass[c->b] == 0) add(&push[p->walls], s, i, 1);
+            boundaries_add(&push[p->walls], s, i, -1);
+        if (p->mass[c->b] == 0) boundaries_add(&push[p->walls], s, i, 1);
     }
     for (int32_t w = 0; w < p->walls + fixed; w++) {
         if (w < p->walls ? !snapshot_wall(s, w) : s->only.walls) continue;
@@ -105,11 +105,11 @@ static bool is_named(const struct names *n, int32_t name, int32_t wall, int32_t 
     return false;
 }
 
-static int names_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int boundaries_names_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct packing *p = s->p;
     struct wall_faces faces = { 0 };
-    struct push *push = calloc((size_t)p->names.n + 1, sizeof *push);
+    struct boundaries_push *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
     if (!push || !any) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
     if (why->status || face_of_init(&faces, p, true, why)) goto end;
@@ -119,7 +119,7 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
         const struct contact *c = &s->s->c[i];
         int32_t face = face_of_contact(&faces, p, c, 0);
         for (int32_t k = 0; k < p->names.n; k++)
-            if (any[k] && is_named(&p->names, k, -1 - c->a, face)) add(&push[k], s, i, -1);
+            if (any[k] && is_named(&p->names, k, -1 - c->a, face)) boundaries_add(&push[k], s, i, -1);
     }
     for (int32_t k = 0; k < p->names.n; k++) {
         if (!any[k] || (s->only.walls && !s->only.name[k])) continue;
@@ -142,5 +142,5 @@ const struct measure measure_names = {
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_FORCES,
-    .rows = names_rows,
+    .rows = boundaries_names_rows,
 };

@@ -11,7 +11,7 @@ static struct tensor of_columns(const vec3 e[3])
     };
 }
 
-static struct tensor times(const struct tensor *A, const struct tensor *B)
+static struct tensor snapshot_times(const struct tensor *A, const struct tensor *B)
 {
     struct tensor C;
     for (int i = 0; i < 3; i++)
@@ -39,17 +39,17 @@ static double determinant(const struct tensor *A)
 }
 
 /* 1 + s L, L the velocity gradient of the edges' rates */
-static struct tensor grown(const struct deformed *d, double s)
+static struct tensor snapshot_grown(const struct deformed *d, double s)
 {
     const struct tensor E = of_columns(d->span), V = of_columns(d->rate), I = inverse_of(&E);
-    struct tensor G = times(&V, &I);
+    struct tensor G = snapshot_times(&V, &I);
     tensor_scale(&G, s);
     for (int k = 0; k < 3; k++) G.x[k][k] += 1;
     return G;
 }
 
 /* Where everything is now */
-static void look(struct deformed *d, const struct packing *p)
+static void snapshot_look(struct deformed *d, const struct packing *p)
 {
     struct region all;
     region_whole(&all, p);
@@ -66,12 +66,12 @@ static void look(struct deformed *d, const struct packing *p)
 static bool recut(const struct deformed *then, const struct deformed *now, struct tensor *N)
 {
     double half = (now->t - then->t) / 2;
-    struct tensor ahead = grown(then, half), back = grown(now, -half), E = of_columns(then->span);
-    struct tensor to = of_columns(now->span), from = times(&ahead, &E);
+    struct tensor ahead = snapshot_grown(then, half), back = snapshot_grown(now, -half), E = of_columns(then->span);
+    struct tensor to = of_columns(now->span), from = snapshot_times(&ahead, &E);
     // the rates say how far the edges have gone by half a span of time from either end
-    to = times(&back, &to);
+    to = snapshot_times(&back, &to);
     from = inverse_of(&from);
-    *N = times(&from, &to);
+    *N = snapshot_times(&from, &to);
     for (int k = 0; k < 9; k++) N->x[k / 3][k % 3] = rint(N->x[k / 3][k % 3]);
     return fabs(determinant(N)) == 1;
 }
@@ -80,17 +80,17 @@ void deformed_follow(struct deformed *d, const struct packing *p)
 {
     struct deformed now = { .known = true };
     struct tensor N;
-    look(&now, p);
+    snapshot_look(&now, p);
     now.lost = d->lost;
     if (!d->known) {
         now.F = (struct tensor){ { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } } };
     } else if (!recut(d, &now, &N)) {
         now.lost = true, now.F = d->F;
     } else {
-        struct tensor E = of_columns(d->span), EN = times(&E, &N), to = of_columns(now.span);
+        struct tensor E = of_columns(d->span), EN = snapshot_times(&E, &N), to = of_columns(now.span);
         EN = inverse_of(&EN);
-        struct tensor step = times(&to, &EN);
-        now.F = times(&step, &d->F);
+        struct tensor step = snapshot_times(&to, &EN);
+        now.F = snapshot_times(&step, &d->F);
     }
     *d = now;
 }

@@ -38,7 +38,7 @@ static struct tensor *moments(const struct snapshot *s)
     return T;
 }
 
-static void fill(double *at, const struct packing *p, int64_t i, const int32_t *count,
+static void each_grain_fill(double *at, const struct packing *p, int64_t i, const int32_t *count,
                  struct tensor *T)
 {
     put(&at, p->id[i]), put(&at, p->radius[i]), put_vec(&at, p->x[i]);
@@ -62,7 +62,7 @@ static int each_grain_rows(struct table *t, const struct snapshot *s, struct why
         if (!snapshot_body(s, i) || !region_holds(&s->region, s->p->x[i])) continue;
         double *at = table_row(t, why);
         if (!at) break;
-        fill(at, s->p, i, count, T);
+        each_grain_fill(at, s->p, i, count, T);
     }
     free(count), free(T);
     return why->status;

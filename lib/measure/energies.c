@@ -22,7 +22,7 @@ static const struct quantity quantities[] = {
 };
 
 /* What contacts take in the step, and what boundaries give, by the motion at each contact [motion/contact_motion.h] */
-static int add_step(double **at, const struct snapshot *s, double *stored, struct why *why)
+static int energies_add_step(double **at, const struct snapshot *s, double *stored, struct why *why)
 {
     struct step_start m;
     double impact = 0, friction = 0, boundaries = 0, kept = 0;
@@ -74,7 +74,7 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct why *
         lacks = "contacts are not divided among groups of bodies";
     else if (contacts_summed(s->s))
         lacks = "the step was made in substeps, nsd-step --log has their dissipation";
-    else if (add_step(&step, s, &stored, why))
+    else if (energies_add_step(&step, s, &stored, why))
         return why->status;
     if (lacks) table_null(t, "no dissipation: %s", lacks);
     if (lacks && p->law) stored = NAN;

@@ -34,7 +34,7 @@ const struct quantity field_quantity[FIELD_COUNT + 1] = {
 
 /* ---- the grid ---- */
 
-static double mean_diameter(const struct packing *p)
+static double fields_mean_diameter(const struct packing *p)
 {
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) sum += 2 * p->radius[i] / (double)p->n;
@@ -49,7 +49,7 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
         f->n[k] = 1;
         if (k >= s->p->dim) continue;
         double size = r->hi[k] - r->lo[k];
-        double wide = spacing > 0 ? spacing : fmax(mean_diameter(s->p), size / USUAL_CELLS);
+        double wide = spacing > 0 ? spacing : fmax(fields_mean_diameter(s->p), size / USUAL_CELLS);
         double cells = fmax(ceil(size / wide * (1 - 1e-12)), 1);
         if (!(size > 0)) return why_set(why, EX_DATAERR, "no volume to lay a grid over");
         points *= cells;
@@ -67,7 +67,7 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
 int fields_init(struct fields *f, const struct snapshot *s, double width, double spacing,
                 struct why *why)
 {
-    *f = (struct fields){ .width = width > 0 ? width : mean_diameter(s->p) };
+    *f = (struct fields){ .width = width > 0 ? width : fields_mean_diameter(s->p) };
     if (!s->p->n) return why_set(why, EX_DATAERR, "no bodies to lay a grid over");
     if (grid_init(f, s, spacing, why)) return why->status;
     for (int k = 0; k < FIELD_COUNT; k++) {
@@ -88,16 +88,16 @@ void fields_free(struct fields *f)
 
 /* ---- the points within the cut of a way from x to x + l ---- */
 
-struct patch {
+struct fields_patch {
     int64_t from[3], to[3];
 };
 
-static struct patch patch_of(const struct fields *f, int dim, vec3 x, vec3 l)
+static struct fields_patch patch_of(const struct fields *f, int dim, vec3 x, vec3 l)
 {
     const double at[3] = { x.x, x.y, x.z }, by[3] = { l.x, l.y, l.z };
     const double o[3] = { f->origin.x, f->origin.y, f->origin.z };
     const double h[3] = { f->step.x, f->step.y, f->step.z };
-    struct patch b = { { 0, 0, 0 }, { 0, 0, 0 } };
+    struct fields_patch b = { { 0, 0, 0 }, { 0, 0, 0 } };
     for (int k = 0; k < 3 && k < dim; k++) {
         double lo = ceil((at[k] + fmin(by[k], 0) - CUT * f->width - o[k]) / h[k]);
         double hi = floor((at[k] + fmax(by[k], 0) + CUT * f->width - o[k]) / h[k]);
@@ -122,7 +122,7 @@ static double greatest(const struct fields *f, int dim)
 }
 
 /* The integral over 0 < s < 1 of phi(d - s l), d the way from the beginning of l */
-static double along(const struct fields *f, int dim, vec3 d, vec3 l)
+static double fields_along(const struct fields *f, int dim, vec3 d, vec3 l)
 {
     double L = v3_norm(l), w = f->width;
     if (!(L > 1e-9 * w)) {
@@ -138,7 +138,7 @@ static double along(const struct fields *f, int dim, vec3 d, vec3 l)
 
 /* ---- the sums ---- */
 
-struct body {
+struct fields_body {
     double mass, volume, radius;
     vec3 v;
 };
@@ -149,15 +149,15 @@ static void add_tensor(double *to, double s, vec3 a, vec3 b)
     for (int k = 0; k < 9; k++) to[k] += x[k / 3] * y[k % 3];
 }
 
-static void add_body(struct fields *f, int dim, vec3 x, const struct body *b)
+static void fields_add_body(struct fields *f, int dim, vec3 x, const struct fields_body *b)
 {
-    struct patch c = patch_of(f, dim, x, v3(0, 0, 0));
+    struct fields_patch c = patch_of(f, dim, x, v3(0, 0, 0));
     for (int64_t k = c.from[2]; k <= c.to[2]; k++)
         for (int64_t j = c.from[1]; j <= c.to[1]; j++)
             for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
                 int64_t at = (k * f->n[1] + j) * f->n[0] + i;
                 const vec3 d = v3_sub(x, point_at(f, i, j, k));
-                double phi = along(f, dim, v3_scale(-1, d), v3(0, 0, 0));
+                double phi = fields_along(f, dim, v3_scale(-1, d), v3(0, 0, 0));
                 if (phi == 0) continue;
                 double *momentum = f->x[FIELD_MOMENTUM] + 3 * at, m = phi * b->mass;
                 f->x[FIELD_DENSITY][at] += m, f->x[FIELD_FRACTION][at] += phi * b->volume;
@@ -171,13 +171,13 @@ static void add_body(struct fields *f, int dim, vec3 x, const struct body *b)
             }
 }
 
-static void add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 force)
+static void fields_add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 force)
 {
-    struct patch c = patch_of(f, dim, x, l);
+    struct fields_patch c = patch_of(f, dim, x, l);
     for (int64_t k = c.from[2]; k <= c.to[2]; k++)
         for (int64_t j = c.from[1]; j <= c.to[1]; j++)
             for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
-                double phi = along(f, dim, v3_sub(point_at(f, i, j, k), x), l);
+                double phi = fields_along(f, dim, v3_sub(point_at(f, i, j, k), x), l);
                 int64_t at = (k * f->n[1] + j) * f->n[0] + i;
                 if (phi > 0) add_tensor(f->x[FIELD_CONTACTS] + 9 * at, phi, force, l);
             }
@@ -185,7 +185,7 @@ static void add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 force)
 
 /* Velocities from momenta; the motion's stress about them; the whole stress. Where there is no mass
    there is no velocity: 0. */
-static void finish(struct fields *f)
+static void fields_finish(struct fields *f)
 {
     for (int64_t i = 0; i < fields_points(f); i++) {
         double density = f->x[FIELD_DENSITY][i], *v = f->x[FIELD_VELOCITY] + 3 * i;
@@ -200,7 +200,7 @@ static void finish(struct fields *f)
 }
 
 /* The inverse of a symmetric matrix of dim dimensions whose eigenvalues are above `least`; false: one is not */
-static bool invert(double inverse[9], const double A[9], int dim, double least)
+static bool fields_invert(double inverse[9], const double A[9], int dim, double least)
 {
     struct tensor T;
     double value[3];
@@ -224,7 +224,7 @@ static bool invert(double inverse[9], const double A[9], int dim, double least)
 }
 
 /* c = a b */
-static void multiply(double c[9], const double a[9], const double b[9])
+static void fields_multiply(double c[9], const double a[9], const double b[9])
 {
     for (int k = 0; k < 9; k++) {
         const int i = k / 3, j = k % 3;
@@ -245,14 +245,14 @@ static void finish_gradient(struct fields *f, int dim, int64_t i)
         C[k] = sum[MOMENT_VD + k] - v[k / 3] * sum[MOMENT_D + k % 3];
         M[k] = sum[MOMENT_DD + k] - sum[MOMENT_D + k / 3] * sum[MOMENT_D + k % 3] / density;
     }
-    if (!(density > 0) || !invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
+    if (!(density > 0) || !fields_invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
         for (int k = 0; k < 9; k++) G[k] = D[k] = NAN;
         f->x[FIELD_SHEAR_RATE][i] = f->x[FIELD_TEMPERATURE][i] = f->x[FIELD_INERTIAL][i] = NAN;
         return;
     }
-    multiply(G, C, inverse);
+    fields_multiply(G, C, inverse);
     const double turned[9] = { C[0], C[3], C[6], C[1], C[4], C[7], C[2], C[5], C[8] };
-    multiply(flow, G, turned); // C M^-1 C^T
+    fields_multiply(flow, G, turned); // C M^-1 C^T
     for (int k = 0; k < 9; k++) D[k] = 0.5 * (G[k] + G[3 * (k % 3) + k / 3]);
     for (int k = 0; k < dim; k++) trace += D[4 * k], left += kinetic[4 * k] - flow[4 * k];
     for (int k = 0; k < 9; k++) {
@@ -311,19 +311,19 @@ int fields_set(struct fields *f, const struct snapshot *s, struct why *why)
         struct region_walk w = region_walk(&r, p->x[i], margin);
         for (vec3 y; region_next(&w, &r, p->x[i], &y);) {
             vec3 v = v3_add(p->v[i], region_rate(&w, &r)); // an image moves as its cell does
-            const struct body b = { p->mass[i], grain_volume(p, i), p->radius[i], v };
-            add_body(f, p->dim, v3_axpy(y, ahead, v), &b);
+            const struct fields_body b = { p->mass[i], grain_volume(p, i), p->radius[i], v };
+            fields_add_body(f, p->dim, v3_axpy(y, ahead, v), &b);
         }
     }
     for (int64_t i = 0; solved && i < s->s->n; i++) {
         vec3 x = branch_from(p, &s->s->c[i]), l = branch_way(p, &s->s->c[i]);
         struct region_walk w = region_walk(&r, x, CUT * f->width + v3_norm(l));
         for (vec3 y; region_next(&w, &r, x, &y);)
-            add_contact(f, p->dim, v3_axpy(y, ahead, region_rate(&w, &r)), l,
+            fields_add_contact(f, p->dim, v3_axpy(y, ahead, region_rate(&w, &r)), l,
                         branch_force(p, s->s, i));
     }
     for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
-    finish(f);
+    fields_finish(f);
     for (int64_t i = 0; i < fields_points(f); i++)
         finish_gradient(f, p->dim, i), finish_inertial(f, p->dim, i);
     return 0;

@@ -20,7 +20,7 @@ struct crossed {
 };
 
 /* The straight way from x to x + d: does the centre cross? */
-static void cross(struct crossed *n, const struct snapshot *s, vec3 x, vec3 d, double mass)
+static void flux_cross(struct crossed *n, const struct snapshot *s, vec3 x, vec3 d, double mass)
 {
     const struct asked *a = s->asked;
     vec3 from = v3_sub(x, a->point);
@@ -45,7 +45,7 @@ static int add_events(struct crossed *n, const struct snapshot *s, struct why *w
         const struct kept_body *b = kept_find(e->came ? &now : s->before, e->id);
         if (!b || !b->chosen) continue;
         vec3 way = kept_way(p, e->came ? e->x : b->x, e->came ? b->x : e->x);
-        cross(n, s, e->came ? e->x : b->x, way, e->mass);
+        flux_cross(n, s, e->came ? e->x : b->x, way, e->mass);
     }
     kept_free(&now);
     return 0;
@@ -66,7 +66,7 @@ static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
         if (!then || !snapshot_body(s, i)) continue;
         // from where it would be now, had it come straight and never been replaced by an image
         vec3 way = v3_sub(kept_place(p, i), then->x);
-        cross(&n, s, v3_sub(p->x[i], way), way, p->mass[i]);
+        flux_cross(&n, s, v3_sub(p->x[i], way), way, p->mass[i]);
     }
     if (add_events(&n, s, why)) return why->status;
     put(&at, since);

@@ -8,13 +8,13 @@
 #include <stdlib.h>
 
 /* Does contact i push or pull, in the region? */
-static bool pushes(const struct snapshot *s, int64_t i)
+static bool friction_pushes(const struct snapshot *s, int64_t i)
 {
     return branch_counts(s->s, i) && region_holds(&s->region, s->s->c[i].x);
 }
 
 /* N: the tangential force */
-static double tangential(const struct snapshot *s, int64_t i)
+static double friction_tangential(const struct snapshot *s, int64_t i)
 {
     const double *r = s->s->found[i].r;
     return hypot(r[1], r[2]) / s->p->dt;
@@ -66,14 +66,14 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-struct sums {
+struct friction_sums {
     int64_t contacts, sliding, rough;
     double mobilised, tangential, rub, limit, normal, normal_most, tangential_most;
 };
 
-static void add(struct sums *m, const struct snapshot *s, int64_t i)
+static void friction_add(struct friction_sums *m, const struct snapshot *s, int64_t i)
 {
-    double fn = normal(s, i), ft = tangential(s, i);
+    double fn = normal(s, i), ft = friction_tangential(s, i);
     struct rub rub = rub_of(s, i);
     m->contacts++, m->sliding += s->s->found[i].status == LOCAL_SLIDE;
     m->normal += fn, m->tangential += ft, m->rub += rub.is, m->limit += rub.most;
@@ -83,14 +83,14 @@ static void add(struct sums *m, const struct snapshot *s, int64_t i)
 
 static int friction_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
-    struct sums m = { 0 };
+    struct friction_sums m = { 0 };
     double square = 0, *at = table_row(t, why);
     if (!at) return why->status;
     for (int64_t i = 0; i < s->s->n; i++)
-        if (pushes(s, i)) add(&m, s, i);
+        if (friction_pushes(s, i)) friction_add(&m, s, i);
     double n = (double)m.contacts, mean = m.normal / n;
     for (int64_t i = 0; i < s->s->n; i++)
-        if (pushes(s, i)) square += (normal(s, i) - mean) * (normal(s, i) - mean);
+        if (friction_pushes(s, i)) square += (normal(s, i) - mean) * (normal(s, i) - mean);
     put(&at, n), put(&at, (double)m.sliding);
     if (!m.contacts) {
         table_null(t, "no contact pushes or pulls");
@@ -125,7 +125,7 @@ static int distribution(struct table *t, const struct snapshot *s,
     int64_t n = 0;
     if (!x) return why_set(why, EX_SOFTWARE, "no memory for a distribution");
     for (int64_t i = 0; i < s->s->n; i++) {
-        double v = pushes(s, i) ? value(s, i) : NAN;
+        double v = friction_pushes(s, i) ? value(s, i) : NAN;
         if (v >= 0) x[n++] = v, sum += v, largest = fmax(largest, v);
     }
     double mean = n ? sum / (double)n : 0, unit = by_mean ? mean : 1;
@@ -153,7 +153,7 @@ static int normal_rows(struct table *t, const struct snapshot *s, struct why *wh
 }
 static int tangential_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
-    return distribution(t, s, tangential, true, 0, why);
+    return distribution(t, s, friction_tangential, true, 0, why);
 }
 static int mobilised_rows(struct table *t, const struct snapshot *s, struct why *why)
 {

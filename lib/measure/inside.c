@@ -14,13 +14,13 @@ struct piece {
     double x, volume; /* m; m^3, of discs m^2 */
 };
 
-static int by_place(const void *a, const void *b)
+static int inside_by_place(const void *a, const void *b)
 {
     const struct piece *x = a, *y = b;
     return (x->x > y->x) - (x->x < y->x);
 }
 
-static double along(vec3 x, int axis)
+static double inside_along(vec3 x, int axis)
 {
     return axis == 0 ? x.x : axis == 1 ? x.y : x.z;
 }
@@ -30,8 +30,8 @@ static void tenths(struct piece *s, const struct packing *p, int axis, double *l
 {
     double all = 0, below = 0;
     for (int64_t i = 0; i < p->n; i++)
-        s[i] = (struct piece){ along(p->x[i], axis), grain_volume(p, i) }, all += s[i].volume;
-    qsort(s, (size_t)p->n, sizeof *s, by_place);
+        s[i] = (struct piece){ inside_along(p->x[i], axis), grain_volume(p, i) }, all += s[i].volume;
+    qsort(s, (size_t)p->n, sizeof *s, inside_by_place);
     *lo = *hi = s[0].x;
     for (int64_t i = 0; i < p->n; i++) {
         if (below < BEYOND * all) *lo = s[i].x;
@@ -40,7 +40,7 @@ static void tenths(struct piece *s, const struct packing *p, int axis, double *l
     }
 }
 
-static double mean_diameter(const struct packing *p)
+static double inside_mean_diameter(const struct packing *p)
 {
     double sum = 0;
     for (int64_t i = 0; i < p->n; i++) sum += p->radius[i];
@@ -54,7 +54,7 @@ int region_inside(struct region *r, const struct packing *p, struct why *why)
     if (p->n < BED || r->period.any) return 1;
     struct piece *s = malloc((size_t)p->n * sizeof *s);
     if (!s) return why_set(why, EX_SOFTWARE, "no memory for the inside of the bed");
-    const double d = mean_diameter(p);
+    const double d = inside_mean_diameter(p);
     for (int k = 0; k < p->dim; k++) {
         double below = -INFINITY, above = INFINITY;
         reach_of_planes(p, k, &below, &above);

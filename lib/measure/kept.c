@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static int by_id(const void *a, const void *b)
+static int snapshot_by_id(const void *a, const void *b)
 {
     const struct kept_body *one = a, *other = b;
     return one->id < other->id ? -1 : one->id > other->id;
@@ -24,7 +24,7 @@ int kept_set(struct kept *k, const struct packing *p, struct why *why)
     }
     sums_free(&k->sums);
     if (sums_copy(&k->sums, &p->sums, why)) return why->status;
-    if (!sorted) qsort(body, (size_t)p->n, sizeof *body, by_id);
+    if (!sorted) qsort(body, (size_t)p->n, sizeof *body, snapshot_by_id);
     return 0;
 }
 
@@ -38,7 +38,7 @@ void kept_free(struct kept *k)
 const struct kept_body *kept_find(const struct kept *k, int32_t id)
 {
     const struct kept_body wanted = { .id = id };
-    return bsearch(&wanted, k->body, (size_t)k->n, sizeof wanted, by_id);
+    return bsearch(&wanted, k->body, (size_t)k->n, sizeof wanted, snapshot_by_id);
 }
 
 int kept_pair_order(const void *a, const void *b)

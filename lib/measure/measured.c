@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static void choose(const struct measure **chosen, const struct measure *m)
+static void measured_choose_one(const struct measure **chosen, const struct measure *m)
 {
     int k = 0;
     while (chosen[k] && chosen[k] != m) k++;
@@ -20,12 +20,12 @@ int measured_choose(const struct measure **chosen, const char *names, struct why
         size_t n = strcspn(s, ",");
         const struct measure *m = measure_named(s, n);
         if (n == 3 && !strncmp(s, "all", n))
-            for (int k = 0; measure_at(k); k++) choose(chosen, measure_at(k));
+            for (int k = 0; measure_at(k); k++) measured_choose_one(chosen, measure_at(k));
         else if (!m)
             return why_set(why, EX_USAGE, "--measures: no '%.*s' (nsd-stat --list names them)",
                            (int)n, s);
         else
-            choose(chosen, m);
+            measured_choose_one(chosen, m);
         s += n;
         if (!*s) return 0;
     }

@@ -59,7 +59,7 @@ static bool mixture_gather(struct mixture *m, const struct snapshot *s)
 }
 
 /* -1: no such kind */
-static int32_t kind_named(const struct packing *p, const char *name)
+static int32_t mixing_kind_named(const struct packing *p, const char *name)
 {
     for (int32_t k = 0; k < p->kinds; k++)
         if (!strcmp(p->kind_name[k], name)) return k;
@@ -72,7 +72,7 @@ static void mixture_divide(struct mixture *m, const struct snapshot *s)
 {
     const struct packing *p = s->p;
     const char *name = s->asked->tracer;
-    int32_t kind = *name && strcmp(name, "large") ? kind_named(p, name) : -1;
+    int32_t kind = *name && strcmp(name, "large") ? mixing_kind_named(p, name) : -1;
     double mean = 0;
     bool alike = true;
     for (int64_t k = 0; k < m->n; k++) {
@@ -95,7 +95,7 @@ struct samples {
     int32_t *bodies, *tracers; /* [all] */
 };
 
-static double mean_diameter(const struct mixture *m, const struct packing *p)
+static double mixing_mean_diameter(const struct mixture *m, const struct packing *p)
 {
     double sum = 0;
     for (int64_t k = 0; k < m->n; k++) sum += 2 * p->radius[m->body[k]] / (double)m->n;
@@ -114,7 +114,7 @@ static const char *samples_init(struct samples *y, const struct snapshot *s,
     const struct region *r = &s->region;
     double wide = s->asked->sample, all = 1;
     *y = (struct samples){ { 1, 1, 1 }, 1, NULL, NULL };
-    if (!(wide > 0)) wide = SAMPLE_DIAMETERS * mean_diameter(m, s->p);
+    if (!(wide > 0)) wide = SAMPLE_DIAMETERS * mixing_mean_diameter(m, s->p);
     for (int k = 0; k < s->p->dim; k++) {
         double size = along_edge(s, k) ? 1 / v3_norm(r->period.inverse[k]) : r->hi[k] - r->lo[k];
         double parts = fmax(ceil(size / wide * (1 - 1e-9)), 1);
@@ -128,7 +128,7 @@ static const char *samples_init(struct samples *y, const struct snapshot *s,
     return NULL;
 }
 
-static int64_t sample_of(const struct samples *y, const struct snapshot *s, vec3 x)
+static int64_t mixing_sample_of(const struct samples *y, const struct snapshot *s, vec3 x)
 {
     const struct region *r = &s->region;
     const double at[3] = { x.x, x.y, x.z };
@@ -156,7 +156,7 @@ static void put_samples(double **at, struct table *t, struct samples *y, const s
         struct region_walk w = region_walk(&s->region, x, 0);
         for (vec3 image; region_next(&w, &s->region, x, &image);) {
             if (!s->region.all && !region_holds(&s->region, image)) continue;
-            int64_t place = sample_of(y, s, image);
+            int64_t place = mixing_sample_of(y, s, image);
             y->bodies[place]++, y->tracers[place] += m->tracer[k];
             break;
         }
@@ -183,7 +183,7 @@ static int nearest(const struct packing *p)
 }
 
 /* The centres that count, and in a cell their images within `reach`; of[] are rows of the mixture. */
-static bool gather(struct scatter *a, struct near *g, const struct snapshot *s,
+static bool mixing_gather(struct scatter *a, struct near *g, const struct snapshot *s,
                    const struct mixture *m, double reach)
 {
     bool room = true;
@@ -215,13 +215,13 @@ static bool unlike(double *sum, const struct snapshot *s, const struct mixture *
     const int64_t most = ((int64_t)1 << 26) + 20000 * m->n;
     const int wanted = nearest(s->p);
     bool *found = calloc((size_t)m->n + 1, sizeof *found), room = found;
-    double reach = 1.5 * mean_diameter(m, s->p);
+    double reach = 1.5 * mixing_mean_diameter(m, s->p);
     int64_t left = m->n;
     for (int round = 0; room && left > 0 && round < ROUNDS_MOST && *looked <= most; round++) {
         struct scatter a;
         struct near g = { 0 };
         const bool last = sees_all(s, reach) || round == ROUNDS_MOST - 1;
-        room = gather(&a, &g, s, m, reach);
+        room = mixing_gather(&a, &g, s, m, reach);
         for (int64_t k = 0; room && k < m->n && *looked <= most; k++) {
             int64_t of[NEAREST_MOST];
             if (found[k]) continue;
@@ -253,7 +253,7 @@ static bool put_neighbours(double **at, struct table *t, const struct snapshot *
 /* ---- heights ---- */
 
 /* m: along up, or the axis that layers are asked along */
-static double height(const struct snapshot *s, int axis, int64_t i)
+static double mixing_height(const struct snapshot *s, int axis, int64_t i)
 {
     const vec3 x = s->p->x[i], d = v3_sub(x, s->asked->point);
     return axis == 3 ? hypot(d.x, d.y) : axis == 0 ? x.x : axis == 1 ? x.y : x.z;
@@ -271,11 +271,11 @@ static void put_segregation(double **at, struct table *t, const struct snapshot 
         return;
     }
     for (int64_t k = 0; k < m->n; k++) {
-        double h = height(s, axis, m->body[k]);
+        double h = mixing_height(s, axis, m->body[k]);
         sum += h, tracers += m->tracer[k] ? h : 0;
     }
     for (int64_t k = 0; k < m->n; k++) {
-        double d = height(s, axis, m->body[k]) - sum / n;
+        double d = mixing_height(s, axis, m->body[k]) - sum / n;
         square += d * d;
     }
     if (!(square > 0)) table_null(t, "all bodies are at the same height");

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 /* Cells along x are in buckets one after another, so that a line of them is looked along at once. */
-static int64_t bucket(const struct near *g, int64_t i, int64_t j, int64_t k)
+static int64_t near_bucket(const struct near *g, int64_t i, int64_t j, int64_t k)
 {
     uint64_t h =
         (uint64_t)i + (uint64_t)j * 0x9E3779B97F4A7C15u + (uint64_t)k * 0xC2B2AE3D27D4EB4Fu;
@@ -15,7 +15,7 @@ static int64_t bucket(const struct near *g, int64_t i, int64_t j, int64_t k)
 
 static int64_t bucket_of(const struct near *g, const struct near_point *p)
 {
-    return bucket(g, p->cell[0], p->cell[1], p->cell[2]);
+    return near_bucket(g, p->cell[0], p->cell[1], p->cell[2]);
 }
 
 bool near_init(struct near *g, const vec3 *x, int64_t n, double reach)
@@ -69,7 +69,7 @@ int64_t near_count(const struct near *g, vec3 x, int64_t *count, int64_t bins)
     for (int64_t k = c[2] - 1; k <= c[2] + 1; k++)
         for (int64_t j = c[1] - 1; j <= c[1] + 1; j++)
             for (int64_t i = c[0] - 1; i <= c[0] + 1; i++) {
-                int64_t b = bucket(g, i, j, k), cell[3] = { i, j, k };
+                int64_t b = near_bucket(g, i, j, k), cell[3] = { i, j, k };
                 looked += g->first[b + 1] - g->first[b];
                 count_cell(g, b, cell, x, count, bins);
             }
@@ -77,13 +77,13 @@ int64_t near_count(const struct near *g, vec3 x, int64_t *count, int64_t bins)
 }
 
 /* What has been found so far, the nearest first */
-struct nearest {
+struct near_nearest {
     int n, most;
     double d2[NEAREST_MOST]; /* m^2 */
     int64_t of[NEAREST_MOST];
 };
 
-static void keep_nearest(struct nearest *s, double d2, int64_t of)
+static void keep_nearest(struct near_nearest *s, double d2, int64_t of)
 {
     int k = s->n;
     if (k == s->most && !(d2 < s->d2[k - 1] || (d2 == s->d2[k - 1] && of < s->of[k - 1]))) return;
@@ -98,10 +98,10 @@ int near_nearest(const struct near *g, vec3 x, int most, int64_t *of, int64_t *l
 {
     const int64_t c[3] = { grid_cell(x.x, g->reach), grid_cell(x.y, g->reach),
                            grid_cell(x.z, g->reach) };
-    struct nearest s = { .most = most };
+    struct near_nearest s = { .most = most };
     for (int64_t l = 0; l < 27; l++) {
         const int64_t cell[3] = { c[0] + l % 3 - 1, c[1] + l / 3 % 3 - 1, c[2] + l / 9 - 1 };
-        const int64_t b = bucket(g, cell[0], cell[1], cell[2]);
+        const int64_t b = near_bucket(g, cell[0], cell[1], cell[2]);
         *looked += g->first[b + 1] - g->first[b];
         for (int64_t i = g->first[b]; i < g->first[b + 1]; i++) {
             const struct near_point *p = &g->point[i];

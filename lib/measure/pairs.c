@@ -50,7 +50,7 @@ static double expected(const struct scatter *a, int dim, double r)
 }
 
 /* Counts by distance, each pair twice; false: bodies crowd */
-static bool count(const struct scatter *a, const struct near *g, int64_t *counts, int64_t bins)
+static bool pairs_count(const struct scatter *a, const struct near *g, int64_t *counts, int64_t bins)
 {
     int64_t looked = 0, most = ((int64_t)1 << 26) + 20000 * a->seekers;
     for (int64_t i = 0; i < a->seekers && looked <= most; i++)
@@ -58,7 +58,7 @@ static bool count(const struct scatter *a, const struct near *g, int64_t *counts
     return looked <= most;
 }
 
-static void fill(struct table *t, const struct snapshot *s, const struct scatter *a, double reach,
+static void pairs_fill(struct table *t, const struct snapshot *s, const struct scatter *a, double reach,
                  const int64_t *counts, struct why *why)
 {
     double bins = (double)s->asked->bins, n = (double)a->seekers, least = INFINITY;
@@ -107,12 +107,12 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why
     if (!reason && room && s->region.period.any)
         room = scatter_images(&a, &s->region.period, reach);
     if (!reason && room) room = near_init(&g, a.x, a.n, reach);
-    if (!reason && room && !count(&a, &g, counts, s->asked->bins))
+    if (!reason && room && !pairs_count(&a, &g, counts, s->asked->bins))
         reason = "too many bodies close together";
     if (reason)
         table_null(t, "%s", reason);
     else if (room)
-        fill(t, s, &a, reach, counts, why);
+        pairs_fill(t, s, &a, reach, counts, why);
     near_free(&g), scatter_free(&a), free(counts);
     return room ? why->status : why_set(why, EX_SOFTWARE, "no memory for pairs of bodies");
 }

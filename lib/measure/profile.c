@@ -38,7 +38,7 @@ static vec3 velocity(const struct snapshot *s, const struct region *r, double ma
     return v3_scale(1 / mass, sum);
 }
 
-static void add_layer(struct table *t, const struct snapshot *s, const struct region *r, double *at,
+static void profile_add_layer(struct table *t, const struct snapshot *s, const struct region *r, double *at,
                       const void *none)
 {
     struct moving m;
@@ -70,7 +70,7 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
 
 static int profile_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
-    return snapshot_layers(s, t, add_layer, NULL, why);
+    return snapshot_layers(s, t, profile_add_layer, NULL, why);
 }
 
 const struct measure measure_profile = {

@@ -75,7 +75,7 @@ vec3 region_rate(const struct region_walk *w, const struct region *r)
 
 /* ---- making regions ---- */
 
-static void reach(const struct packing *p, double lo[3], double hi[3])
+static void region_reach(const struct packing *p, double lo[3], double hi[3])
 {
     for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
@@ -104,7 +104,7 @@ void region_whole(struct region *r, const struct packing *p)
 {
     *r = (struct region){ .dim = p->dim, .all = true };
     period_of(&r->period, &p->cell);
-    reach(p, r->lo, r->hi);
+    region_reach(p, r->lo, r->hi);
     r->volume = p->n ? r->period.volume : 0;
     for (int k = 0; k < 3 && k < p->dim; k++) {
         if (p->n) reach_of_planes(p, k, &r->lo[k], &r->hi[k]);
@@ -127,7 +127,7 @@ void region_box(struct region *r, const struct packing *p, const double lo[3], c
 }
 
 /* How many edges that repeat have a part along the axis; *edge is the last of them. */
-static int edges_along(const struct packing *p, int axis, int *edge)
+static int region_edges_along(const struct packing *p, int axis, int *edge)
 {
     int n = 0;
     for (int k = 0; k < 3; k++) {
@@ -140,7 +140,7 @@ static int edges_along(const struct packing *p, int axis, int *edge)
 bool region_layers(struct region *layer, int64_t n, const struct region *in,
                    const struct packing *p, int axis, const char **reason)
 {
-    int edge = axis, leaning = edges_along(p, axis, &edge);
+    int edge = axis, leaning = region_edges_along(p, axis, &edge);
     double lo = in->lo[axis], hi = in->hi[axis];
     if (in->all && leaning > 1) {
         *reason = "several edges of the cell lean along the layers' axis";
@@ -198,7 +198,7 @@ bool region_shells(struct region *shell, int64_t n, const struct region *in,
 
 /* ---- what is in them ---- */
 
-static double distance(const struct region *r, vec3 x)
+static double region_distance(const struct region *r, vec3 x)
 {
     return hypot(x.x - r->centre.x, x.y - r->centre.y);
 }
@@ -210,7 +210,7 @@ static bool inside(const struct region *r, vec3 x)
     for (int k = 0; k < 3 && k < r->dim; k++)
         if (!(at[k] >= r->lo[k] && at[k] < r->hi[k])) return false;
     if (r->outer > 0) {
-        double d = distance(r, x);
+        double d = region_distance(r, x);
         return d >= r->inner && d < r->outer;
     }
     return true;
@@ -238,7 +238,7 @@ vec3 region_velocities(const struct region *r, vec3 x, vec3 v)
 static double one_ball(const struct region *r, vec3 x, double radius)
 {
     if (r->outer > 0) {
-        double d = distance(r, x);
+        double d = region_distance(r, x);
         double part = ball_in_cylinder(r->dim, d, radius, r->outer) -
                       ball_in_cylinder(r->dim, d, radius, r->inner);
         // of a ball that a bound cuts as well, by the product of the two parts
@@ -258,7 +258,7 @@ double region_ball(const struct region *r, vec3 x, double radius)
 }
 
 /* The s in [*from, *to] with |x + s l - centre| < R, both across z: what is left of them */
-static double within(const struct region *r, vec3 x, vec3 l, double R, double from, double to)
+static double region_within(const struct region *r, vec3 x, vec3 l, double R, double from, double to)
 {
     double dx = x.x - r->centre.x, dy = x.y - r->centre.y;
     double a = l.x * l.x + l.y * l.y, b = dx * l.x + dy * l.y, c = dx * dx + dy * dy - R * R;
@@ -284,7 +284,7 @@ static double one_way(const struct region *r, vec3 x, vec3 l)
     }
     if (!(to > from)) return 0;
     if (r->outer > 0)
-        return within(r, x, l, r->outer, from, to) - within(r, x, l, r->inner, from, to);
+        return region_within(r, x, l, r->outer, from, to) - region_within(r, x, l, r->inner, from, to);
     return to - from;
 }
 

@@ -24,7 +24,7 @@ void scatter_free(struct scatter *a)
 }
 
 /* Is x within `reach` of the cell? */
-static bool is_near(const struct period *m, vec3 x, double reach)
+static bool near_is_near(const struct period *m, vec3 x, double reach)
 {
     for (int k = 0; k < 3; k++) {
         double at = v3_dot(m->inverse[k], v3_sub(x, m->cell->origin));
@@ -52,7 +52,7 @@ bool scatter_images(struct scatter *a, const struct period *m, double reach)
                     if (!u && !v && !w) continue;
                     vec3 x = v3_axpy(a->x[i], u, m->edge[0]);
                     x = v3_axpy(v3_axpy(x, v, m->edge[1]), w, m->edge[2]);
-                    if (is_near(m, x, reach) && !scatter_add(a, x, a->of[i])) return false;
+                    if (near_is_near(m, x, reach) && !scatter_add(a, x, a->of[i])) return false;
                 }
     return true;
 }

@@ -17,7 +17,7 @@ static const struct quantity quantities[] = {
 };
 
 /* m: of all that move, in the region */
-static double mean_radius(const struct snapshot *s)
+static double sizes_mean_radius(const struct snapshot *s)
 {
     double sum = 0, n = 0;
     for (int64_t i = 0; i < s->p->n; i++)
@@ -25,7 +25,7 @@ static double mean_radius(const struct snapshot *s)
     return n > 0 ? sum / n : NAN;
 }
 
-static void add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
+static void sizes_add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
                       double *at, const void *with)
 {
     double n = 0, sum = 0, least = INFINITY, most = 0, volume = 0, large = 0,
@@ -46,8 +46,8 @@ static void add_layer(struct table *t, const struct snapshot *s, const struct re
 
 static int sizes_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
-    const double mean = mean_radius(s);
-    return snapshot_layers(s, t, add_layer, &mean, why);
+    const double mean = sizes_mean_radius(s);
+    return snapshot_layers(s, t, sizes_add_layer, &mean, why);
 }
 
 const struct measure measure_sizes = {
@@ -70,7 +70,7 @@ static const struct quantity one[] = {
 };
 
 /* m: along up, or the asked axis */
-static double height(const struct snapshot *s, int axis, int64_t i)
+static double sizes_height(const struct snapshot *s, int axis, int64_t i)
 {
     const vec3 x = s->p->x[i], d = v3_sub(x, s->asked->point);
     return axis == 3 ? hypot(d.x, d.y) : axis == 0 ? x.x : axis == 1 ? x.y : x.z;
@@ -81,17 +81,17 @@ struct moments {
     double large, small, nl, ns; /* of heights; bodies */
 };
 
-static void moments_of(struct moments *m, const struct snapshot *s, int axis)
+static void sizes_moments_of(struct moments *m, const struct snapshot *s, int axis)
 {
     double r = 0, h = 0, n = 0;
     *m = (struct moments){ 0 };
     for (int64_t i = 0; i < s->p->n; i++)
-        if (counts_body(s, i)) r += s->p->radius[i], h += height(s, axis, i), n++;
+        if (counts_body(s, i)) r += s->p->radius[i], h += sizes_height(s, axis, i), n++;
     if (!(n > 0)) return;
     m->n = n, m->r = r / n, m->h = h / n;
     for (int64_t i = 0; i < s->p->n; i++) {
         if (!counts_body(s, i)) continue;
-        double dr = s->p->radius[i] - m->r, y = height(s, axis, i), dh = y - m->h;
+        double dr = s->p->radius[i] - m->r, y = sizes_height(s, axis, i), dh = y - m->h;
         m->rr += dr * dr, m->hh += dh * dh, m->rh += dr * dh;
         if (dr > 1e-12 * m->r)
             m->large += y, m->nl++;
@@ -109,7 +109,7 @@ static int segregation_rows(struct table *t, const struct snapshot *s, struct wh
         table_null(t, "in the plane there are no heights along z");
         return 0;
     }
-    moments_of(&m, s, snapshot_axis(s));
+    sizes_moments_of(&m, s, snapshot_axis(s));
     if (!(m.nl > 0)) {
         table_null(t, m.n > 0 ? "all bodies have the same size"
                               : "no body that moves is in the region");

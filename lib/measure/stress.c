@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* m/s: beside the flow that a cell's moving edges make */
-static vec3 beside(const struct packing *p, const struct period *period, int64_t i)
+static vec3 stress_beside(const struct packing *p, const struct period *period, int64_t i)
 {
     return period->any ? v3_sub(p->v[i], period_flow(period, p->x[i])) : p->v[i];
 }
@@ -21,7 +21,7 @@ void moving_of(struct moving *m, const struct snapshot *s, const struct region *
         int times = p->mass[i] > 0 && snapshot_body(s, i) ? region_holds(r, p->x[i]) : 0;
         if (!times) continue;
         m->bodies += times, m->mass += times * p->mass[i], inertia += times * p->inertia[i];
-        m->velocity = v3_axpy(m->velocity, times * p->mass[i], beside(p, &r->period, i));
+        m->velocity = v3_axpy(m->velocity, times * p->mass[i], stress_beside(p, &r->period, i));
         m->spin = v3_axpy(m->spin, times * p->inertia[i], p->w[i]);
     }
     if (m->mass > 0) m->velocity = v3_scale(1 / m->mass, m->velocity);
@@ -29,7 +29,7 @@ void moving_of(struct moving *m, const struct snapshot *s, const struct region *
     for (int64_t i = 0; i < p->n; i++) {
         int times = p->mass[i] > 0 && snapshot_body(s, i) ? region_holds(r, p->x[i]) : 0;
         if (!times) continue;
-        vec3 v = v3_sub(beside(p, &r->period, i), m->velocity), w = v3_sub(p->w[i], m->spin);
+        vec3 v = v3_sub(stress_beside(p, &r->period, i), m->velocity), w = v3_sub(p->w[i], m->spin);
         tensor_add(&m->kinetic, times * p->mass[i], v, v);
         m->rotation += times * p->inertia[i] * v3_dot(w, w);
     }

@@ -69,7 +69,7 @@ static int look_init(struct look *l, const struct snapshot *s, struct why *why)
 }
 
 /* Adds a face, from which that of the frame before is taken. */
-static void add(struct sum *to, const struct look *l, int32_t wall, int32_t face)
+static void sums_add(struct sum *to, const struct look *l, int32_t wall, int32_t face)
 {
     const int32_t i = l->faces.first[wall] + face;
     struct face_sums x = l->p->sums.face[i];
@@ -85,13 +85,13 @@ static void add(struct sum *to, const struct look *l, int32_t wall, int32_t face
     to->wear += k > 0 ? k * (x.rub - y->rub) : NAN;
 }
 
-static void add_faces(struct sum *to, const struct look *l, int32_t wall, int32_t first,
+static void sums_add_faces(struct sum *to, const struct look *l, int32_t wall, int32_t first,
                       int32_t count)
 {
-    for (int32_t k = first; k < first + count; k++) add(to, l, wall, k);
+    for (int32_t k = first; k < first + count; k++) sums_add(to, l, wall, k);
 }
 
-static int32_t count_of(const struct look *l, int32_t wall)
+static int32_t sums_count_of(const struct look *l, int32_t wall)
 {
     return l->faces.first[wall + 1] - l->faces.first[wall];
 }
@@ -124,7 +124,7 @@ static void explain(struct table *t, const struct look *l)
                    wear ? "wear needs a coefficient: --wear, or the key wear of the wall" : "");
 }
 
-static double row_of(const struct packing *p, const char *name)
+static double sums_row_of(const struct packing *p, const char *name)
 {
     return name ? names_find(&p->names, name, strlen(name)) : NAN;
 }
@@ -138,8 +138,8 @@ static int walls_rows(struct table *t, const struct snapshot *s, struct why *why
         if (!snapshot_wall(s, w)) continue;
         double *at = table_row(t, why);
         if (!at) break;
-        add_faces(&sum, &l, w, 0, count_of(&l, w));
-        put(&at, w), put(&at, row_of(s->p, names_of_wall(&s->p->names, w)));
+        sums_add_faces(&sum, &l, w, 0, sums_count_of(&l, w));
+        put(&at, w), put(&at, sums_row_of(s->p, names_of_wall(&s->p->names, w)));
         put_sum(&at, &l, &sum);
     }
     explain(t, &l);
@@ -147,7 +147,7 @@ static int walls_rows(struct table *t, const struct snapshot *s, struct why *why
     return why->status;
 }
 
-static int names_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int sums_names_rows(struct table *t, const struct snapshot *s, struct why *why)
 {
     const struct names *names = &s->p->names;
     struct look l;
@@ -157,8 +157,8 @@ static int names_rows(struct table *t, const struct snapshot *s, struct why *why
         struct sum sum = { 0 };
         for (end = k; end < names->rows && names->row[end].name == names->row[k].name; end++) {
             const struct named *r = &names->row[end];
-            add_faces(&sum, &l, r->boundary, r->first,
-                      r->count ? r->count : count_of(&l, r->boundary));
+            sums_add_faces(&sum, &l, r->boundary, r->first,
+                      r->count ? r->count : sums_count_of(&l, r->boundary));
         }
         if (s->only.walls && !s->only.name[names->row[k].name]) continue;
         double *at = table_row(t, why);
@@ -175,13 +175,13 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct why *why
     struct look l;
     if (look_init(&l, s, why)) return why->status;
     for (int32_t w = 0; w < s->p->walls && !why->status; w++)
-        for (int32_t k = 0; k < count_of(&l, w); k++) {
+        for (int32_t k = 0; k < sums_count_of(&l, w); k++) {
             struct sum sum = { 0 };
             if (!snapshot_face(s, w, k)) continue;
             double *at = table_row(t, why);
             if (!at) break;
-            add(&sum, &l, w, k);
-            put(&at, w), put(&at, row_of(s->p, names_of_face(&s->p->names, w, k))), put(&at, k);
+            sums_add(&sum, &l, w, k);
+            put(&at, w), put(&at, sums_row_of(s->p, names_of_face(&s->p->names, w, k))), put(&at, k);
             put_sum(&at, &l, &sum);
         }
     explain(t, &l);
@@ -205,7 +205,7 @@ const struct measure measure_sums_by_name = {
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_SUMS,
-    .rows = names_rows,
+    .rows = sums_names_rows,
 };
 const struct measure measure_sums_by_face = {
     .name = "sums_by_face",

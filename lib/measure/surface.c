@@ -76,13 +76,13 @@ static int64_t tops(struct top *top, const struct snapshot *s, const struct basi
     return kept;
 }
 
-struct mean {
+struct surface_mean {
     double a, b, h;
 };
 
-static struct mean mean_of(const struct top *top, int64_t n)
+static struct surface_mean mean_of(const struct top *top, int64_t n)
 {
-    struct mean m = { 0, 0, 0 };
+    struct surface_mean m = { 0, 0, 0 };
     for (int64_t k = 0; k < n; k++)
         m.a += top[k].a / (double)n, m.b += top[k].b / (double)n, m.h += top[k].h / (double)n;
     return m;
@@ -91,7 +91,7 @@ static struct mean mean_of(const struct top *top, int64_t n)
 /* h = mean + slope[0] a + slope[1] b; false: the points do not say */
 static bool plane(const struct top *top, int64_t n, int dim, double slope[2], double *spread)
 {
-    struct mean m = mean_of(top, n);
+    struct surface_mean m = mean_of(top, n);
     double aa = 0, ab = 0, bb = 0, ah = 0, bh = 0, sum = 0;
     for (int64_t k = 0; k < n; k++) {
         double a = top[k].a - m.a, b = top[k].b - m.b, h = top[k].h - m.h;
@@ -117,7 +117,7 @@ static const double NEARER_TO_CONE = 0.5;
    mean + slope . (a, b), as well as on a cone */
 static double flank(const struct top *top, int64_t n, const double slope[2])
 {
-    struct mean m = mean_of(top, n);
+    struct surface_mean m = mean_of(top, n);
     double least = INFINITY, most = -INFINITY, count = 0, r = 0, h = 0, rr = 0, rh = 0;
     double off_plane = 0, off_cone = 0;
     for (int64_t k = 0; k < n; k++) least = fmin(least, top[k].h), most = fmax(most, top[k].h);
@@ -145,7 +145,7 @@ static double degrees(double slope)
     return 180 / M_PI * atan(slope);
 }
 
-static void fill(double *at, struct table *t, const struct snapshot *s, const struct basis *e,
+static void surface_fill(double *at, struct table *t, const struct snapshot *s, const struct basis *e,
                  const struct top *top, int64_t n)
 {
     double slope[2], spread, steep;
@@ -185,7 +185,7 @@ static int surface_rows(struct table *t, const struct snapshot *s, struct why *w
     if (n < 0)
         why_set(why, EX_SOFTWARE, "no memory for the surface");
     else
-        fill(at, t, s, &e, top, n);
+        surface_fill(at, t, s, &e, top, n);
     free(top);
     return why->status;
 }

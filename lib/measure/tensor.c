@@ -24,7 +24,7 @@ double tensor_deviator(const struct tensor *T, int dim)
 }
 
 /* Turns rows and columns i, j of the symmetric S so that S[i][j] = 0. */
-static void rotate(struct tensor *S, int i, int j)
+static void tensor_rotate(struct tensor *S, int i, int j)
 {
     double off = S->x[i][j];
     if (off == 0) return;
@@ -47,7 +47,7 @@ static void rotate_both(struct tensor *S, struct tensor *Q, int i, int j)
     double half = 0.5 * (S->x[j][j] - S->x[i][i]) / off;
     double t = (half < 0 ? -1 : 1) / (fabs(half) + sqrt(half * half + 1));
     double c = 1 / sqrt(t * t + 1), s = t * c;
-    rotate(S, i, j);
+    tensor_rotate(S, i, j);
     for (int k = 0; k < 3; k++) {
         double ki = Q->x[k][i], kj = Q->x[k][j];
         Q->x[k][i] = c * ki - s * kj, Q->x[k][j] = s * ki + c * kj;
@@ -73,8 +73,8 @@ void tensor_principal(const struct tensor *T, int dim, double value[3])
 {
     struct tensor S = symmetric(T);
     for (int round = 0; round < 30; round++) {
-        rotate(&S, 0, 1);
-        if (dim == 3) rotate(&S, 0, 2), rotate(&S, 1, 2);
+        tensor_rotate(&S, 0, 1);
+        if (dim == 3) tensor_rotate(&S, 0, 2), tensor_rotate(&S, 1, 2);
     }
     for (int i = 0; i < 3; i++) value[i] = i < dim ? S.x[i][i] : 0;
     for (int i = 1; i < dim; i++)

@@ -8,7 +8,7 @@
 #define CALM 0.5
 
 /* m/s: no two bodies, or body and wall, approach faster; INFINITY where images of bodies move as well */
-static double fastest(const struct packing *p)
+static double adapt_fastest(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
     double speed = p->shape ? all.top_speed : all.speed, wall = speed;
@@ -49,7 +49,7 @@ static int is_calm(bool *calm, const struct packing *p, double tol, struct neigh
                    struct why *why)
 {
     double most = 0;
-    bool look = fastest(p) * p->dt > tol * packing_whole(p).small;
+    bool look = adapt_fastest(p) * p->dt > tol * packing_whole(p).small;
     if (look && new_overlap(&most, p, near, why)) return why->status;
     *calm = most <= tol;
     return 0;

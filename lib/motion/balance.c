@@ -9,11 +9,11 @@
 #include <stdlib.h>
 
 /* The mean velocities of a body over the step */
-struct mean {
+struct balance_mean {
     vec3 v, w; /* m/s, rad/s */
 };
 
-static void add_to(double t[3], double s, vec3 a)
+static void balance_add_to(double t[3], double s, vec3 a)
 {
     t[0] += s * a.x, t[1] += s * a.y, t[2] += s * a.z;
 }
@@ -25,19 +25,19 @@ static void add_flow(struct balance *b, const struct packing *p, const struct im
     vec3 gain = cell_flow_gain(&sum->flow, packing_predict(p, i));
     *dv = v3_add(*dv, gain);
     b->drives += p->mass[i] * v3_dot(gain, v3_axpy(p->v[i], 0.5, *dv));
-    add_to(b->impulse, p->mass[i], gain);
+    balance_add_to(b->impulse, p->mass[i], gain);
 }
 
 /* The sums over bodies of[], and mean[n] of all */
 static void add_bodies(struct balance *of_all, const struct packing *p, const struct impulses *sum,
-                       const bool *of, struct mean *mean)
+                       const bool *of, struct balance_mean *mean)
 {
     double before = step_ahead(p), after = step_after(p);
     struct balance none = { 0 }; // of those that do not count
     for (int64_t i = 0; i < p->n; i++) {
         struct balance *b = !of || of[i] ? of_all : &none;
         double m = p->mass[i];
-        mean[i] = (struct mean){ p->v[i], p->w[i] };
+        mean[i] = (struct balance_mean){ p->v[i], p->w[i] };
         if (!(m > 0)) continue;
         vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
         if (sum->flow.changes) add_flow(b, p, sum, i, &dv);
@@ -45,14 +45,14 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
         vec3 dw = top_spin(p, i, q, sum->moment[i]), was = top_predict_spin(p, i, q);
         vec3 v = v3_add(p->v[i], dv), w = v3_add(was, dw);
         vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
-        mean[i] = (struct mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(was, 0.5, dw) };
+        mean[i] = (struct balance_mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(was, 0.5, dw) };
         b->kinetic += 0.5 * (m * v3_dot(v, v) + top_energy2(p, i, q, w));
         b->potential -= m * v3_dot(p->g, x);
         b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
         b->change += top_is(p, i) ? 0.5 * (top_energy2(p, i, q, w) - top_energy2(p, i, q, was))
                                   : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
-        add_to(b->momentum, m, v);
+        balance_add_to(b->momentum, m, v);
         if (p->outside.force) b->loads += p->dt * v3_dot(p->outside.force[i], mean[i].v);
         if (p->outside.torque) b->loads += p->dt * v3_dot(p->outside.torque[i], mean[i].w);
         if (!p->pulls.n) continue;
@@ -62,7 +62,7 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
     }
 }
 
-static void add_freedoms(struct balance *b, const struct packing *p, const struct impulses *sum)
+static void balance_add_freedoms(struct balance *b, const struct packing *p, const struct impulses *sum)
 {
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
@@ -75,7 +75,7 @@ static void add_freedoms(struct balance *b, const struct packing *p, const struc
 
 /* J: r . u of what is prescribed of the velocity at a contact, and of the rest, with the mean over
    the step */
-struct work {
+struct balance_work {
     double held, free;
 };
 
@@ -83,7 +83,7 @@ struct work {
  * What freedoms and the cell add to it. Of an edge that yields the contact sees the mean rate by the shift; the
  * freedom gets what it sees by J, and the rest is the bodies', which follow the flow.
  */
-static void add_beyond(struct work *w, const struct packing *p, const struct impulses *sum,
+static void add_beyond(struct balance_work *w, const struct packing *p, const struct impulses *sum,
                        const struct contact *c, vec3 f)
 {
     vec3 twice = v3_add(cell_shift(p->cell.rate, c->shift), cell_shift(sum->next, c->shift));
@@ -113,8 +113,8 @@ static void add_ties(struct balance *b, const struct packing *p, const struct co
 }
 
 /* The moment on b turns it, and the other way round a. */
-static void add_moment(struct work *w, const struct packing *p, const struct contact *c,
-                       const double moment[3], const struct mean *mean)
+static void balance_add_moment(struct balance_work *w, const struct packing *p, const struct contact *c,
+                       const double moment[3], const struct balance_mean *mean)
 {
     vec3 m = contact_in_space(c, moment);
     *(p->mass[c->b] > 0 ? &w->free : &w->held) += v3_dot(m, mean[c->b].w);
@@ -125,16 +125,16 @@ static void add_moment(struct work *w, const struct packing *p, const struct con
 }
 
 /* Of the reaction r of contact i, without its moment */
-static struct work work_of(const struct packing *p, const struct contact *c, const double r[3],
-                           const struct impulses *sum, const struct mean *mean)
+static struct balance_work work_of(const struct packing *p, const struct contact *c, const double r[3],
+                           const struct impulses *sum, const struct balance_mean *mean)
 {
     const struct push o = push_of(p, sum->ahead, sum->edge, c, r);
-    const struct mean *mb = &mean[c->b];
-    struct work w = { 0 };
+    const struct balance_mean *mb = &mean[c->b];
+    struct balance_work w = { 0 };
     bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
     *(b_moves ? &w.free : &w.held) += v3_dot(o.f, mb->v) + push_turns_b(&o, mb->w);
     if (c->a >= 0) {
-        const struct mean *ma = &mean[c->a];
+        const struct balance_mean *ma = &mean[c->a];
         *(a_moves ? &w.free : &w.held) += push_turns_a(&o, ma->w) - v3_dot(o.f, ma->v);
     } else {
         const struct wall *wall = &p->wall[-1 - c->a];
@@ -144,21 +144,21 @@ static struct work work_of(const struct packing *p, const struct contact *c, con
     return w;
 }
 
-static void add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
-                         const struct impulses *sum, const struct mean *mean)
+static void balance_add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
+                         const struct impulses *sum, const struct balance_mean *mean)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         const double *r = s->found[i].r;
         if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
-        struct work w = work_of(p, c, r, sum, mean);
-        if (s->moment) add_moment(&w, p, c, s->moment[i], mean);
+        struct balance_work w = work_of(p, c, r, sum, mean);
+        if (s->moment) balance_add_moment(&w, p, c, s->moment[i], mean);
         b->drives -= w.held;
         b->dissipation -= w.held + w.free;
         bool a_moves = c->a >= 0 && p->mass[c->a] > 0, b_moves = p->mass[c->b] > 0;
         if (a_moves == b_moves) continue;
         vec3 f = contact_in_space(c, r);
-        add_to(b->impulse, b_moves ? 1 : -1, f);
+        balance_add_to(b->impulse, b_moves ? 1 : -1, f);
     }
 }
 
@@ -167,7 +167,7 @@ static void add_contacts(struct balance *b, const struct packing *p, const struc
  * where it takes energy, lest what a solve leaves of it be called a gain.
  */
 static struct gain gain_of(const struct packing *p, const struct contacts *s, int64_t first,
-                           int64_t end, const struct impulses *sum, const struct mean *mean)
+                           int64_t end, const struct impulses *sum, const struct balance_mean *mean)
 {
     double normal = 0, rest = 0, scale = 0;
     bool impact = false;
@@ -175,7 +175,7 @@ static struct gain gain_of(const struct packing *p, const struct contacts *s, in
         const struct contact *c = &s->c[i];
         const double *r = s->found[i].r, push[3] = { r[0], 0, 0 }, rub[3] = { 0, r[1], r[2] };
         double approach = -opening_of(p, c, sum->ahead);
-        struct work n = work_of(p, c, push, sum, mean), t = work_of(p, c, rub, sum, mean);
+        struct balance_work n = work_of(p, c, push, sum, mean), t = work_of(p, c, rub, sum, mean);
         impact = impact || (c->en > 0 && r[0] > 0 && approach > freedoms_calm(p));
         normal += n.held + n.free, rest += t.held + t.free, scale += r[0] * fabs(approach);
     }
@@ -192,7 +192,7 @@ int64_t balance_next_pair(const struct contacts *s, int64_t i)
 }
 
 static void find_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
-                       const struct impulses *sum, const struct mean *mean)
+                       const struct impulses *sum, const struct balance_mean *mean)
 {
     for (int64_t i = 0, next; i < s->n; i = next) {
         next = balance_next_pair(s, i);
@@ -204,7 +204,7 @@ static void find_gains(struct gain *gain, const struct packing *p, const struct 
 int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
                   const struct impulses *sum, struct why *why)
 {
-    struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
+    struct balance_mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     struct balance unwanted = { 0 };
     if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
     add_bodies(&unwanted, p, sum, NULL, mean);
@@ -215,7 +215,7 @@ int balance_gains(struct gain *gain, const struct packing *p, const struct conta
 
 /* Of all impacts that gain; false when memory is short. */
 static bool add_gains(struct balance *b, const struct packing *p, const struct contacts *s,
-                      const struct impulses *sum, const struct mean *mean)
+                      const struct impulses *sum, const struct balance_mean *mean)
 {
     if (!packing_may_gain(p)) return true;
     struct gain *gain = malloc(((size_t)s->n + 1) * sizeof *gain);
@@ -230,13 +230,13 @@ static bool add_gains(struct balance *b, const struct packing *p, const struct c
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
                  const struct impulses *sum, const bool *of, struct why *why)
 {
-    struct mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
+    struct balance_mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     *b = (struct balance){ 0 };
     if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
     add_bodies(b, p, sum, of, mean);
     if (energy_has_peculiar(p)) b->peculiar_change = -energy_peculiar(p, of);
-    add_freedoms(b, p, sum);
-    add_contacts(b, p, s, sum, mean);
+    balance_add_freedoms(b, p, sum);
+    balance_add_contacts(b, p, s, sum, mean);
     add_ties(b, p, s);
     bool good = add_gains(b, p, s, sum, mean);
     free(mean);

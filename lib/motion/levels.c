@@ -5,7 +5,7 @@
 
 /* level[i] of every contact; returns the number of levels. after[bodies]: one above the highest level of a body's
    contacts so far. */
-static int32_t find(const struct contacts *s, int32_t *after, int32_t *level)
+static int32_t project_find(const struct contacts *s, int32_t *after, int32_t *level)
 {
     int32_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
@@ -25,7 +25,7 @@ int levels_init(struct levels *l, const struct contacts *s, int64_t bodies)
     int32_t *after = calloc((size_t)bodies + 1, sizeof *after);
     int32_t *level = malloc((size_t)(s->n + 1) * sizeof *level);
     l->contact = malloc((size_t)(s->n + 1) * sizeof *l->contact);
-    int32_t n = after && level && l->contact ? find(s, after, level) : 0;
+    int32_t n = after && level && l->contact ? project_find(s, after, level) : 0;
     int64_t *at = calloc((size_t)n + 2, sizeof *at);
     bool room = after && level && l->contact && at;
     for (int64_t i = 0; room && i < s->n; i++) at[level[i] + 2]++;

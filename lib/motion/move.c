@@ -14,25 +14,25 @@ enum {
     BODIES_PER_THREAD = 1024 /* the fewest bodies that are worth a thread: 100 us of work */
 };
 
-static quat turn(quat q, double dt, vec3 w)
+static quat move_turn(quat q, double dt, vec3 w)
 {
     return quat_mul(quat_rotation(v3_scale(dt, w)), q);
 }
 
 /* The parts of a step in the order in which bodies take them: forward, or back to before it */
-struct way {
+struct move_way {
     double first, then; /* s */
     double sign;        /* of what gravity and reactions add to velocities */
 };
 
-static struct way way_of(const struct packing *p, bool back)
+static struct move_way move_way_of(const struct packing *p, bool back)
 {
-    if (back) return (struct way){ -step_after(p), -step_ahead(p), -1 };
-    return (struct way){ step_ahead(p), step_after(p), 1 };
+    if (back) return (struct move_way){ -step_after(p), -step_ahead(p), -1 };
+    return (struct move_way){ step_ahead(p), step_after(p), 1 };
 }
 
 /* A body that keeps its angular momentum, not its angular velocity [bodies/top.h] */
-static void top_move(struct packing *p, const struct way *y, int64_t i, vec3 moment)
+static void top_move(struct packing *p, const struct move_way *y, int64_t i, vec3 moment)
 {
     vec3 L = top_momentum(p, i, p->q[i], p->w[i]);
     p->q[i] = top_turn(p, i, p->q[i], L, y->first);
@@ -50,19 +50,19 @@ static vec3 velocity_after(const struct packing *p, const struct cell_flow *flow
 }
 
 /* Body i through the step, with its impulse and moment, which act between its parts. */
-static void body_move(struct packing *p, const struct cell_flow *flow, const struct way *y,
+static void body_move(struct packing *p, const struct cell_flow *flow, const struct move_way *y,
                       int64_t i, vec3 force, vec3 moment)
 {
     bool top = top_is(p, i);
     if (top) top_move(p, y, i, moment);
     p->x[i] = v3_axpy(p->x[i], y->first, p->v[i]);
-    if (!top) p->q[i] = turn(p->q[i], y->first, p->w[i]);
+    if (!top) p->q[i] = move_turn(p->q[i], y->first, p->w[i]);
     if (p->mass[i] > 0) {
         p->v[i] = velocity_after(p, flow, y->sign, i, p->x[i], force);
         if (!top) p->w[i] = v3_axpy(p->w[i], y->sign / p->inertia[i], moment);
     }
     p->x[i] = v3_axpy(p->x[i], y->then, p->v[i]);
-    if (!top) p->q[i] = quat_unit(turn(p->q[i], y->then, p->w[i]));
+    if (!top) p->q[i] = quat_unit(move_turn(p->q[i], y->then, p->w[i]));
 }
 
 static void move_freedoms(struct packing *p, const struct impulses *sum, bool back)
@@ -73,22 +73,22 @@ static void move_freedoms(struct packing *p, const struct impulses *sum, bool ba
 }
 
 /* Bodies that move */
-struct moving {
+struct move_moving {
     struct packing *p;
     const struct impulses *sum;
-    struct way way;
+    struct move_way way;
 };
 
 static void move_some(void *arg, int64_t first, int64_t end)
 {
-    const struct moving *m = arg;
+    const struct move_moving *m = arg;
     for (int64_t i = first; i < end; i++)
         body_move(m->p, &m->sum->flow, &m->way, i, m->sum->force[i], m->sum->moment[i]);
 }
 
 static void move_bodies(struct packing *p, const struct impulses *sum, bool back)
 {
-    struct moving m = { p, sum, way_of(p, back) };
+    struct move_moving m = { p, sum, move_way_of(p, back) };
     team_share(team_size(), p->n, BODIES_PER_THREAD, move_some, &m);
 }
 

@@ -102,7 +102,7 @@ static inline bool relax(struct projected_contact *k, const struct packing *p,
 }
 
 /* Parts that are made */
-struct making {
+struct project_making {
     const struct packing *p;
     const struct contacts *s;
     const struct displacements *o;
@@ -112,7 +112,7 @@ struct making {
 
 static void make_some(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct project_making *m = arg;
     const struct displacements *o = m->o;
     bool any = false;
     for (int64_t i = first; i < end; i++) {
@@ -131,7 +131,7 @@ static void make_some(void *arg, int64_t first, int64_t end)
 static bool parts_make(const struct packing *p, const struct contacts *s,
                        const struct displacements *o, struct projected_contact *part)
 {
-    struct making m = { p, s, o, part, false };
+    struct project_making m = { p, s, o, part, false };
     team_share(team_size(), s->n, PER_THREAD, make_some, &m);
     return m.any;
 }
@@ -188,7 +188,7 @@ struct relaxing {
 };
 
 /* One sweep in the order of the contacts; returns whether it has changed much */
-static bool sweep(const struct relaxing *y)
+static bool project_sweep(const struct relaxing *y)
 {
     bool more = false;
     for (int64_t i = 0; i < y->s->n; i++)
@@ -254,7 +254,7 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     struct relaxing all = { .p = p, .s = s, .o = &o, .part = part, .sweeps = SWEEPS };
     if (more && !share && relax_in_threads(&all)) more = false;
     for (int k = 0; more && k < SWEEPS; k++) {
-        more = sweep(&all);
+        more = project_sweep(&all);
         if (share) more = share->after_sweep(share->with, o.d, more);
     }
     if (did) *did = (struct projected){ 0 };

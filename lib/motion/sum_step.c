@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void add(struct face_sums *to, const struct packing *p, const struct contacts *s, int64_t i,
+static void sum_step_add(struct face_sums *to, const struct packing *p, const struct contacts *s, int64_t i,
                 const struct impulses *sum)
 {
     const struct contact *c = &s->c[i];
@@ -36,7 +36,7 @@ int sum_step(struct packing *p, const struct contacts *s, const struct impulses 
         const double *r = s->found[i].r;
         if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
         int32_t face = face_of_contact(f, p, &s->c[i], sum->ahead);
-        add(&p->sums.face[f->first[-1 - s->c[i].a] + face], p, s, i, sum);
+        sum_step_add(&p->sums.face[f->first[-1 - s->c[i].a] + face], p, s, i, sum);
     }
     return 0;
 }

@@ -61,7 +61,7 @@ void problem_apply(const struct problem *p, struct apply *a, const double *x, do
     (p->W ? apply_blocks : apply_bodies)(p, a, x, y);
 }
 
-static void push(void *problem, int me, int threads)
+static void apply_push(void *problem, int me, int threads)
 {
     backend_widest()->sweep->push(problem, me, threads);
 }
@@ -74,7 +74,7 @@ void problem_renew(struct problem *p, int threads)
         return;
     }
     problem_set_free_motion(p);
-    team_do(threads, push, p);
+    team_do(threads, apply_push, p);
 }
 
 void problem_react(struct problem *p, const double *r, int threads)

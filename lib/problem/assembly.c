@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int short_of_memory(struct why *why)
+static int assembly_short_of_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
 }
@@ -62,7 +62,7 @@ static double *pulled(const struct assembly *A, bool *good)
 
 /* The bodies are as fast as the freedoms were before the step: q gets what the forces add to that,
    and w loses it. */
-static bool add_freedoms(struct assembly *A)
+static bool assembly_add_freedoms(struct assembly *A)
 {
     A->pulled = NULL;
     bool good;
@@ -114,7 +114,7 @@ static bool assembly_vectors(struct assembly *A)
     assembly_velocity(A, A->free, A->q);
     assembly_velocity(A, still, A->w);
     free(still);
-    return add_freedoms(A);
+    return assembly_add_freedoms(A);
 }
 
 int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
@@ -138,7 +138,7 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     }
     good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && list_freedoms(A) &&
            assembly_vectors(A);
-    return good ? 0 : short_of_memory(why);
+    return good ? 0 : assembly_short_of_memory(why);
 }
 
 /* J: u_c = J (v, w), or J (v, y) of levers, for the body at this end of the contact, as in bundle_velocity() */
@@ -166,7 +166,7 @@ static bool in_blocks(const struct couplings *y, const struct coupling *of, enum
 }
 
 /* B += J_c J_b^T / m over the freedoms that c and b share */
-static void add_shared(const struct couplings *y, int64_t c, int64_t b, enum blocks_of which,
+static void assembly_add_shared(const struct couplings *y, int64_t c, int64_t b, enum blocks_of which,
                        double B[3][3])
 {
     for (int64_t k = y->first[c]; k < y->first[c + 1]; k++)
@@ -196,7 +196,7 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, enum 
                 B[i][j] += im * (J[i][0] * K[j][0] + J[i][1] * K[j][1] + J[i][2] * K[j][2]) +
                            ii * (J[i][3] * K[j][3] + J[i][4] * K[j][4] + J[i][5] * K[j][5]);
     }
-    if (A->p->coupling) add_shared(A->p->coupling, c, b, which, B);
+    if (A->p->coupling) assembly_add_shared(A->p->coupling, c, b, which, B);
 }
 
 /* The contacts of a body or a freedom, ascending, while they are being merged with others */
@@ -268,13 +268,13 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
     int64_t n = A->p->n, d = A->p->d, blocks = 0;
     *W = (struct stored){ 0 };
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
-    if (!near) return short_of_memory(why);
+    if (!near) return assembly_short_of_memory(why);
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, ALL, near);
     int e = 0;
     if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
         e = why_set(why, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
     else if (!stored_init(W, n * d, n * d, -2, blocks * d * d))
-        e = short_of_memory(why);
+        e = assembly_short_of_memory(why);
     else
         fill_W(A, W, near);
     free(near);
@@ -305,7 +305,7 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *wh
     int d = A->p->d;
     int64_t n = A->p->n, blocks = 0;
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
-    if (!near) return short_of_memory(why);
+    if (!near) return assembly_short_of_memory(why);
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, NOT_COMMON, near);
     if (!delassus_alloc(W, d, n, blocks, why) && !assembly_common(A, W, why)) {
         blocks = 0;
@@ -421,7 +421,7 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
         return why_set(why, EX_DATAERR,
                        "/fclib_global/H: too large for the 32-bit indices of FCLIB");
     int32_t *first = malloc((size_t)(A->p->bodies + freedoms_of(A) + 1) * sizeof *first);
-    if (!first) return short_of_memory(why);
+    if (!first) return assembly_short_of_memory(why);
     int64_t nv = assembly_unknowns(A, first);
     *f = malloc((size_t)(nv + 1) * sizeof **f);
     bool good =
@@ -431,5 +431,5 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
         fill_H(A, first, H);
     }
     free(first);
-    return good ? 0 : short_of_memory(why);
+    return good ? 0 : assembly_short_of_memory(why);
 }

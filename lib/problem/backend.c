@@ -15,7 +15,7 @@ static const struct backend backends[] = { { 2, &sweep_2, &judge_2, &mixing_2 },
 static const struct backend *chosen;
 
 /* Whether the machine has vectors of that many doubles */
-static bool has(int lanes)
+static bool backend_has(int lanes)
 {
 #ifdef __x86_64__
     if (lanes == 4) return __builtin_cpu_supports("avx2");
@@ -27,10 +27,10 @@ static bool has(int lanes)
 void backend_narrow(int lanes)
 {
     for (size_t k = 0; k < sizeof backends / sizeof *backends; k++)
-        if (!k || (backends[k].lanes <= lanes && has(backends[k].lanes))) chosen = &backends[k];
+        if (!k || (backends[k].lanes <= lanes && backend_has(backends[k].lanes))) chosen = &backends[k];
 }
 
-static void choose(void)
+static void backend_choose(void)
 {
     const char *most = chosen ? NULL : getenv("NSD_LANES");
     if (!chosen) backend_narrow(most ? atoi(most) : BUNDLE);
@@ -39,6 +39,6 @@ static void choose(void)
 const struct backend *backend_widest(void)
 {
     static pthread_once_t once = PTHREAD_ONCE_INIT;
-    pthread_once(&once, choose);
+    pthread_once(&once, backend_choose);
     return chosen;
 }

@@ -7,7 +7,7 @@
 
 #define GB 1e9 /* bytes */
 
-static int check_memory(const struct problem *p, struct why *why)
+static int bonded_check_memory(const struct problem *p, struct why *why)
 {
     double entries = (double)p->n * (double)p->n * p->d * p->d, need = 3 * 16 * entries;
     double have = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
@@ -31,7 +31,7 @@ static double prestress(const struct assembly *A, int64_t c, int j)
 }
 
 /* M += H K H^T, f -= H (a + K w); false when memory is short. */
-static bool add_bonds(const struct assembly *A, struct global *P)
+static bool prepare_add_bonds(const struct assembly *A, struct global *P)
 {
     struct lists of;
     int d = A->p->d;
@@ -60,7 +60,7 @@ int bonded_global(const struct assembly *A, struct global *P, struct why *why)
     int e = assembly_MH(A, &M, &H, &P->f, why);
     P->nv = M.n;
     if (!e) e = sparse_unpack(&P->M, &M, "M", why) || sparse_unpack(&P->H, &H, "H", why);
-    if (!e && !add_bonds(A, P)) why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    if (!e && !prepare_add_bonds(A, P)) why_set(why, EX_SOFTWARE, "no memory for the bonds");
     stored_free(&M), stored_free(&H);
     return why->status;
 }
@@ -70,7 +70,7 @@ int bonded_local(const struct assembly *A, struct sparse *W, double *q, struct w
     struct global P = { 0 };
     struct motion U = { 0 };
     *W = (struct sparse){ 0 };
-    int e = check_memory(A->p, why);
+    int e = bonded_check_memory(A->p, why);
     if (!e) e = bonded_global(A, &P, why);
     if (!e) memcpy(q, A->w, (size_t)(A->p->n * A->p->d) * sizeof *q);
     if (!e) e = condense(&P, &U, W, q, why);
@@ -78,7 +78,7 @@ int bonded_local(const struct assembly *A, struct sparse *W, double *q, struct w
     return e;
 }
 
-static int fill(const struct assembly *A, struct delassus *W, struct why *why)
+static int prepare_fill(const struct assembly *A, struct delassus *W, struct why *why)
 {
     struct sparse w = { 0 };
     int64_t n = A->p->n, d = A->p->d;
@@ -98,7 +98,7 @@ int bonded_blocks(const struct problem *bodies, struct delassus *W, struct why *
 {
     struct assembly A;
     int e = assembly_init(&A, bodies, why);
-    if (!e) e = fill(&A, W, why);
+    if (!e) e = prepare_fill(&A, W, why);
     assembly_free(&A);
     return e;
 }

@@ -14,7 +14,7 @@ static int rows(const struct problem *p, int which)
 }
 
 /* All numbers of a slot, whatever they are; returns how many. at[]: where they are, or NULL */
-static int numbers(const struct problem *p, int64_t slot, double **at)
+static int mass_splitting_numbers(const struct problem *p, int64_t slot, double **at)
 {
     int n = 0;
     for (int k = 0; k < ARRAYS; k++) {
@@ -58,7 +58,7 @@ static void keep_changed(const struct problem *p, struct brake *b)
 {
     for (int j = 0; j < b->all; j++) b->number[j] = 0;
     for (int64_t i = 0; i < b->n; i++) {
-        numbers(p, b->slot[i], b->at);
+        mass_splitting_numbers(p, b->slot[i], b->at);
         for (int j = 0; j < b->all; j++)
             if (bits(*b->at[j]) != bits(b->other[i * b->all + j])) b->number[j] = 1;
     }
@@ -73,11 +73,11 @@ int brake_make(struct problem *p, const struct filling *f, const double *slower)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < p->slots; i++) n += p->contact[i] >= 0 && slower[p->contact[i]] > 1;
-    struct brake *b = p->brake = brake_new(n, numbers(p, 0, NULL));
+    struct brake *b = p->brake = brake_new(n, mass_splitting_numbers(p, 0, NULL));
     if (!b) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0 || !(slower[p->contact[i]] > 1)) continue;
-        numbers(p, i, b->at);
+        mass_splitting_numbers(p, i, b->at);
         for (int j = 0; j < b->all; j++) b->other[b->n * b->all + j] = *b->at[j];
         fill_slot(f, i, slower[p->contact[i]]);
         b->slot[b->n++] = i;
@@ -92,7 +92,7 @@ void brake_hold(struct problem *p, bool hold)
     struct brake *b = p->brake;
     if (!b || b->held == hold) return;
     for (int64_t i = 0; i < b->n; i++) {
-        numbers(p, b->slot[i], b->at);
+        mass_splitting_numbers(p, b->slot[i], b->at);
         for (int j = 0; j < b->width; j++) {
             double *here = b->at[b->number[j]], *other = &b->other[i * b->width + j], x = *other;
             *other = *here, *here = x;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <suitesparse/klu.h>
 
-static int short_of_memory(struct why *why)
+static int condense_short_of_memory(struct why *why)
 {
     why_set(why, EX_SOFTWARE, "out of memory for a global problem");
     return EX_SOFTWARE;
@@ -82,12 +82,12 @@ static int factor_init(struct factor *K, const struct global *P, struct why *why
 {
     K->n = P->nv + P->nl;
     if (K->n == 0) return 0;
-    if (!factor_gather(K, P)) return short_of_memory(why);
+    if (!factor_gather(K, P)) return condense_short_of_memory(why);
     klu_l_common *c = &K->common;
     klu_l_defaults(c);
     K->symbolic = klu_l_analyze(K->n, K->p, K->i, c);
     if (K->symbolic) K->numeric = klu_l_factor(K->p, K->i, K->x, K->symbolic, c);
-    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE) return short_of_memory(why);
+    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE) return condense_short_of_memory(why);
     bool good = K->numeric && c->status == KLU_OK && klu_l_rcond(K->symbolic, K->numeric, c);
     if (!good || !(c->rcond >= 1e-16))
         return why_set(why, EX_DATAERR, "/fclib_global/M: %s singular (rcond %.1g)",
@@ -110,7 +110,7 @@ static int condense_free(struct motion *U, const struct global *P, struct factor
                          struct why *why)
 {
     U->v0 = calloc((size_t)K->n + 1, sizeof *U->v0);
-    if (!U->v0) return short_of_memory(why);
+    if (!U->v0) return condense_short_of_memory(why);
     if (K->n == 0) return 0;
     for (int64_t k = 0; k < P->nv; k++) K->dense[k] = P->f[k];
     for (int64_t k = 0; k < P->nl; k++) K->dense[P->nv + k] = -P->b[k];
@@ -154,7 +154,7 @@ static bool join_columns(const struct sparse *H, const struct lists *of, int32_t
 }
 
 /* The entries of H by columns, and work space */
-struct columns {
+struct condense_columns {
     struct lists of;
     int32_t *component; /* [2 K->n] */
     int32_t *todo;      /* [H->n] */
@@ -167,7 +167,7 @@ struct columns {
  * d.
  */
 static int solve_columns(struct sparse *V, const struct sparse *H, struct factor *K,
-                         const struct columns *s, struct why *why)
+                         const struct condense_columns *s, struct why *why)
 {
     const struct lists *of = &s->of;
     int32_t *component = s->component, *owner = component + K->n, *todo = s->todo;
@@ -183,7 +183,7 @@ static int solve_columns(struct sparse *V, const struct sparse *H, struct factor
         for (int64_t i = 0; i < K->n; i++)
             if (owner[component[i]] >= 0 && y[i] != 0 &&
                 !sparse_add(V, i, owner[component[i]], y[i]))
-                return short_of_memory(why);
+                return condense_short_of_memory(why);
     }
     return 0;
 }
@@ -191,11 +191,11 @@ static int solve_columns(struct sparse *V, const struct sparse *H, struct factor
 static int condense_columns(struct motion *U, const struct global *P, struct factor *K,
                             struct why *why)
 {
-    struct columns s = { .component = calloc((size_t)(2 * K->n + 1), sizeof *s.component),
+    struct condense_columns s = { .component = calloc((size_t)(2 * K->n + 1), sizeof *s.component),
                          .todo = malloc((size_t)(P->H.n + 1) * sizeof *s.todo),
                          .y = malloc((size_t)(K->n + 1) * sizeof *s.y) };
     bool room = s.y && s.component && s.todo && lists_init(&s.of, P->H.n, P->H.count, P->H.col);
-    int e = room ? solve_columns(&U->V, &P->H, K, &s, why) : short_of_memory(why);
+    int e = room ? solve_columns(&U->V, &P->H, K, &s, why) : condense_short_of_memory(why);
     lists_free(&s.of);
     free(s.todo), free(s.component), free(s.y);
     return e;
@@ -239,7 +239,7 @@ int condense(const struct global *P, struct motion *U, struct sparse *W, double 
     if (!e) e = condense_free(U, P, &K, why);
     if (!e) e = condense_columns(U, P, &K, why);
     factor_free(&K);
-    if (!e && !condense_W(W, &P->H, &U->V)) e = short_of_memory(why);
+    if (!e && !condense_W(W, &P->H, &U->V)) e = condense_short_of_memory(why);
     for (int64_t k = 0; !e && k < P->H.count; k++) q[P->H.col[k]] += P->H.x[k] * U->v0[P->H.row[k]];
     return e;
 }

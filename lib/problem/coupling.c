@@ -10,7 +10,7 @@ void couplings_free(struct couplings *c)
     *c = (struct couplings){ 0 };
 }
 
-static bool add(struct couplings *c, int64_t *room, const struct coupling *one)
+static bool coupling_add(struct couplings *c, int64_t *room, const struct coupling *one)
 {
     if (c->n == *room) {
         int64_t more = *room + *room / 2 + 64;
@@ -23,7 +23,7 @@ static bool add(struct couplings *c, int64_t *room, const struct coupling *one)
 }
 
 /* Appends those of contact i; false when memory is short. */
-static bool add_contact(struct couplings *c, int64_t *room, const struct packing *p,
+static bool coupling_add_contact(struct couplings *c, int64_t *room, const struct packing *p,
                         const vec3 half[3], const struct contact *t, int64_t i)
 {
     const double ahead = step_ahead(p);
@@ -33,7 +33,7 @@ static bool add_contact(struct couplings *c, int64_t *room, const struct packing
         const struct coupling one = {
             k, (int32_t)i, { v3_dot(t->n, g), v3_dot(t->t1, g), v3_dot(contact_t2(t), g) }
         };
-        if (!add(c, room, &one)) return false;
+        if (!coupling_add(c, room, &one)) return false;
     }
     return true;
 }
@@ -49,7 +49,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;
     for (int64_t i = 0; good && i < s->n; i++) {
-        good = add_contact(c, &room, p, half, &s->c[i], i);
+        good = coupling_add_contact(c, &room, p, half, &s->c[i], i);
         c->first[i + 1] = c->n;
     }
     if (good) return 0;

@@ -71,7 +71,7 @@ static int64_t count_blocks(const struct sparse *A, const int64_t *order, int d)
     return blocks;
 }
 
-static int no_memory(struct delassus *W, int64_t n, struct why *why)
+static int delassus_no_memory(struct delassus *W, int64_t n, struct why *why)
 {
     delassus_free(W);
     why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
@@ -89,13 +89,13 @@ int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct 
     W->mu = calloc((size_t)(n + 1), sizeof *W->mu);
     W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
     bool room = W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
-    return room ? 0 : no_memory(W, n, why);
+    return room ? 0 : delassus_no_memory(W, n, why);
 }
 
 int delassus_alloc_common(struct delassus *W, int common, struct why *why)
 {
     W->J = calloc((size_t)(W->n * W->d * common) + 1, sizeof *W->J);
-    if (!W->J) return no_memory(W, W->n, why);
+    if (!W->J) return delassus_no_memory(W, W->n, why);
     W->common = common;
     return 0;
 }
@@ -107,7 +107,7 @@ int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, 
     int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
     int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
     int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
-    int e = tally && half && order ? 0 : no_memory(W, n, why);
+    int e = tally && half && order ? 0 : delassus_no_memory(W, n, why);
     if (!e) { // by column, then stably by row
         sort_by_block(W, entries, A->col, NULL, half, tally);
         sort_by_block(W, entries, A->row, half, order, tally);

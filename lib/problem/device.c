@@ -8,7 +8,7 @@
 /* The table; NULL ends it */
 static const struct device_kind *const device_kinds[] = { &device_opencl, NULL };
 
-static const struct device_kind *kind_named(const char *name, size_t n)
+static const struct device_kind *device_kind_named(const char *name, size_t n)
 {
     for (int k = 0; device_kinds[k]; k++)
         if (strlen(device_kinds[k]->name) == n && !strncmp(device_kinds[k]->name, name, n))
@@ -20,7 +20,7 @@ static const struct device_kind *kind_named(const char *name, size_t n)
 static const struct device_kind *parse(const char *name, int *number, struct why *why)
 {
     size_t n = strcspn(name, ":"), digits = name[n] ? strspn(name + n + 1, "0123456789") : 0;
-    const struct device_kind *kind = kind_named(name, n);
+    const struct device_kind *kind = device_kind_named(name, n);
     if (!kind || (name[n] && (!digits || digits > 3 || name[n + 1 + digits]))) {
         why_set(why, EX_USAGE, "--device: '%s' is none of list, opencl, opencl:N", name);
         return NULL;

@@ -22,7 +22,7 @@ struct result {
     double x[NUMBERS];
 };
 
-static void note(struct result *r, const void *x, size_t n)
+static void device_note(struct result *r, const void *x, size_t n)
 {
     if (r->n + (int)n > NUMBERS) n = (size_t)(NUMBERS - r->n);
     memcpy(r->x + r->n, x, n * sizeof *r->x);
@@ -30,7 +30,7 @@ static void note(struct result *r, const void *x, size_t n)
 }
 
 /* Numbers in -1 .. 1 of the generator of Park and Miller, the same everywhere */
-static double number(uint64_t *state)
+static double device_number(uint64_t *state)
 {
     *state = *state * 48271 % 2147483647;
     return 2 * (double)*state / 2147483647 - 1;
@@ -44,18 +44,18 @@ static void fill_contact(struct problem *p, int64_t i, int64_t c, uint64_t *stat
     struct rebound *e = slot_rebound(p, i);
     int k = slot_lane(i);
     const struct body *a = &p->body[c], *b = &p->body[c + 1];
-    double n[3], len = 0, la = 0.5 + 0.2 * number(state), lb = 0.5 + 0.2 * number(state);
-    for (int j = 0; j < 3; j++) n[j] = number(state), len += n[j] * n[j];
+    double n[3], len = 0, la = 0.5 + 0.2 * device_number(state), lb = 0.5 + 0.2 * device_number(state);
+    for (int j = 0; j < 3; j++) n[j] = device_number(state), len += n[j] * n[j];
     for (int j = 0; j < 3; j++) x->n[j][k] = n[j] / sqrt(len);
     double im = a->im + b->im, it = im + la * la * a->ii + lb * lb * b->ii;
     x->a[k] = body_place(c), x->b[k] = body_place(c + 1);
-    x->la[k] = la, x->lb[k] = lb, x->mu[k] = 0.5 + 0.4 * number(state);
+    x->la[k] = la, x->lb[k] = lb, x->mu[k] = 0.5 + 0.4 * device_number(state);
     for (int j = 0; j < 2; j++) {
-        e->s[j][k] = 0.8 + 0.2 * number(state);
+        e->s[j][k] = 0.8 + 0.2 * device_number(state);
         p->w[i / BUNDLE][j][k] = e->s[j][k] * (j ? it : im);
         x->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
     }
-    for (int j = 0; j < 3; j++) e->offset[j][k] = 0.1 * number(state);
+    for (int j = 0; j < 3; j++) e->offset[j][k] = 0.1 * device_number(state);
     p->rho[i / BUNDLE][k] = 1 / slot_lambda(p, i);
 }
 
@@ -88,8 +88,8 @@ static bool make_balls(struct problem *p, int32_t contact[CHAIN], int64_t group[
     if (!p->body || !p->rebound || !lay_bundles(p)) return false;
     for (int64_t i = 0; i < p->bodies; i++) {
         struct body *b = &p->body[i];
-        for (int j = 0; j < 3; j++) b->v[j] = number(state), b->w[j] = number(state);
-        b->im = i ? 1 + 0.5 * number(state) : 0, b->ii = i ? 2.5 * b->im : 0;
+        for (int j = 0; j < 3; j++) b->v[j] = device_number(state), b->w[j] = device_number(state);
+        b->im = i ? 1 + 0.5 * device_number(state) : 0, b->ii = i ? 2.5 * b->im : 0;
     }
     for (int i = 0; i < CHAIN; i++) fill_contact(p, i, contact[i], state);
     return true;
@@ -105,14 +105,14 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
     struct why why = { 0 };
     int n = 0;
     for (int c = 0; c < CHAIN; c++) {
-        mu[c] = 0.6 + 0.5 * number(state);
-        for (int j = 0; j < 3; j++) q[3 * c + j] = number(state) - (j == 0 ? 0.5 : 0);
+        mu[c] = 0.6 + 0.5 * device_number(state);
+        for (int j = 0; j < 3; j++) q[3 * c + j] = device_number(state) - (j == 0 ? 0.5 : 0);
         for (int b = c > 0 ? c - 1 : 0; b <= c + 1 && b < CHAIN; b++)
             for (int j = 0; j < 9; j++) {
                 int across = j / 3, along = j % 3;
                 row[n] = 3 * c + across, col[n] = 3 * b + along;
                 if (b != c)
-                    x[n] = 0.1 * number(state);
+                    x[n] = 0.1 * device_number(state);
                 else if (across == along)
                     x[n] = across ? 3.5 : 1;
                 else
@@ -131,7 +131,7 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
 
 /* ---- what both make of it ---- */
 
-static void start(struct problem *p, const struct body *body)
+static void device_start(struct problem *p, const struct body *body)
 {
     for (int64_t i = 0; i < p->slots; i++)
         slot_set(p, i, (const double[3]){ 0 }, (const double[3]){ 0 });
@@ -139,14 +139,14 @@ static void start(struct problem *p, const struct body *body)
     if (p->W) memset(p->W->r, 0, (size_t)(p->d * p->W->n) * sizeof *p->W->r);
 }
 
-static void finish(const struct problem *p, struct result *out)
+static void device_finish(const struct problem *p, struct result *out)
 {
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         slot_get(p, i, r, u);
-        note(out, r, 3), note(out, u, 3);
+        device_note(out, r, 3), device_note(out, u, 3);
     }
-    if (p->body) note(out, p->body, 8 * (size_t)p->bodies);
+    if (p->body) device_note(out, p->body, 8 * (size_t)p->bodies);
 }
 
 static struct sweep_opt options(int sweep)
@@ -174,11 +174,11 @@ static void on_cpu(struct problem *p, enum method_id method, struct mixing m, st
         b->mixing->measure(p, &m, 0, p->bundles, &mixed);
         m.next = k % MIXING_DEPTH;
         b->mixing->react(p, 0, 1, &m, 0.5, gamma_of);
-        note(out, counts, 4), note(out, &s, sizeof s / sizeof(double));
-        note(out, &mixed, sizeof mixed / sizeof(double));
+        device_note(out, counts, 4), device_note(out, &s, sizeof s / sizeof(double));
+        device_note(out, &mixed, sizeof mixed / sizeof(double));
     }
     b->judge->velocities(p, 0, p->bundles);
-    finish(p, out);
+    device_finish(p, out);
 }
 
 static void on_device(struct problem *p, struct mixing m, struct result *out)
@@ -198,18 +198,18 @@ static void on_device(struct problem *p, struct mixing m, struct result *out)
         device_measure(p, &m, p->bundles, &mixed);
         m.next = k % MIXING_DEPTH;
         device_react(p, &m, 0.5, gamma_of);
-        note(out, counts, 4), note(out, &s, sizeof s / sizeof(double));
-        note(out, &mixed, sizeof mixed / sizeof(double));
+        device_note(out, counts, 4), device_note(out, &s, sizeof s / sizeof(double));
+        device_note(out, &mixed, sizeof mixed / sizeof(double));
     }
     device_velocities(p);
     device_home(p, false);
-    finish(p, out);
+    device_finish(p, out);
 }
 
 /* ---- the comparison ---- */
 
 /* Both, of a problem that is made; -1 when memory is short */
-static int compare(struct device *d, struct problem *p, enum method_id method, bool *same,
+static int device_compare(struct device *d, struct problem *p, enum method_id method, bool *same,
                    struct why *why)
 {
     size_t vector = (size_t)p->slots * 3, bodies = (size_t)p->bodies * sizeof *p->body;
@@ -223,8 +223,8 @@ static int compare(struct device *d, struct problem *p, enum method_id method, b
         m.df[j] = room + (2 + 2 * (size_t)j) * vector;
     if (!failed) {
         if (p->body) memcpy(body, p->body, bodies);
-        start(p, body), on_cpu(p, method, m, &out[0]);
-        start(p, body);
+        device_start(p, body), on_cpu(p, method, m, &out[0]);
+        device_start(p, body);
         if (!device_hold(d, p, method, why)) {
             on_device(p, m, &out[1]);
             device_release(p, why);
@@ -250,7 +250,7 @@ int device_check(struct device *d, const struct problem_kind *kind, enum method_
     bool made = variant ? make_blocks(&p, &W, kind->full, methods[method]->rho, &state)
                         : make_balls(&p, contact, group, &state);
     const struct device_account account = d->account; // not of a solve
-    if (!made || compare(d, &p, method, &same, why))
+    if (!made || device_compare(d, &p, method, &same, why))
         why_set(why, EX_SOFTWARE, "--device: no memory");
     d->account = account;
     if (made || !variant) problem_free(&p);

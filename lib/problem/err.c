@@ -78,7 +78,7 @@ static void judge_some(void *arg, int64_t from, int64_t to)
 }
 
 /* The sums of one bundle are its lanes' terms. */
-static void take_terms(const struct sums *s, int k, double term[EXCHANGE_TERMS])
+static void err_take_terms(const struct sums *s, int k, double term[EXCHANGE_TERMS])
 {
     const double t[EXCHANGE_TERMS] = { s->motion[k],      s->proj[k],     s->bipotential[k],
                                        s->penetration[k], s->natural2[k], s->siconos2[k],
@@ -125,11 +125,11 @@ static void judge_shared(const struct problem *p, bool believes, enum err_terms 
         if (exchange_is_copy(exchange, i)) continue;
         if (parts == 2) judge_unbonded(p, i, believes, which, &s);
         for (int k = 0; k < BUNDLE && parts == 2; k++)
-            take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
+            err_take_terms(&s, k, term[(BUNDLE * i + k) * parts]);
         if (parts == 2) sums_negate(&s); // so that what is added to them first leaves 0
         backend_widest()->judge->judge(p, i, i + 1, believes, which, &s);
         for (int k = 0; k < BUNDLE; k++)
-            take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
+            err_take_terms(&s, k, term[(BUNDLE * i + k) * parts + parts - 1]);
         most[0] = fmax(most[0], bundle_max(s.max_pen));
         most[1] = fmax(most[1], bundle_max(s.max_true));
         most[2] = fmax(most[2], bundle_max(s.max_velocity2));

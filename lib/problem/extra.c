@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* The bodies' angular velocity relative to each other, in (n, t1, t2) */
-static void spin(const struct extra_lane *at, double omega[3])
+static void extra_spin(const struct extra_lane *at, double omega[3])
 {
     const double *wa = body_at(at->body, at->c->a[at->i]) + 3;
     const double *wb = body_at(at->body, at->c->b[at->i]) + 3;
@@ -33,7 +33,7 @@ void extra_push(const struct extra_lane *at, const double dm[3])
 
 /* W, limits and step of a contact with these w^ and s of the impact law, in the units of
    law/rolling.h. Impact multiplies u by s, which changes no law; without it W is symmetric. */
-static void set_operator(const struct bundle *c, const struct extra *x, int i, const double w[2],
+static void extra_set_operator(const struct bundle *c, const struct extra *x, int i, const double w[2],
                          const double s[2], struct rolling *q)
 {
     double l = x->length[i];
@@ -79,9 +79,9 @@ void extra_rolling(const struct extra_lane *at, const double w[2], const double 
     int i = at->i;
     const double r[3] = { c->r[0][i], c->r[1][i], c->r[2][i] };
     double omega[3], l = x->length[i];
-    set_operator(c, x, i, w, s, q);
+    extra_set_operator(c, x, i, w, s, q);
     extra_impulse(x, i, r, q->x);
-    spin(at, omega);
+    extra_spin(at, omega);
     for (int j = 0; j < 3; j++) v[j] = u[j] / s[j > 0];
     v[3] = l * omega[0], v[4] = -l * omega[2], v[5] = l * omega[1];
 }
@@ -97,10 +97,10 @@ void extra_roll(const struct extra_lane *at, enum method_id method, const struct
     int i = at->i;
     struct rolling q;
     double omega[3], k = x->s[1][i] * x->k[i], length = x->length[i];
-    set_operator(at->c, x, i, l->w, l->s, &q);
+    extra_set_operator(at->c, x, i, l->w, l->s, &q);
     extra_impulse(x, i, l->r, q.x);
     const double was[2] = { q.x[4], q.x[5] };
-    spin(at, omega);
+    extra_spin(at, omega);
     const double turned[2] = { -omega[2], omega[1] };
     q.b[0] = l->b[0] / l->s[0];
     q.b[3] = length * omega[0] - q.wp * q.x[3];

@@ -4,7 +4,7 @@
 #include "base/eigen.h"
 
 /* C = A^-1, 3 x 3; A's eigenvalues are at least 1. */
-static void invert(const double A[9], double C[9])
+static void extra_invert(const double A[9], double C[9])
 {
     double B[9];
     for (int i = 0; i < 3; i++)
@@ -20,7 +20,7 @@ void extra_levers_bond(double block[9][BUNDLE], struct extra_levers *y, int i, c
 {
     double A[9], S[9], W[9];
     for (int j = 0; j < 9; j++) A[j] = (j % 4 == 0) + block[j][i] * K[j % 3 > 0];
-    invert(A, S);
+    extra_invert(A, S);
     for (int j = 0; j < 9; j++) {
         y->S[j][i] = S[j], W[j] = 0;
         for (int l = 0; l < 3; l++) W[j] += S[3 * (j / 3) + l] * block[3 * l + j % 3][i];
@@ -78,7 +78,7 @@ double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct
 }
 
 /* The bodies' angular velocity relative to each other, as law/rolling.h has it */
-static void spin(const struct extra_lane *at, double omega[3])
+static void extra_levers_spin(const struct extra_lane *at, double omega[3])
 {
     const struct extra_levers *y = at->y;
     int i = at->i;
@@ -91,7 +91,7 @@ static void spin(const struct extra_lane *at, double omega[3])
 }
 
 /* The contact without its b and x: W and limits */
-static void set_operator(const struct extra_lane *at, struct rolling *q)
+static void extra_levers_set_operator(const struct extra_lane *at, struct rolling *q)
 {
     const struct extra *x = at->x;
     const struct extra_levers *y = at->y;
@@ -106,10 +106,10 @@ void extra_levers_rolling(const struct extra_lane *at, const double u[3], struct
                           double v[ROLLING])
 {
     const double r[3] = { at->c->r[0][at->i], at->c->r[1][at->i], at->c->r[2][at->i] };
-    set_operator(at, q);
+    extra_levers_set_operator(at, q);
     extra_impulse(at->x, at->i, r, q->x);
     for (int j = 0; j < 3; j++) v[j] = u[j];
-    spin(at, v + 3);
+    extra_levers_spin(at, v + 3);
 }
 
 void extra_levers_push(const struct extra_lane *at, const double dm[3])
@@ -134,9 +134,9 @@ void extra_levers_roll(const struct extra_lane *at, enum method_id method,
     int i = at->i;
     struct rolling q;
     double now[ROLLING], omega[3], dp[3];
-    set_operator(at, &q);
+    extra_levers_set_operator(at, &q);
     extra_impulse(x, i, l->r, q.x);
-    spin(at, omega);
+    extra_levers_spin(at, omega);
     for (int j = 0; j < 3; j++) { // u and omega with the bond's pull that goes with them
         now[j] = 0;
         for (int k = 0; k < 3; k++)

@@ -31,7 +31,7 @@ ALWAYS_INLINE void motion_velocity(const struct problem *p, int64_t i, int k, vd
     local_velocity(&l, r, u);
 }
 
-static void velocities(struct problem *p, int64_t first, int64_t end)
+static void judge_velocities(struct problem *p, int64_t first, int64_t end)
 {
     for (int64_t i = first; i < end; i++)
         for (int k = 0; k < BUNDLE; k += LANES) {
@@ -179,7 +179,7 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
     }
 }
 
-static void judge(const struct problem *p, int64_t first, int64_t end, bool believes,
+static void judge_all(const struct problem *p, int64_t first, int64_t end, bool believes,
                   enum err_terms which, struct sums *s)
 {
     for (int64_t i = first; i < end; i++) {
@@ -201,4 +201,4 @@ static void judge(const struct problem *p, int64_t first, int64_t end, bool beli
 #define JUDGE_(lanes)   judge_##lanes
 #define JUDGE_OF(lanes) JUDGE_(lanes)
 extern const struct judge JUDGE_OF(LANES);
-const struct judge JUDGE_OF(LANES) = { judge, velocities };
+const struct judge JUDGE_OF(LANES) = { judge_all, judge_velocities };

@@ -73,7 +73,7 @@ bool lay_bundles(struct problem *p)
 
 /* The copy of a body i (wall w: -1-w) that does not move, of a contact. A load's speed is prescribed here
    [problem/coupling.h]. */
-static void copy_body(const struct problem *p, int32_t i, const struct contact *c,
+static void lay_copy_body(const struct problem *p, int32_t i, const struct contact *c,
                       struct body *copy)
 {
     const struct packing *pack = p->packing;
@@ -95,7 +95,7 @@ struct seating {
     const struct contacts *s;
 };
 
-static void seat_some(void *arg, int64_t first, int64_t end)
+static void lay_seat_some(void *arg, int64_t first, int64_t end)
 {
     const struct seating *y = arg;
     struct problem *p = y->p;
@@ -109,8 +109,8 @@ static void seat_some(void *arg, int64_t first, int64_t end)
             p->block[i / BUNDLE][j][k] = 1;
         if (p->contact[i] < 0) continue;
         const struct contact *c = &y->s->c[p->contact[i]];
-        if (seat[0] >= copies) copy_body(p, c->a, c, &p->body[seat[0]]);
-        if (seat[1] >= copies) copy_body(p, c->b, c, &p->body[seat[1]]);
+        if (seat[0] >= copies) lay_copy_body(p, c->a, c, &p->body[seat[0]]);
+        if (seat[1] >= copies) lay_copy_body(p, c->b, c, &p->body[seat[1]]);
     }
 }
 
@@ -119,5 +119,5 @@ void lay_seats(struct problem *p, const struct plan *l, const struct contacts *s
     struct seating y = { p, l, s };
     // w of a lane without a contact is 1, where it is made of masses
     for (int64_t i = 0; i < 2; i++) p->body[p->packing->n + i].im = 0.5;
-    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, seat_some, &y);
+    team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, lay_seat_some, &y);
 }

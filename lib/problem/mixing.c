@@ -68,14 +68,14 @@ ALWAYS_INLINE void measure_text(int d, int depth, const struct problem *p, const
     }
 }
 
-static void measure(const struct problem *p, const struct mixing *m, int64_t first, int64_t end,
+static void mixing_measure(const struct problem *p, const struct mixing *m, int64_t first, int64_t end,
                     struct mixing_sums *t)
 {
     BY_SHAPE(p, m, measure_text, p, *m, first, end, t);
 }
 
 /* One mixing of all contacts */
-struct jump {
+struct mixing_jump {
     const struct mixing *m;
     double leap;
     const double *gamma;
@@ -105,7 +105,7 @@ ALWAYS_INLINE void react_beside(struct problem *p, int64_t i, int k, const vd x[
 /* Projects onto the disc, not onto the cone: the orthogonal projection on the cone would change r_n
    of contacts that slide. */
 ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct mixing m,
-                              const struct jump j, int64_t first, int64_t end)
+                              const struct mixing_jump j, int64_t first, int64_t end)
 {
     double *g = m.dg[m.next], *from = m.df[m.next];
     for (int64_t i = first; i < end; i++) {
@@ -153,14 +153,14 @@ ALWAYS_INLINE void react_text(int d, int depth, struct problem *p, const struct 
 
 ALWAYS_INLINE void react_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
-    const struct jump *j = task;
+    const struct mixing_jump *j = task;
     BY_SHAPE(p, j->m, react_text, p, *j->m, *j, first, end);
 }
 
-static void react(struct problem *p, int me, int threads, const struct mixing *m, double leap,
+static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m, double leap,
                   const double gamma[MIXING_DEPTH])
 {
-    struct jump jump = { m, leap, gamma };
+    struct mixing_jump jump = { m, leap, gamma };
     walk(p, me, threads, react_group, &jump);
 }
 
@@ -169,4 +169,4 @@ static void react(struct problem *p, int me, int threads, const struct mixing *m
 #define MIXING_(lanes)   mixing_##lanes
 #define MIXING_OF(lanes) MIXING_(lanes)
 extern const struct mixing_loops MIXING_OF(LANES);
-const struct mixing_loops MIXING_OF(LANES) = { measure, react };
+const struct mixing_loops MIXING_OF(LANES) = { mixing_measure, mixing_react };

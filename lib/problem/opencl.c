@@ -20,7 +20,7 @@ enum {
 };
 
 /* The arrays there. KEPT_R + k, KEPT_U + k: the iterate that is kept in place k */
-enum role {
+enum opencl_role {
     BUNDLES,
     LIST,   /* of the slots, level after level */
     BESIDE, /* what stands behind them; none: nothing does */
@@ -78,7 +78,7 @@ struct question {
     int64_t slot;
     int32_t singular, found;
 };
-struct counts {
+struct opencl_counts {
     double change, newton, safeguarded, gave_up;
 };
 
@@ -132,7 +132,7 @@ static bool lost(const struct opencl *o)
 
 /* ---- the devices of the machine ---- */
 
-static void text_of(const struct opencl_api *api, void *device, void *platform, char *text,
+static void opencl_text_of(const struct opencl_api *api, void *device, void *platform, char *text,
                     size_t room)
 {
     char name[120] = "?", of[60] = "?";
@@ -159,7 +159,7 @@ static int devices_of(const struct opencl_api *api, void *device[DEVICES], void 
     return n;
 }
 
-static uint64_t number_of(const struct opencl_api *api, void *device, uint32_t what)
+static uint64_t opencl_number_of(const struct opencl_api *api, void *device, uint32_t what)
 {
     uint64_t x = 0;
     api->clGetDeviceInfo(device, what, sizeof x, &x, NULL);
@@ -173,7 +173,7 @@ static int none(struct why *why)
                    "leave --device out");
 }
 
-static int list(FILE *to, struct why *why)
+static int opencl_list(FILE *to, struct why *why)
 {
     void *device[DEVICES], *platform[DEVICES];
     const struct opencl_api *api = opencl_api(why);
@@ -181,14 +181,14 @@ static int list(FILE *to, struct why *why)
     if (!n) return none(why);
     for (int k = 0; k < n; k++) {
         char name[200];
-        text_of(api, device[k], platform[k], name, sizeof name);
-        uint64_t type = number_of(api, device[k], OCL_DEVICE_TYPE);
+        opencl_text_of(api, device[k], platform[k], name, sizeof name);
+        uint64_t type = opencl_number_of(api, device[k], OCL_DEVICE_TYPE);
         fprintf(to, "opencl:%d\t%s\t%s\t%.3g GB%s\n", k,
                 type & OCL_DEVICE_TYPE_GPU   ? "GPU"
                 : type & OCL_DEVICE_TYPE_CPU ? "CPU"
                                              : "other",
-                name, 1e-9 * (double)number_of(api, device[k], OCL_DEVICE_GLOBAL_MEM_SIZE),
-                number_of(api, device[k], OCL_DEVICE_DOUBLE_FP_CONFIG)
+                name, 1e-9 * (double)opencl_number_of(api, device[k], OCL_DEVICE_GLOBAL_MEM_SIZE),
+                opencl_number_of(api, device[k], OCL_DEVICE_DOUBLE_FP_CONFIG)
                     ? ""
                     : "\tno double precision: not for nsd");
     }
@@ -214,13 +214,13 @@ static void close_device(struct device *d)
 }
 
 /* Whether the device can do what is asked of it, and a queue for it */
-static bool begin(struct opencl *o)
+static bool opencl_begin(struct opencl *o)
 {
     const struct opencl_api *api = o->api;
     struct why *why = &o->device.lost;
     size_t team = 0;
     int32_t error = 0;
-    if (!number_of(api, o->id, OCL_DEVICE_DOUBLE_FP_CONFIG)) {
+    if (!opencl_number_of(api, o->id, OCL_DEVICE_DOUBLE_FP_CONFIG)) {
         why_set(why, EX_UNAVAILABLE,
                 "--device opencl: %s: no double precision (fp64): take another, --device list",
                 o->device.name);
@@ -232,15 +232,15 @@ static bool begin(struct opencl *o)
                 o->device.name, (int)team, TEAM);
         return false;
     }
-    o->memory = number_of(api, o->id, OCL_DEVICE_GLOBAL_MEM_SIZE);
-    o->largest = number_of(api, o->id, OCL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    o->memory = opencl_number_of(api, o->id, OCL_DEVICE_GLOBAL_MEM_SIZE);
+    o->largest = opencl_number_of(api, o->id, OCL_DEVICE_MAX_MEM_ALLOC_SIZE);
     o->context = api->clCreateContext(NULL, 1, &o->id, NULL, NULL, &error);
     if (!good(o, error, "no context")) return false;
     o->queue = api->clCreateCommandQueue(o->context, o->id, 0, &error);
     return good(o, error, "no queue");
 }
 
-static struct device *open_device(int number, struct why *why)
+static struct device *opencl_open_device(int number, struct why *why)
 {
     void *device[DEVICES], *platform[DEVICES];
     const struct opencl_api *api = opencl_api(why);
@@ -258,8 +258,8 @@ static struct device *open_device(int number, struct why *why)
         return why_set(why, EX_SOFTWARE, "--device opencl: no memory"), NULL;
     }
     o->device.kind = &device_opencl, o->api = api, o->id = device[number];
-    text_of(api, device[number], platform[number], o->device.name, sizeof o->device.name);
-    if (begin(o)) return &o->device;
+    opencl_text_of(api, device[number], platform[number], o->device.name, sizeof o->device.name);
+    if (opencl_begin(o)) return &o->device;
     why_set(why, o->device.lost.status, "%s", o->device.lost.text);
     close_device(&o->device);
     return NULL;
@@ -319,7 +319,7 @@ struct argument {
     } value;
 };
 
-static struct argument memory_of(const struct opencl *o, enum role role)
+static struct argument memory_of(const struct opencl *o, enum opencl_role role)
 {
     return (struct argument){ sizeof(void *), { .memory = o->buffer[role].memory } };
 }
@@ -327,7 +327,7 @@ static struct argument integer(int32_t x)
 {
     return (struct argument){ sizeof x, { .integer = x } };
 }
-static struct argument whole(int64_t x)
+static struct argument opencl_whole(int64_t x)
 {
     return (struct argument){ sizeof x, { .whole = x } };
 }
@@ -342,9 +342,9 @@ static struct argument real(double x)
         MEMORY(BLOCK)
 
 /* Sets arguments of a kernel, from this index on; returns the index after them. */
-#define SET(k, from, ...) set(o, k, from, (const struct argument[]){ __VA_ARGS__, { 0, { NULL } } })
+#define SET(k, from, ...) opencl_set(o, k, from, (const struct argument[]){ __VA_ARGS__, { 0, { NULL } } })
 
-static uint32_t set(struct opencl *o, enum kernel_id k, uint32_t from, const struct argument *a)
+static uint32_t opencl_set(struct opencl *o, enum kernel_id k, uint32_t from, const struct argument *a)
 {
     for (; a->size; a++, from++)
         if (!lost(o))
@@ -368,7 +368,7 @@ static void launch(struct opencl *o, enum kernel_id k, int64_t n)
 /* ---- memory ---- */
 
 /* A buffer of at least this size; one that is larger stays */
-static bool need(struct opencl *o, enum role role, size_t size)
+static bool need(struct opencl *o, enum opencl_role role, size_t size)
 {
     struct buffer *b = &o->buffer[role];
     int32_t error = 0;
@@ -392,13 +392,13 @@ static bool need(struct opencl *o, enum role role, size_t size)
     return !lost(o);
 }
 
-static void forget(struct opencl *o, enum role role)
+static void opencl_forget(struct opencl *o, enum opencl_role role)
 {
     if (o->buffer[role].memory) o->api->clReleaseMemObject(o->buffer[role].memory);
     o->buffer[role] = (struct buffer){ 0 };
 }
 
-static void put(struct opencl *o, enum role role, size_t offset, const void *from, size_t size)
+static void opencl_put(struct opencl *o, enum opencl_role role, size_t offset, const void *from, size_t size)
 {
     if (lost(o) || !size) return;
     o->device.account.to += (double)size;
@@ -408,7 +408,7 @@ static void put(struct opencl *o, enum role role, size_t offset, const void *fro
          "writing to it");
 }
 
-static void take(struct opencl *o, enum role role, size_t offset, void *to, size_t size)
+static void opencl_take(struct opencl *o, enum opencl_role role, size_t offset, void *to, size_t size)
 {
     if (lost(o) || !size) return;
     o->device.account.from += (double)size, o->device.account.waits++;
@@ -418,7 +418,7 @@ static void take(struct opencl *o, enum role role, size_t offset, void *to, size
          "reading from it");
 }
 
-static void copy(struct opencl *o, enum role from, enum role to, size_t size)
+static void opencl_copy(struct opencl *o, enum opencl_role from, enum opencl_role to, size_t size)
 {
     if (lost(o)) return;
     good(o,
@@ -428,12 +428,12 @@ static void copy(struct opencl *o, enum role from, enum role to, size_t size)
 }
 
 /* A buffer with these bytes; none, where there are none */
-static void give(struct opencl *o, enum role role, const void *from, size_t size)
+static void opencl_give(struct opencl *o, enum opencl_role role, const void *from, size_t size)
 {
     if (!from)
-        forget(o, role);
+        opencl_forget(o, role);
     else if (need(o, role, size))
-        put(o, role, 0, from, size);
+        opencl_put(o, role, 0, from, size);
 }
 
 /* ---- a problem ---- */
@@ -450,7 +450,7 @@ static enum variant variant_of(const struct problem *p)
  * [problem/schedule.c], too few at once for a device. Their contacts meet at the borders alone: levels are few and
  * large, and each body gets its changes in the order of the groups, so the bits are the same.
  */
-static int32_t level_of(const struct problem *p, int64_t i, int64_t group, int32_t *after)
+static int32_t opencl_level_of(const struct problem *p, int64_t i, int64_t group, int32_t *after)
 {
     if (!p->body) return (int32_t)group;
     const struct bundle *c = slot_bundle(p, i);
@@ -492,7 +492,7 @@ static bool make_levels(struct opencl *o, const struct problem *p)
     for (int64_t i = 0; room && i < p->slots; i++) level[i] = -1;
     for (int64_t g = 0; room && g < p->groups; g++)
         for (int64_t i = p->group[g] * BUNDLE; i < p->group[g + 1] * BUNDLE; i++) {
-            level[i] = p->contact[i] < 0 ? -1 : level_of(p, i, g, after);
+            level[i] = p->contact[i] < 0 ? -1 : opencl_level_of(p, i, g, after);
             if (level[i] >= o->levels) o->levels = level[i] + 1;
         }
     if (room) list_levels(o, p->slots, level);
@@ -513,11 +513,11 @@ static void give_bundles(struct opencl *o, const struct problem *p)
     for (int64_t i = 0; i < p->bundles && !lost(o); i += STAGE) {
         int64_t n = p->bundles - i < STAGE ? p->bundles - i : STAGE;
         for (int64_t k = 0; k < n; k++) stage[k] = *bundle_at(p, i + k);
-        put(o, BUNDLES, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
+        opencl_put(o, BUNDLES, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
         for (int64_t k = 0; k < n && p->kind.near; k++)
             behind[k] = *bundle_beside(p, bundle_at(p, i + k));
         if (p->kind.near)
-            put(o, BESIDE, (size_t)i * sizeof *behind, behind, (size_t)n * sizeof *behind);
+            opencl_put(o, BESIDE, (size_t)i * sizeof *behind, behind, (size_t)n * sizeof *behind);
     }
 }
 
@@ -528,7 +528,7 @@ static bool give_free_motion(struct opencl *o, struct problem *p)
     struct body *now = p->packing ? malloc(size) : NULL;
     if (p->packing && !now) return false;
     if (now) memcpy(now, p->body, size), problem_set_free_motion(p);
-    give(o, FREE, p->body, size);
+    opencl_give(o, FREE, p->body, size);
     if (now) memcpy(p->body, now, size);
     free(now);
     return need(o, BODIES, size);
@@ -538,11 +538,11 @@ static void give_rows(struct opencl *o, const struct problem *p)
 {
     const struct delassus *W = &p->sorted;
     size_t d = (size_t)p->d, slots = (size_t)p->slots, blocks = (size_t)W->first[p->slots];
-    give(o, ROW_FIRST, W->first, (slots + 1) * sizeof *W->first);
-    give(o, ROW_COL, W->col, blocks * sizeof *W->col);
-    give(o, ROW_BLOCK, W->block, blocks * d * d * sizeof *W->block);
-    give(o, ROW_Q, W->q, slots * d * sizeof *W->q);
-    give(o, BLOCK, p->block, (size_t)p->bundles * sizeof *p->block);
+    opencl_give(o, ROW_FIRST, W->first, (slots + 1) * sizeof *W->first);
+    opencl_give(o, ROW_COL, W->col, blocks * sizeof *W->col);
+    opencl_give(o, ROW_BLOCK, W->block, blocks * d * d * sizeof *W->block);
+    opencl_give(o, ROW_Q, W->q, slots * d * sizeof *W->q);
+    opencl_give(o, BLOCK, p->block, (size_t)p->bundles * sizeof *p->block);
     need(o, ROW_R, (size_t)p->n * d * sizeof *p->W->r);
 }
 
@@ -565,22 +565,22 @@ static int hold(struct device *d, struct problem *p, enum method_id method, stru
     if (p->kind.near)
         need(o, BESIDE, bundles * sizeof(struct beside));
     else
-        forget(o, BESIDE);
+        opencl_forget(o, BESIDE);
     if (room) give_bundles(o, p);
-    if (room) give(o, LIST, o->list, (size_t)o->first[o->levels] * sizeof *o->list);
-    give(o, REBOUND, p->rebound, bundles * sizeof *p->rebound);
-    give(o, W_CC, p->w, bundles * sizeof *p->w);
-    give(o, RHO, p->rho, bundles * sizeof *p->rho);
+    if (room) opencl_give(o, LIST, o->list, (size_t)o->first[o->levels] * sizeof *o->list);
+    opencl_give(o, REBOUND, p->rebound, bundles * sizeof *p->rebound);
+    opencl_give(o, W_CC, p->w, bundles * sizeof *p->w);
+    opencl_give(o, RHO, p->rho, bundles * sizeof *p->rho);
     need(o, R, bundles * sizeof *p->u), need(o, U, bundles * sizeof *p->u);
     if (room && p->kind.given_by_W)
         give_rows(o, p);
     else
         room = room && give_free_motion(o, p);
-    need(o, PART, (size_t)(o->parts + 1) * sizeof(struct counts));
-    need(o, TALLY, sizeof(struct counts));
+    need(o, PART, (size_t)(o->parts + 1) * sizeof(struct opencl_counts));
+    need(o, TALLY, sizeof(struct opencl_counts));
     if (room)
         need(o, QUESTION, (size_t)(p->kind.full ? largest_level(o) : 1) * sizeof(struct question));
-    give(o, QUESTIONS, &zero, sizeof zero);
+    opencl_give(o, QUESTIONS, &zero, sizeof zero);
     if (!room) return why_set(why, EX_SOFTWARE, "--device opencl: no memory");
     return d->lost.status ? why_set(why, d->lost.status, "%s", d->lost.text) : 0;
 }
@@ -592,13 +592,13 @@ static void upload(struct device *d, const struct problem *p)
     for (int64_t i = 0; i < p->bundles; i += STAGE) {
         int64_t n = p->bundles - i < STAGE ? p->bundles - i : STAGE;
         for (int64_t k = 0; k < n; k++) memcpy(stage[k], bundle_at(p, i + k)->r, sizeof *stage);
-        put(o, R, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
+        opencl_put(o, R, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
     }
-    put(o, U, 0, p->u, (size_t)p->bundles * sizeof *p->u);
+    opencl_put(o, U, 0, p->u, (size_t)p->bundles * sizeof *p->u);
     if (p->kind.given_by_W)
-        put(o, ROW_R, 0, p->W->r, (size_t)(p->n * p->d) * sizeof *p->W->r);
+        opencl_put(o, ROW_R, 0, p->W->r, (size_t)(p->n * p->d) * sizeof *p->W->r);
     else
-        put(o, BODIES, 0, p->body, (size_t)p->bodies * sizeof *p->body);
+        opencl_put(o, BODIES, 0, p->body, (size_t)p->bodies * sizeof *p->body);
 }
 
 static void download(struct device *d, struct problem *p, bool bodies)
@@ -607,15 +607,15 @@ static void download(struct device *d, struct problem *p, bool bodies)
     double(*stage)[3][BUNDLE] = o->stage;
     for (int64_t i = 0; i < p->bundles; i += STAGE) {
         int64_t n = p->bundles - i < STAGE ? p->bundles - i : STAGE;
-        take(o, R, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
+        opencl_take(o, R, (size_t)i * sizeof *stage, stage, (size_t)n * sizeof *stage);
         for (int64_t k = 0; k < n && !lost(o); k++)
             memcpy(bundle_at(p, i + k)->r, stage[k], sizeof *stage);
     }
-    take(o, U, 0, p->u, (size_t)p->bundles * sizeof *p->u);
+    opencl_take(o, U, 0, p->u, (size_t)p->bundles * sizeof *p->u);
     if (p->kind.given_by_W)
-        take(o, ROW_R, 0, p->W->r, (size_t)(p->n * p->d) * sizeof *p->W->r);
+        opencl_take(o, ROW_R, 0, p->W->r, (size_t)(p->n * p->d) * sizeof *p->W->r);
     else if (bodies)
-        take(o, BODIES, 0, p->body, (size_t)p->bodies * sizeof *p->body);
+        opencl_take(o, BODIES, 0, p->body, (size_t)p->bodies * sizeof *p->body);
 }
 
 /* ---- sweeps ---- */
@@ -632,87 +632,87 @@ static uint32_t set_sweep(struct opencl *o, enum kernel_id k, const struct probl
 }
 
 /* Answers what contacts of the group have asked, and lets them be solved. */
-static void answer(struct opencl *o, int d, uint32_t next, int64_t part)
+static void opencl_answer(struct opencl *o, int d, uint32_t next, int64_t part)
 {
     int32_t n = 0;
     const int32_t zero = 0;
-    take(o, QUESTIONS, 0, &n, sizeof n);
+    opencl_take(o, QUESTIONS, 0, &n, sizeof n);
     if (n <= 0 || (size_t)n * sizeof(struct question) > o->buffer[QUESTION].size || lost(o)) return;
     struct question *q = malloc((size_t)n * sizeof *q);
     if (!q) {
         good(o, -6, "answers");
         return;
     }
-    take(o, QUESTION, 0, q, (size_t)n * sizeof *q);
+    opencl_take(o, QUESTION, 0, q, (size_t)n * sizeof *q);
     for (int32_t k = 0; k < n && !lost(o); k++)
         q[k].found = exact_search(d, q[k].W, q[k].b, q[k].mu, q[k].singular, q[k].r);
-    put(o, QUESTION, 0, q, (size_t)n * sizeof *q);
-    put(o, QUESTIONS, 0, &zero, sizeof zero);
+    opencl_put(o, QUESTION, 0, q, (size_t)n * sizeof *q);
+    opencl_put(o, QUESTIONS, 0, &zero, sizeof zero);
     free(q);
-    SET(SWEEP_ANSWERED, next, integer(n), whole(part));
+    SET(SWEEP_ANSWERED, next, integer(n), opencl_whole(part));
     launch(o, SWEEP_ANSWERED, 1);
 }
 
-static void sweep(struct device *d, struct problem *p, const struct sweep_opt *s, struct tally *t)
+static void opencl_sweep(struct device *d, struct problem *p, const struct sweep_opt *s, struct tally *t)
 {
     struct opencl *o = (struct opencl *)d;
     bool asks = o->variant == VARIANT_BLOCKS && methods[o->method]->believes;
     uint32_t next = set_sweep(o, SWEEP, p, s);
-    struct counts c = { 0, 0, 0, 0 };
+    struct opencl_counts c = { 0, 0, 0, 0 };
     int64_t part = 0;
     if (asks) set_sweep(o, SWEEP_ANSWERED, p, s);
     for (int64_t k = 0; k < o->levels && !lost(o); k++) {
-        SET(SWEEP, next, MEMORY(LIST), whole(o->first[k]), integer((int32_t)in_level(o, k)),
-            whole(part));
+        SET(SWEEP, next, MEMORY(LIST), opencl_whole(o->first[k]), integer((int32_t)in_level(o, k)),
+            opencl_whole(part));
         launch(o, SWEEP, in_level(o, k));
-        if (asks) answer(o, p->d, next, part);
+        if (asks) opencl_answer(o, p->d, next, part);
         part += (in_level(o, k) + TEAM - 1) / TEAM;
     }
-    SET(TALLY_COUNTS, 0, MEMORY(PART), whole(part), MEMORY(TALLY));
+    SET(TALLY_COUNTS, 0, MEMORY(PART), opencl_whole(part), MEMORY(TALLY));
     launch(o, TALLY_COUNTS, 1);
-    take(o, TALLY, 0, &c, sizeof c);
+    opencl_take(o, TALLY, 0, &c, sizeof c);
     if (lost(o)) return;
     t->change[0] = fmax(t->change[0], c.change), t->newton[0] += c.newton;
     t->safeguarded[0] += c.safeguarded, t->gave_up[0] += c.gave_up;
 }
 
-static void renew(struct device *d, const struct problem *p)
+static void opencl_renew(struct device *d, const struct problem *p)
 {
     struct opencl *o = (struct opencl *)d;
     if (p->kind.given_by_W) return;
-    copy(o, FREE, BODIES, (size_t)p->bodies * sizeof *p->body);
+    opencl_copy(o, FREE, BODIES, (size_t)p->bodies * sizeof *p->body);
     SET(PUSH, 0, MEMORY(LIST), MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES), MEMORY(R),
         MEMORY(ROW_R), integer(p->d));
     for (int64_t k = 0; k < o->levels; k++) {
-        SET(PUSH, 7, whole(o->first[k]), integer((int32_t)in_level(o, k)));
+        SET(PUSH, 7, opencl_whole(o->first[k]), integer((int32_t)in_level(o, k)));
         launch(o, PUSH, in_level(o, k));
     }
 }
 
-static void velocities(struct device *d, const struct problem *p)
+static void opencl_velocities(struct device *d, const struct problem *p)
 {
     struct opencl *o = (struct opencl *)d;
     SET(VELOCITIES, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
-        MEMORY(U), ROWS_OF_W, integer(p->d), whole(p->slots));
+        MEMORY(U), ROWS_OF_W, integer(p->d), opencl_whole(p->slots));
     launch(o, VELOCITIES, p->slots);
 }
 
 /* ---- sums ---- */
 
 /* Columns of parts: n of them, all to be added but those of which the largest is taken, most_first .. most_end-1 */
-struct columns {
+struct opencl_columns {
     int n, most_first, most_end;
 };
 
 /* to[c.n] = the sums of n parts of that many numbers, and the largest of some */
-static void sum_parts(struct opencl *o, enum role parts, int64_t n, struct columns c, enum role sum,
+static void sum_parts(struct opencl *o, enum opencl_role parts, int64_t n, struct opencl_columns c, enum opencl_role sum,
                       double *to)
 {
     if (!need(o, sum, (size_t)c.n * sizeof *to)) return;
-    SET(SUM_PARTS, 0, MEMORY(parts), whole(n), integer(c.n), integer(c.most_first),
+    SET(SUM_PARTS, 0, MEMORY(parts), opencl_whole(n), integer(c.n), integer(c.most_first),
         integer(c.most_end), MEMORY(sum));
     launch(o, SUM_PARTS, c.n);
-    take(o, sum, 0, to, (size_t)c.n * sizeof *to);
+    opencl_take(o, sum, 0, to, (size_t)c.n * sizeof *to);
 }
 
 #define COLUMN(member) ((int)(offsetof(struct sums, member) / sizeof(double)))
@@ -722,7 +722,7 @@ static_assert(offsetof(struct sums, max_pen) == 8 * BUNDLE * sizeof(double) &&
                   offsetof(struct sums, jammed) == 11 * BUNDLE * sizeof(double),
               "and in its order");
 
-static void judge(struct device *d, const struct problem *p, bool believes, enum err_terms which,
+static void opencl_judge(struct device *d, const struct problem *p, bool believes, enum err_terms which,
                   int64_t per_block, struct sums *s)
 {
     struct opencl *o = (struct opencl *)d;
@@ -730,38 +730,38 @@ static void judge(struct device *d, const struct problem *p, bool believes, enum
     const double *end = p->endless, misses = MISSES * p->unit;
     if (!need(o, JUDGED, (size_t)blocks * sizeof *s)) return;
     SET(JUDGE, 0, MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(REBOUND), MEMORY(BODIES), MEMORY(R),
-        MEMORY(U), MEMORY(W_CC), ROWS_OF_W, integer(p->d), whole(p->bundles),
+        MEMORY(U), MEMORY(W_CC), ROWS_OF_W, integer(p->d), opencl_whole(p->bundles),
         integer((int32_t)per_block), integer(believes), integer((which & ERR_TERMS) != 0),
         integer((which & ERR_NATURAL) != 0), real(ROUNDING_OF_R * ROUNDING_OF_R),
         real(p->rounded * p->rounded), real(end[0] * end[0]), real(end[1] * end[1]),
         real(misses * misses), real(p->wild * p->wild), MEMORY(JUDGED));
     launch(o, JUDGE, blocks * BUNDLE);
-    const struct columns columns = { SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed) };
+    const struct opencl_columns columns = { SUM_COLUMNS, COLUMN(max_pen), COLUMN(jammed) };
     sum_parts(o, JUDGED, blocks, columns, JUDGED_SUM, s->motion);
 }
 
 /* ---- iterates that are kept ---- */
 
-static void keep(struct device *d, const struct problem *p, int place, bool u)
+static void opencl_keep(struct device *d, const struct problem *p, int place, bool u)
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    enum role r = (enum role)(KEPT_R + place), v = (enum role)(KEPT_U + place);
-    if (need(o, r, size)) copy(o, R, r, size);
-    if (u && need(o, v, size)) copy(o, U, v, size);
+    enum opencl_role r = (enum opencl_role)(KEPT_R + place), v = (enum opencl_role)(KEPT_U + place);
+    if (need(o, r, size)) opencl_copy(o, R, r, size);
+    if (u && need(o, v, size)) opencl_copy(o, U, v, size);
 }
 
-static void restore(struct device *d, const struct problem *p, int place, bool u)
+static void opencl_restore(struct device *d, const struct problem *p, int place, bool u)
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    copy(o, (enum role)(KEPT_R + place), R, size);
-    if (u) copy(o, (enum role)(KEPT_U + place), U, size);
+    opencl_copy(o, (enum opencl_role)(KEPT_R + place), R, size);
+    if (u) opencl_copy(o, (enum opencl_role)(KEPT_U + place), U, size);
     if (p->kind.given_by_W) {
-        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d), whole(p->slots));
+        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d), opencl_whole(p->slots));
         launch(o, SCATTER, p->slots);
     }
-    renew(d, p);
+    opencl_renew(d, p);
 }
 
 /* ---- Anderson's mixing: f, and then dg[k], df[k] in turn ---- */
@@ -781,16 +781,16 @@ static int mixing(struct device *d, const struct problem *p, int depth)
     o->vector = p->slots * p->d;
     int64_t all = (1 + 2 * depth) * o->vector;
     if (!need(o, ROOM, (size_t)all * sizeof(double))) return 0; // it is lost: the solve ends
-    SET(CLEAR, 0, MEMORY(ROOM), whole(all));
+    SET(CLEAR, 0, MEMORY(ROOM), opencl_whole(all));
     launch(o, CLEAR, all);
     return 0;
 }
 
-static void remember(struct device *d, const struct problem *p, int next)
+static void opencl_remember(struct device *d, const struct problem *p, int next)
 {
     struct opencl *o = (struct opencl *)d;
-    SET(REMEMBER, 0, MEMORY(R), integer(p->d), whole(o->vector), MEMORY(ROOM),
-        whole(df_at(o, next)));
+    SET(REMEMBER, 0, MEMORY(R), integer(p->d), opencl_whole(o->vector), MEMORY(ROOM),
+        opencl_whole(df_at(o, next)));
     launch(o, REMEMBER, o->vector);
 }
 
@@ -798,52 +798,52 @@ enum { MIXING_COLUMNS = sizeof(struct mixing_sums) / sizeof(double) };
 static_assert(MIXING_COLUMNS == (1 + 2 * MIXING_DEPTH) * BUNDLE && MIXING_DEPTH == 5,
               "struct mixing_sums is what the kernel products writes");
 
-static void measure(struct device *d, const struct problem *p, const struct mixing *m,
+static void opencl_measure(struct device *d, const struct problem *p, const struct mixing *m,
                     int64_t per_chunk, struct mixing_sums *sums)
 {
     struct opencl *o = (struct opencl *)d;
     int64_t chunks = (p->bundles + per_chunk - 1) / per_chunk;
     if (!need(o, MIXED, (size_t)chunks * sizeof *sums)) return;
-    SET(CHANGES, 0, MEMORY(R), integer(p->d), whole(o->vector), MEMORY(ROOM), whole(0),
-        whole(dg_at(o, m->next)), whole(df_at(o, m->next)));
+    SET(CHANGES, 0, MEMORY(R), integer(p->d), opencl_whole(o->vector), MEMORY(ROOM), opencl_whole(0),
+        opencl_whole(dg_at(o, m->next)), opencl_whole(df_at(o, m->next)));
     launch(o, CHANGES, o->vector);
     SET(PRODUCTS, 0, MEMORY(ROOM), MEMORY(W_CC), integer(p->d), integer(m->depth),
-        whole(p->bundles), integer((int32_t)per_chunk), whole(0), whole(df_at(o, m->next)),
-        whole(o->vector), MEMORY(MIXED));
+        opencl_whole(p->bundles), integer((int32_t)per_chunk), opencl_whole(0), opencl_whole(df_at(o, m->next)),
+        opencl_whole(o->vector), MEMORY(MIXED));
     launch(o, PRODUCTS, chunks * MIXING_COLUMNS);
-    sum_parts(o, MIXED, chunks, (struct columns){ MIXING_COLUMNS, 0, 0 }, MIXED_SUM, sums->f2);
+    sum_parts(o, MIXED, chunks, (struct opencl_columns){ MIXING_COLUMNS, 0, 0 }, MIXED_SUM, sums->f2);
 }
 
-static void react(struct device *d, const struct problem *p, const struct mixing *m, double leap,
+static void opencl_react(struct device *d, const struct problem *p, const struct mixing *m, double leap,
                   const double gamma[MIXING_DEPTH])
 {
     struct opencl *o = (struct opencl *)d;
     uint32_t next = SET(REACT, 0, MEMORY(LIST), MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES),
-                        MEMORY(R), MEMORY(ROW_R), integer(p->d), MEMORY(ROOM), whole(0),
-                        whole(o->vector), integer(m->depth), integer(m->next), real(leap));
+                        MEMORY(R), MEMORY(ROW_R), integer(p->d), MEMORY(ROOM), opencl_whole(0),
+                        opencl_whole(o->vector), integer(m->depth), integer(m->next), real(leap));
     for (int k = 0; k < MIXING_DEPTH; k++) next = SET(REACT, next, real(gamma[k]));
     for (int64_t k = 0; k < o->levels; k++) {
-        SET(REACT, next, whole(o->first[k]), integer((int32_t)in_level(o, k)));
+        SET(REACT, next, opencl_whole(o->first[k]), integer((int32_t)in_level(o, k)));
         launch(o, REACT, in_level(o, k));
     }
 }
 
 const struct device_kind device_opencl = {
     .name = "opencl",
-    .list = list,
-    .open = open_device,
+    .list = opencl_list,
+    .open = opencl_open_device,
     .close = close_device,
     .hold = hold,
     .upload = upload,
     .download = download,
-    .sweep = sweep,
-    .judge = judge,
-    .velocities = velocities,
-    .renew = renew,
-    .keep = keep,
-    .restore = restore,
+    .sweep = opencl_sweep,
+    .judge = opencl_judge,
+    .velocities = opencl_velocities,
+    .renew = opencl_renew,
+    .keep = opencl_keep,
+    .restore = opencl_restore,
     .mixing = mixing,
-    .remember = remember,
-    .measure = measure,
-    .react = react,
+    .remember = opencl_remember,
+    .measure = opencl_measure,
+    .react = opencl_react,
 };

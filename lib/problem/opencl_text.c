@@ -28,7 +28,7 @@ static const char *const texts[] = { EACH_TEXT(TEXT) };
 enum { TEXTS = sizeof texts / sizeof *texts };
 
 /* Appends a text but for its includes, whose lines stay, empty. */
-static char *append(char *to, const char *text)
+static char *opencl_api_append(char *to, const char *text)
 {
     while (*text) {
         size_t n = strcspn(text, "\n");
@@ -44,7 +44,7 @@ char *opencl_text(void)
     size_t size = 1;
     for (int k = 0; k < TEXTS; k++) size += strlen(texts[k]) + 1;
     char *all = malloc(size), *end = all;
-    for (int k = 0; all && k < TEXTS; k++) end = append(end, texts[k]);
+    for (int k = 0; all && k < TEXTS; k++) end = opencl_api_append(end, texts[k]);
     if (all) *end = 0;
     return all;
 }

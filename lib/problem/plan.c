@@ -33,7 +33,7 @@ static bool bundle_groups(struct plan *l, const struct schedule *by)
 }
 
 /* What threads do of a plan, with the contacts and the packing that it is made of */
-struct making {
+struct plan_making {
     struct plan *l;
     const struct contacts *s;
     const struct packing *p;
@@ -43,30 +43,30 @@ struct making {
 
 static void remember_pairs(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     for (int64_t i = first; i < end; i++)
         m->l->pair[i][0] = m->s->c[i].a, m->l->pair[i][1] = m->s->c[i].b;
 }
 
 static void remember_moving(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     for (int64_t i = first; i < end; i++) m->l->moves[i] = m->p->mass[i] > 0;
 }
 
-static bool moves(const struct plan *l, int32_t body)
+static bool plan_moves(const struct plan *l, int32_t body)
 {
     return body >= 0 && l->moves[body];
 }
 
 static void count_copies(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     const struct plan *l = m->l;
     for (int64_t i = BUNDLE * first; i < BUNDLE * end; i++) {
         if (l->contact[i] < 0) continue;
         const int32_t *body = l->pair[l->contact[i]];
-        m->copies[i / BUNDLE + 1] += !moves(l, body[0]) + !moves(l, body[1]);
+        m->copies[i / BUNDLE + 1] += !plan_moves(l, body[0]) + !plan_moves(l, body[1]);
     }
 }
 
@@ -87,9 +87,9 @@ static bool find_seats(struct plan *l)
     return true;
 }
 
-static void seat_some(void *arg, int64_t first, int64_t end)
+static void plan_seat_some(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     const struct plan *l = m->l;
     int32_t nobody = (int32_t)l->bodies;
     int64_t next = l->bodies + 2 + m->copies[first];
@@ -99,12 +99,12 @@ static void seat_some(void *arg, int64_t first, int64_t end)
         at[0] = at[1] = nobody + (i >= other);
         if (l->contact[i] < 0) continue;
         const int32_t *body = l->pair[l->contact[i]];
-        for (int k = 0; k < 2; k++) at[k] = moves(l, body[k]) ? l->seat[body[k]] : (int32_t)next++;
+        for (int k = 0; k < 2; k++) at[k] = plan_moves(l, body[k]) ? l->seat[body[k]] : (int32_t)next++;
     }
 }
 
 /* The plan's parts, by a schedule whose sequence and groups are not kept; false when memory is short */
-static bool make(struct making *m, const struct schedule *by)
+static bool plan_make(struct plan_making *m, const struct schedule *by)
 {
     struct plan *l = m->l;
     int threads = team_size();
@@ -122,7 +122,7 @@ static bool make(struct making *m, const struct schedule *by)
     team_share(threads, l->bundles, SLOTS_PER_THREAD / BUNDLE, count_copies, m);
     for (int64_t k = 0; k < l->bundles; k++) m->copies[k + 1] += m->copies[k];
     l->copies = m->copies[l->bundles];
-    team_share(threads, l->bundles, SLOTS_PER_THREAD / BUNDLE, seat_some, m);
+    team_share(threads, l->bundles, SLOTS_PER_THREAD / BUNDLE, plan_seat_some, m);
     return true;
 }
 
@@ -133,8 +133,8 @@ struct plan *plan_of_contacts(enum order order, const struct contacts *s, const 
     struct plan *l = malloc(sizeof *l);
     if (!l || (!given && schedule_bodies(&by, order, s, p))) return free(l), NULL;
     *l = (struct plan){ .order = order, .n = s->n, .bodies = p->n };
-    struct making m = { .l = l, .s = s, .p = p };
-    bool made = make(&m, given ? given : &by);
+    struct plan_making m = { .l = l, .s = s, .p = p };
+    bool made = plan_make(&m, given ? given : &by);
     l->schedule.key = by.key, l->schedule.zone = by.zone;
     by.key = NULL, by.zone = NULL;
     schedule_free(&by), free(m.copies);
@@ -166,7 +166,7 @@ struct plan *plan_of_blocks(enum order order, const struct delassus *W)
 
 static void compare_pairs(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     bool differs = false;
     for (int64_t i = first; i < end && !differs; i++)
         differs = m->l->pair[i][0] != m->s->c[i].a || m->l->pair[i][1] != m->s->c[i].b;
@@ -175,7 +175,7 @@ static void compare_pairs(void *arg, int64_t first, int64_t end)
 
 static void compare_moving(void *arg, int64_t first, int64_t end)
 {
-    struct making *m = arg;
+    struct plan_making *m = arg;
     bool differs = false;
     for (int64_t i = first; i < end; i++) differs |= m->l->moves[i] != (m->p->mass[i] > 0);
     if (differs) m->differs = true;
@@ -185,7 +185,7 @@ bool plan_holds(const struct plan *l, enum order order, const struct contacts *s
                 const struct packing *p)
 {
     if (l->order != order || l->n != s->n || l->bodies != p->n) return false;
-    struct making m = { .l = (struct plan *)l, .s = s, .p = p };
+    struct plan_making m = { .l = (struct plan *)l, .s = s, .p = p };
     team_share(team_size(), l->n, SLOTS_PER_THREAD, compare_pairs, &m);
     if (m.differs) return false;
     team_share(team_size(), l->bodies, SLOTS_PER_THREAD, compare_moving, &m);

@@ -11,7 +11,7 @@
 
 /* Whether the blocks that freedoms couple fit into the machine, W and its rows in the sweep's
    order */
-static int check_memory(const struct problem *p, struct why *why)
+static int prepare_check_memory(const struct problem *p, struct why *why)
 {
     double blocks = couplings_pairs(p->coupling), size = 8.0 * p->d * p->d + 4;
     double need = 2 * blocks * size;
@@ -26,7 +26,7 @@ static int check_memory(const struct problem *p, struct why *why)
 static int assemble_free(const struct problem *bodies, struct delassus *W, struct why *why)
 {
     struct assembly A = { 0 };
-    if (check_memory(bodies, why)) return why->status;
+    if (prepare_check_memory(bodies, why)) return why->status;
     int e = assembly_init(&A, bodies, why);
     if (!e) e = assembly_blocks(&A, W, why);
     assembly_free(&A);
@@ -43,7 +43,7 @@ static void besides(const struct problem *bodies, int64_t i, const double u[3], 
 }
 
 /* W, with the pushes of the reactions found; NULL and why where it fails */
-static struct delassus *assemble(const struct problem *bodies, const struct contacts *s,
+static struct delassus *prepare_assemble(const struct problem *bodies, const struct contacts *s,
                                  struct why *why)
 {
     struct delassus *W = calloc(1, sizeof *W);
@@ -131,7 +131,7 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
                        "rolling friction where loads push contacts, or by another "
                        "solver than auto, anderson and nlgs: not known");
     }
-    struct delassus *W = assemble(&bodies, s, why);
+    struct delassus *W = prepare_assemble(&bodies, s, why);
     if (W && !problem_prepare_delassus(p, W, o, why)) {
         p->own = W;
         if (copy_ties(p, &bodies)) {

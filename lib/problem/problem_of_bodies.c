@@ -17,7 +17,7 @@ enum {
     PER_THREAD = 4096 /* bodies, contacts or slots that are worth a thread: 100 us of work */
 };
 
-static int no_memory(struct problem *p, struct why *why)
+static int problem_of_bodies_no_memory(struct problem *p, struct why *why)
 {
     problem_free(p);
     return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
@@ -155,7 +155,7 @@ static void measure_some(void *arg, int64_t first, int64_t end)
     }
 }
 
-static double fastest(void *arg, int64_t first, int64_t end)
+static double problem_of_bodies_fastest(void *arg, int64_t first, int64_t end)
 {
     const struct packing *p = arg;
     double most = 0;
@@ -168,7 +168,7 @@ static double fastest(void *arg, int64_t first, int64_t end)
    differences of such speeds, and have their rounding. */
 static double top_speed(const struct packing *p)
 {
-    double most = team_most(team_size(), p->n, PER_THREAD, fastest, (void *)p), images = 0;
+    double most = team_most(team_size(), p->n, PER_THREAD, problem_of_bodies_fastest, (void *)p), images = 0;
     for (int32_t k = 0; k < p->walls; k++)
         most = fmax(most, wall_top_speed(p, &p->wall[k]) + v3_norm(p->wall[k].belt));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
@@ -187,7 +187,7 @@ struct survey {
     _Atomic bool bonds, rolls; /* stiff ties; rolling friction */
 };
 
-static bool same(vec3 a, vec3 b)
+static bool problem_of_bodies_same(vec3 a, vec3 b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
@@ -201,7 +201,7 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         const struct contact *c = &y->s->c[i];
         shaped |= contact_shaped(y->p, c);
         struct contact made = { 0 };
-        if (!turned) contact_basis(&made, 3, c->n), turned = !same(made.t1, c->t1);
+        if (!turned) contact_basis(&made, 3, c->n), turned = !problem_of_bodies_same(made.t1, c->t1);
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
                     (y->s->law && y->s->law[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
@@ -259,19 +259,19 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (rebounds) p->kind.arrays |= HAS_rebound;
     quat *half = NULL;
     room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
-    if (!room) return free(half), no_memory(p, why);
+    if (!room) return free(half), problem_of_bodies_no_memory(p, why);
     team_share(team_size(), pack->n, PER_THREAD, set_some, p);
     lay_seats(p, plan, s);
     if (!(p->held = malloc((size_t)(p->bodies - pack->n) * sizeof *p->held)))
-        return free(half), no_memory(p, why);
+        return free(half), problem_of_bodies_no_memory(p, why);
     memcpy(p->held, p->body + pack->n, (size_t)(p->bodies - pack->n) * sizeof *p->held);
     struct filling f = { p, s, &cell, o->alpha, o->rho_factor, half };
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, fill_bundles, &f);
     room = !exchange || !exchange->slower || !brake_make(p, &f, exchange->slower);
     free(half);
-    if (!room) return no_memory(p, why);
+    if (!room) return problem_of_bodies_no_memory(p, why);
     if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return no_memory(p, why);
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return problem_of_bodies_no_memory(p, why);
         if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
     }
 
@@ -283,7 +283,7 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (exchange) p->speed = exchange->most(exchange, p->speed);
     problem_set_free_motion(p);
     struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
-    if (!m.q2) return no_memory(p, why);
+    if (!m.q2) return problem_of_bodies_no_memory(p, why);
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, measure_some, &m);
     p->norm_q = sqrt(sum_of_slots(p, m.q2));
     for (int64_t i = 0; i < p->slots; i++) {
@@ -313,7 +313,7 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     }
     if (o->kept) *o->kept = plan;
     *p = (struct problem){ 0 };
-    if (!plan) return no_memory(p, why);
+    if (!plan) return problem_of_bodies_no_memory(p, why);
     int e = prepare_by_plan(p, pack, s, plan, o, why);
     if (o->kept) return e;
     if (e)

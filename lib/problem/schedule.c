@@ -329,7 +329,7 @@ static int regroup(struct schedule *s, const struct graph *g)
     return 0;
 }
 
-static int place(struct schedule *s, enum order order, struct graph *g)
+static int schedule_place(struct schedule *s, enum order order, struct graph *g)
 {
     bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
     int64_t first[2];
@@ -349,7 +349,7 @@ static int schedule(struct schedule *s, enum order order, struct graph *g)
         if (!g->W) team_share(team_size(), g->n, CONTACTS_PER_THREAD, find_some, g);
         sequence_init(s->sequence, g->n, order);
         for (int64_t i = 0; i < g->n; i++) g->place[i] = -1;
-        failed = place(s, order, g) || regroup(s, g);
+        failed = schedule_place(s, order, g) || regroup(s, g);
     }
     free(g->place), free(g->body);
     if (!failed) return 0;

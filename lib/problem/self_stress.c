@@ -7,7 +7,7 @@
 #include <stdlib.h>
 
 /* y = W r of the slots */
-static int move(const struct problem *p, double *r, double *y)
+static int err_move(const struct problem *p, double *r, double *y)
 {
     struct apply a;
     if (apply_init(&a, p)) return -1;
@@ -27,11 +27,11 @@ struct moved {
     double most;         /* N s: the largest |r| of a contact */
 };
 
-static int measure(const struct problem *p, struct moved *m)
+static int err_measure(const struct problem *p, struct moved *m)
 {
     size_t size = 3 * (size_t)p->slots + 1;
     double *r = calloc(size, sizeof *r), *y = calloc(size, sizeof *y);
-    int e = r && y ? move(p, r, y) : -1;
+    int e = r && y ? err_move(p, r, y) : -1;
     *m = (struct moved){ 0 };
     for (int64_t i = 0; !e && i < p->slots; i++) {
         if (p->contact[i] < 0) continue;
@@ -49,7 +49,7 @@ static int measure(const struct problem *p, struct moved *m)
 int self_stress(const struct problem *p, double *ratio)
 {
     struct moved m;
-    int e = measure(p, &m);
+    int e = err_measure(p, &m);
     *ratio = m.r2 > 0 ? sqrt(m.steps / m.r2) : 0;
     return e;
 }
@@ -57,7 +57,7 @@ int self_stress(const struct problem *p, double *ratio)
 int self_stress_work(const struct problem *p, double *work, double *most)
 {
     struct moved m;
-    int e = measure(p, &m);
+    int e = err_measure(p, &m);
     *work = m.lambda > 0 ? m.work / m.lambda : 0, *most = m.most;
     return e;
 }

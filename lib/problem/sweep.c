@@ -19,7 +19,7 @@ ALWAYS_INLINE void raise_to(double *slot, vd a)
 }
 
 /* A tally in registers */
-struct counts {
+struct sweep_counts {
     vd change, newton, safeguarded, gave_up;
 };
 
@@ -198,7 +198,7 @@ ALWAYS_INLINE void solve_relaxed(struct local *l, const struct bundle *c, int k,
 
 /* Stores r, and u where belief is not NULL; dr: the change of r */
 ALWAYS_INLINE void store_solution(struct bundle *c, int k, double (*belief)[BUNDLE],
-                                  const struct local *l, vd dr[3], struct counts *t)
+                                  const struct local *l, vd dr[3], struct sweep_counts *t)
 {
     for (int i = 0; i < 3; i++) {
         dr[i] = l->r[i] - vload(c->r[i] + k);
@@ -239,7 +239,7 @@ ALWAYS_INLINE void pass_on(struct problem *p, int64_t bundle, int k, const struc
  */
 ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
                                  const struct sweep_opt *o, const struct kernel kernel,
-                                 struct counts *t)
+                                 struct sweep_counts *t)
 {
     if (first == end) return;
 #ifdef __clang_analyzer__ // which sees walk() ask for a W
@@ -281,13 +281,13 @@ ALWAYS_INLINE void solve_bundles(struct problem *p, int64_t first, int64_t end,
 struct task {
     const struct sweep_opt *o;
     struct kernel kernel;
-    struct counts *count;
+    struct sweep_counts *count;
 };
 
 ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
     const struct task *t = task;
-    struct counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
+    struct sweep_counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
     bool copies = p->exchange && first < end && exchange_is_copy(p->exchange, first);
     solve_bundles(p, first, end, t->o, t->kernel, copies ? &other : t->count);
 }
@@ -295,7 +295,7 @@ ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, vo
 ALWAYS_INLINE void sweep(struct problem *p, int me, int threads, const struct sweep_opt *o,
                          const struct kernel kernel, struct tally *t)
 {
-    struct counts c = { splat(0), splat(0), splat(0), splat(0) };
+    struct sweep_counts c = { splat(0), splat(0), splat(0), splat(0) };
     struct task task = { o, kernel, &c };
     walk(p, me, threads, solve_group, &task);
     raise_to(t->change, c.change), add_to(t->newton, c.newton);
@@ -386,7 +386,7 @@ ALWAYS_INLINE void push_group(struct problem *p, int64_t first, int64_t end, voi
     }
 }
 
-static void push(struct problem *p, int me, int threads)
+static void sweep_push(struct problem *p, int me, int threads)
 {
     walk(p, me, threads, push_group, NULL);
 }
@@ -396,4 +396,4 @@ static void push(struct problem *p, int me, int threads)
 #define SWEEP_(lanes)   sweep_##lanes
 #define SWEEP_OF(lanes) SWEEP_(lanes)
 extern const struct sweep SWEEP_OF(LANES);
-const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(SWEEPS_OF) }, push };
+const struct sweep SWEEP_OF(LANES) = { LANES, { EACH_METHOD(SWEEPS_OF) }, sweep_push };

@@ -29,7 +29,7 @@ static double coordinate(const struct packing *p, int32_t body, int axis)
 }
 
 /* From where to where contact c's movable bodies are along the axis, by their centres */
-static void extent(const struct division *y, int64_t c, int axis, double *lo, double *hi)
+static void schedule_extent(const struct division *y, int64_t c, int axis, double *lo, double *hi)
 {
     *lo = INFINITY, *hi = -INFINITY;
     for (int j = 0; j < 2 && y->body[c][j] >= 0; j++) {
@@ -48,10 +48,10 @@ static void choose_cut(struct division *y, double *top)
     for (int k = 0; k < y->p->dim; k++) {
         double lo, hi;
         int64_t n = 0, across = 0;
-        for (int64_t c = 0; c < y->n; c += stride) extent(y, c, k, &lo, &top[n++]);
+        for (int64_t c = 0; c < y->n; c += stride) schedule_extent(y, c, k, &lo, &top[n++]);
         double middle = gsl_stats_select(top, 1, (size_t)n, (size_t)n / 2);
         for (int64_t c = 0; c < y->n; c += stride) {
-            extent(y, c, k, &lo, &hi);
+            schedule_extent(y, c, k, &lo, &hi);
             across += lo < middle && hi >= middle;
         }
         if (across < least) least = across, y->axis = k, y->at = middle;
@@ -63,7 +63,7 @@ static void cut_some(void *arg, int64_t first, int64_t end)
     struct division *y = arg;
     double lo, hi;
     for (int64_t c = first; c < end; c++) {
-        extent(y, c, y->axis, &lo, &hi);
+        schedule_extent(y, c, y->axis, &lo, &hi);
         y->zone[c] = hi < y->at ? ZONE_INSIDE : lo < y->at ? ZONE_BORDER : ZONE_BEYOND;
     }
 }

@@ -8,7 +8,7 @@ static double most(struct exchange *s, double x)
     return comm_most(s->with, x);
 }
 
-static int64_t count(struct exchange *s, int64_t n)
+static int64_t halo_count(struct exchange *s, int64_t n)
 {
     return comm_sum(s->with, n);
 }
@@ -22,12 +22,12 @@ static double agree(struct exchange *s, double x)
     return x;
 }
 
-static void fail(struct exchange *s)
+static void halo_fail(struct exchange *s)
 {
     comm_fail(s->with, EX_SOFTWARE, "no memory to solve the contacts");
 }
 
 void answers_alike(struct exchange *s, struct comm *t)
 {
-    s->with = t, s->most = most, s->count = count, s->agree = agree, s->fail = fail;
+    s->with = t, s->most = most, s->count = halo_count, s->agree = agree, s->fail = halo_fail;
 }

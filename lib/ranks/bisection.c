@@ -14,14 +14,14 @@ struct bisection {
     const float *weight;
 };
 
-static int count(void *arg, int *error)
+static int bisection_count(void *arg, int *error)
 {
     const struct bisection *y = arg;
     *error = ZOLTAN_OK;
     return (int)y->n;
 }
 
-static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
+static void bisection_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
                  float *weight, int *error)
 {
     const struct bisection *y = arg;
@@ -53,7 +53,7 @@ static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLT
     *error = ZOLTAN_OK;
 }
 
-static void *begin(struct comm *t)
+static void *bisection_begin(struct comm *t)
 {
     static const char *const set[][2] = { { "LB_METHOD", "RCB" },       { "KEEP_CUTS", "1" },
                                           { "NUM_GID_ENTRIES", "2" },   { "NUM_LID_ENTRIES", "1" },
@@ -62,19 +62,19 @@ static void *begin(struct comm *t)
                                           { "REDUCE_DIMENSIONS", "0" }, { NULL, NULL } };
     struct bisection *y = comm_new(t, 1, sizeof *y);
     y->comm = t, y->zz = territory_zoltan(t, set);
-    Zoltan_Set_Num_Obj_Fn(y->zz, count, y), Zoltan_Set_Obj_List_Fn(y->zz, list, y);
+    Zoltan_Set_Num_Obj_Fn(y->zz, bisection_count, y), Zoltan_Set_Obj_List_Fn(y->zz, bisection_list, y);
     Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
     return y;
 }
 
-static void end(void *made)
+static void bisection_end(void *made)
 {
     struct bisection *y = made;
     Zoltan_Destroy(&y->zz);
     free(y);
 }
 
-static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
+static void bisection_cut(void *made, int64_t n, const vec3 *x, const float *weight)
 {
     struct bisection *y = made;
     int changes, gids, lids, in, out;
@@ -87,7 +87,7 @@ static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
     Zoltan_LB_Free_Part(&a, &b, &p1, &p2), Zoltan_LB_Free_Part(&c, &d, &p3, &p4);
 }
 
-static int owner(const void *made, vec3 x)
+static int bisection_owner(const void *made, vec3 x)
 {
     const struct bisection *y = made;
     double at[3] = { x.x, x.y, x.z };
@@ -97,7 +97,7 @@ static int owner(const void *made, vec3 x)
     return rank;
 }
 
-static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
+static int bisection_meets(const void *made, vec3 lo, vec3 hi, int *rank)
 {
     const struct bisection *y = made;
     int n = 0;
@@ -106,4 +106,4 @@ static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
     return n;
 }
 
-const struct cuts cuts_bisection = { begin, end, cut, owner, meets };
+const struct cuts cuts_bisection = { bisection_begin, bisection_end, bisection_cut, bisection_owner, bisection_meets };

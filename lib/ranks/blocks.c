@@ -63,7 +63,7 @@ static void letters_free(const struct comm *t, double **v)
     free(v);
 }
 
-static void remember(struct blocks *b, int width, place_text *at, void *arg, double **since)
+static void blocks_remember(struct blocks *b, int width, place_text *at, void *arg, double **since)
 {
     for (int q = 0; q < b->part->comm->n; q++)
         for (int64_t k = 0; k < b->touched[q].n; k++)
@@ -96,31 +96,31 @@ static void add_up(struct blocks *b, int width, place_text *at, void *arg, doubl
         for (int64_t k = 0; k < b->touched[q].n; k++)
             memcpy(at(arg, b->touched[q].body[k]), here[q] + width * k, size);
     letters_free(t, here), letters_free(t, there);
-    remember(b, width, at, arg, since);
+    blocks_remember(b, width, at, arg, since);
 }
 
-static void settle(struct exchange *s, struct problem *p)
+static void blocks_settle(struct exchange *s, struct problem *p)
 {
     add_up(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
-static void after_group(struct exchange *s, struct problem *p, int64_t group)
+static void blocks_after_group(struct exchange *s, struct problem *p, int64_t group)
 {
-    if (group == blocks_of(s)->plan.groups - 1) settle(s, p);
+    if (group == blocks_of(s)->plan.groups - 1) blocks_settle(s, p);
 }
 
-static void begin(struct exchange *s, struct problem *p)
+static void blocks_begin_solve(struct exchange *s, struct problem *p)
 {
-    remember(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
+    blocks_remember(blocks_of(s), TWIST, twist_of, p, blocks_of(s)->since);
 }
 
-static void judging(struct exchange *s, struct problem *p, bool begins)
+static void blocks_judging(struct exchange *s, struct problem *p, bool begins)
 {
     (void)s;
     brake_hold(p, !begins);
 }
 
-static void add(struct exchange *s, double *x, int n)
+static void blocks_add(struct exchange *s, double *x, int n)
 {
     struct comm *t = blocks_of(s)->part->comm;
     double *all = comm_new(t, (int64_t)n * t->n, sizeof *all), since = comm_busy();
@@ -132,18 +132,18 @@ static void add(struct exchange *s, double *x, int n)
     free(all);
 }
 
-static double sum_along(struct exchange *s, const struct problem *p, const double *term)
+static double blocks_sum_along(struct exchange *s, const struct problem *p, const double *term)
 {
     double sum = 0;
     for (int64_t i = 0; i < p->slots; i++) sum += p->contact[i] >= 0 ? term[i] : 0;
-    add(s, &sum, 1);
+    blocks_add(s, &sum, 1);
     return sum;
 }
 
 /* ---- the borders ---- */
 
 /* touched[] of what the contacts push; pushed[] as the others tell */
-static void find_borders(struct blocks *b, const struct contacts *s)
+static void blocks_find_borders(struct blocks *b, const struct contacts *s)
 {
     const struct subdomain *y = b->part;
     struct comm *t = y->comm;
@@ -224,14 +224,14 @@ void blocks_begin(struct blocks *b, struct subdomain *y, const struct contacts *
 {
     struct comm *t = y->comm;
     *b = (struct blocks){ .part = y };
-    b->exchange = (struct exchange){ .after_group = after_group,
-                                     .begin = begin,
-                                     .settle = settle,
-                                     .judging = judging,
-                                     .add = add,
-                                     .sum_along = sum_along };
+    b->exchange = (struct exchange){ .after_group = blocks_after_group,
+                                     .begin = blocks_begin_solve,
+                                     .settle = blocks_settle,
+                                     .judging = blocks_judging,
+                                     .add = blocks_add,
+                                     .sum_along = blocks_sum_along };
     answers_alike(&b->exchange, t);
-    find_borders(b, s);
+    blocks_find_borders(b, s);
     find_slower(b, s);
     if (schedule_bodies(&b->plan, order, s, &y->p))
         comm_fail(t, EX_SOFTWARE, "no memory for the order of the contacts");
@@ -288,7 +288,7 @@ static bool after_sweep(void *with, struct displaced *d, bool more)
 }
 
 /* The bodies of this rank */
-static bool *own_of(const struct subdomain *y)
+static bool *blocks_own_of(const struct subdomain *y)
 {
     bool *own = comm_new(y->comm, y->p.n, sizeof *own);
     for (int64_t i = 0; i < y->p.n; i++) own[i] = y->owner[i] == y->comm->me;
@@ -310,11 +310,11 @@ static void project_here(struct blocks *b, const struct contacts *s, const bool 
 void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projected *did)
 {
     const struct packing *p = &b->part->p;
-    bool *own = did ? own_of(b->part) : NULL;
+    bool *own = did ? blocks_own_of(b->part) : NULL;
     subdomain_refresh(b->part);
     if (overlap_projects(p->overlap)) project_here(b, s, own, did);
     if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, own);
-    if (did) add(&b->exchange, (double *)did, sizeof *did / sizeof(double)); // it has nothing else
+    if (did) blocks_add(&b->exchange, (double *)did, sizeof *did / sizeof(double)); // it has nothing else
     free(own);
 }
 
@@ -323,10 +323,10 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
 {
     struct subdomain *y = b->part;
     struct why why = { 0 };
-    bool *own = own_of(y);
+    bool *own = blocks_own_of(y);
     if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
     free(own);
-    add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
+    blocks_add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
 
 /* What impulses of copies begin with, dt times their force or torque from outside (NULL: none), which their owner has, too */

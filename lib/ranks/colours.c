@@ -15,24 +15,24 @@ static struct colours *colours_of(struct exchange *s)
     return (struct colours *)s;
 }
 
-static void after_group(struct exchange *s, struct problem *p, int64_t group)
+static void colours_after_group(struct exchange *s, struct problem *p, int64_t group)
 {
     struct colours *c = colours_of(s);
     if (group % PARTS == COPIES) wires_send(&c->wires, p, group / PARTS);
     if (group % PARTS == QUIET) wires_wait(&c->wires, p, group / PARTS);
 }
 
-static void begin(struct exchange *s, struct problem *p)
+static void colours_begin_solve(struct exchange *s, struct problem *p)
 {
     (void)s, (void)p;
 }
 
-static void settle(struct exchange *s, struct problem *p)
+static void colours_settle(struct exchange *s, struct problem *p)
 {
     wires_refresh(colours_of(s)->part, p);
 }
 
-static void judging(struct exchange *s, struct problem *p, bool begins)
+static void colours_judging(struct exchange *s, struct problem *p, bool begins)
 {
     (void)s, (void)p, (void)begins;
 }
@@ -50,7 +50,7 @@ static void sum(struct exchange *s, const struct problem *p, const struct summan
     tally_sum(tally(c, p), c->part->comm, s->bundles, of, out);
 }
 
-static double sum_along(struct exchange *s, const struct problem *p, const double *term)
+static double colours_sum_along(struct exchange *s, const struct problem *p, const double *term)
 {
     struct colours *c = colours_of(s);
     return tally_along(tally(c, p), c->part->comm, s->bundles, term);
@@ -101,7 +101,7 @@ static int by_walk(const void *a, const void *b)
     return x->slot < y->slot ? -1 : x->slot > y->slot;
 }
 
-static void lay_plan(struct colours *c, const struct comm *t, int64_t groups, int64_t n,
+static void colours_lay_plan(struct colours *c, const struct comm *t, int64_t groups, int64_t n,
                      struct stop *stop)
 {
     struct schedule *plan = &c->plan;
@@ -146,12 +146,12 @@ void colours_begin(struct colours *c, struct subdomain *y, const struct contacts
     *c = (struct colours){ .part = y };
     c->exchange = (struct exchange){ .bundles = bundles,
                                      .may_want = true,
-                                     .after_group = after_group,
-                                     .begin = begin,
-                                     .settle = settle,
-                                     .judging = judging,
+                                     .after_group = colours_after_group,
+                                     .begin = colours_begin_solve,
+                                     .settle = colours_settle,
+                                     .judging = colours_judging,
                                      .sum = sum,
-                                     .sum_along = sum_along };
+                                     .sum_along = colours_sum_along };
     answers_alike(&c->exchange, t);
     c->slot = comm_new(t, s->n, sizeof *c->slot);
     holders_find(&h, y);
@@ -175,7 +175,7 @@ void colours_begin(struct colours *c, struct subdomain *y, const struct contacts
         c->slot[i] = mine ? verdict[i].slot : -1;
     }
     free(h.first), free(h.rank), free(rank);
-    lay_plan(c, t, groups, s->n, stop);
+    colours_lay_plan(c, t, groups, s->n, stop);
     free(stop);
     if (errands) qsort(errand, (size_t)errands, sizeof *errand, by_errand);
     wires_lay(&c->wires, y, groups, errands, errand);

@@ -9,7 +9,7 @@ static bool comes_first(const struct contact *a, const struct contact *b)
 }
 
 /* Merges what the ranks have sent: contacts of one pair are all of one rank. */
-static void merge(struct contact_list *l, struct comm *t, struct parcel *in, struct contacts *all)
+static void contact_list_merge(struct contact_list *l, struct comm *t, struct parcel *in, struct contacts *all)
 {
     const size_t size = sizeof(struct contact);
     struct contact **c = comm_new(t, t->n, sizeof(struct contact *));
@@ -46,7 +46,7 @@ void contact_list_gather(struct contact_list *l, const struct subdomain *y,
     *l = (struct contact_list){ 0 };
     comm_gather(t, &mine, in);
     contacts_free_found(all), contacts_free_tie(all);
-    if (!t->me) merge(l, t, in, all);
+    if (!t->me) contact_list_merge(l, t, in, all);
     parcels_free(t, in);
     MPI_Bcast(&l->n, 1, MPI_INT64_T, 0, t->mpi);
 }

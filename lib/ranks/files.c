@@ -31,7 +31,7 @@ static hid_t select_rows(hid_t set, const struct target *o, int64_t first, int64
     return -1;
 }
 
-static bool write_rows(hid_t file, const struct target *o, int64_t first, int64_t n, hid_t transfer,
+static bool rows_write_rows(hid_t file, const struct target *o, int64_t first, int64_t n, hid_t transfer,
                        const void *data)
 {
     const hsize_t numbers = (hsize_t)(n * o->width);
@@ -59,7 +59,7 @@ static bool write_by_first(const struct rows *r, hid_t file, const struct target
         if (q && q == t->me) parcel_put(t, &out, mine, (size_t)n * bytes);
         if (q) comm_gather(t, &out, in);
         if (!t->me)
-            good = good && write_rows(file, o, first, n, H5P_DEFAULT, q ? in[q].bytes : mine);
+            good = good && rows_write_rows(file, o, first, n, H5P_DEFAULT, q ? in[q].bytes : mine);
         parcels_free(t, in);
     }
     return good;
@@ -129,7 +129,7 @@ static bool all_see(const struct comm *t, const char *path)
 }
 
 /* No reader would accept a body that is not as it should be: the first of them ends the run. */
-static void check_bodies(const struct rows *r, const struct subdomain *y)
+static void rows_check_bodies(const struct rows *r, const struct subdomain *y)
 {
     int64_t bad = INT64_MAX, least;
     struct why why = { 0 };
@@ -178,7 +178,7 @@ int files_fill(const struct rows *r, const struct subdomain *y, const struct fil
     char where[PATH_MAX] = "";
     int places;
     bool gather;
-    check_bodies(r, y);
+    rows_check_bodies(r, y);
     struct target *o = spread_targets(t, wish, &places, where, &gather);
     bool by_all = !gather && files_parallel() && all_see(t, where);
     hid_t ours = by_all ? open_by_all(t, where) : -1, transfer = by_all ? collective() : -1;
@@ -192,7 +192,7 @@ int files_fill(const struct rows *r, const struct subdomain *y, const struct fil
         if (!by_all)
             good &= write_by_first(r, wish->file, &o[k], data);
         else if (good)
-            good = write_rows(ours, &o[k], r->first, h.n, transfer, data);
+            good = rows_write_rows(ours, &o[k], r->first, h.n, transfer, data);
         free(data);
     }
     haul_end(&h);

@@ -21,7 +21,7 @@ enum {
     WEIGHT_UNITS = 20     /* of weight 1: whole numbers have one sum in any order */
 };
 
-struct cells {
+struct hypergraph_cells {
     struct comm *comm;
     struct Zoltan_Struct *zz;
     vec3 lo;        /* m: a corner of the grid */
@@ -34,25 +34,25 @@ struct cells {
     int *home; /* [n] the rank that asks for the cell, while it is being dealt; -1: it is empty */
 };
 
-static int64_t along(const struct cells *c, double x, double lo, int k)
+static int64_t hypergraph_along(const struct hypergraph_cells *c, double x, double lo, int k)
 {
     double i = floor((x - lo) / c->side);
     return i > 0 ? (int64_t)fmin(i, c->many[k] - 1) : 0; // 0, too, where it is not a number
 }
 
-static void place(const struct cells *c, vec3 x, int64_t at[3])
+static void hypergraph_place(const struct hypergraph_cells *c, vec3 x, int64_t at[3])
 {
-    at[0] = along(c, x.x, c->lo.x, 0), at[1] = along(c, x.y, c->lo.y, 1);
-    at[2] = along(c, x.z, c->lo.z, 2);
+    at[0] = hypergraph_along(c, x.x, c->lo.x, 0), at[1] = hypergraph_along(c, x.y, c->lo.y, 1);
+    at[2] = hypergraph_along(c, x.z, c->lo.z, 2);
 }
 
-static int64_t cell_at(const struct cells *c, const int64_t at[3])
+static int64_t cell_at(const struct hypergraph_cells *c, const int64_t at[3])
 {
     return (at[2] * c->many[1] + at[1]) * c->many[0] + at[0];
 }
 
 /* near[] = the cell and those around it; returns how many. */
-static int around(const struct cells *c, int64_t cell, int64_t near[AROUND])
+static int hypergraph_around(const struct hypergraph_cells *c, int64_t cell, int64_t near[AROUND])
 {
     const int64_t at[3] = { cell % c->many[0], cell / c->many[0] % c->many[1],
                             cell / c->many[0] / c->many[1] };
@@ -68,24 +68,24 @@ static int around(const struct cells *c, int64_t cell, int64_t near[AROUND])
 
 /* ---- what Zoltan asks ---- */
 
-static bool is_asked(const struct cells *c, int64_t cell)
+static bool is_asked(const struct hypergraph_cells *c, int64_t cell)
 {
     return c->home[cell] == c->comm->me;
 }
 
-static int count(void *arg, int *error)
+static int hypergraph_count(void *arg, int *error)
 {
-    const struct cells *c = arg;
+    const struct hypergraph_cells *c = arg;
     int n = 0;
     for (int64_t i = 0; i < c->n; i++) n += is_asked(c, i);
     *error = ZOLTAN_OK;
     return n;
 }
 
-static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
+static void hypergraph_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
                  float *weight, int *error)
 {
-    const struct cells *c = arg;
+    const struct hypergraph_cells *c = arg;
     int n = 0;
     (void)gids, (void)lids, (void)weights;
     for (int64_t i = 0; i < c->n; i++) {
@@ -97,10 +97,10 @@ static void list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR
 }
 
 /* The hyperedge of a cell: occupied ones around it */
-static int edge_of(const struct cells *c, int64_t cell, int64_t edge[AROUND])
+static int hypergraph_edge_of(const struct hypergraph_cells *c, int64_t cell, int64_t edge[AROUND])
 {
     int64_t near[AROUND];
-    int n = around(c, cell, near), pins = 0;
+    int n = hypergraph_around(c, cell, near), pins = 0;
     for (int i = 0; i < n; i++)
         if (c->home[near[i]] >= 0) edge[pins++] = near[i];
     return pins;
@@ -108,24 +108,24 @@ static int edge_of(const struct cells *c, int64_t cell, int64_t edge[AROUND])
 
 static void edge_sizes(void *arg, int *edges, int *pins, int *format, int *error)
 {
-    const struct cells *c = arg;
+    const struct hypergraph_cells *c = arg;
     int64_t edge[AROUND];
     *edges = *pins = 0, *format = ZOLTAN_COMPRESSED_EDGE, *error = ZOLTAN_OK;
     for (int64_t i = 0; i < c->n; i++)
-        if (is_asked(c, i)) ++*edges, *pins += edge_of(c, i, edge);
+        if (is_asked(c, i)) ++*edges, *pins += hypergraph_edge_of(c, i, edge);
 }
 
 static void edges(void *arg, int gids, int n, int pins, int format, ZOLTAN_ID_PTR gid, int *first,
                   ZOLTAN_ID_PTR pin, int *error)
 {
-    const struct cells *c = arg;
+    const struct hypergraph_cells *c = arg;
     int64_t edge[AROUND];
     int next = 0, k = 0;
     (void)gids, (void)n, (void)pins, (void)format;
     for (int64_t i = 0; i < c->n; i++) {
         if (!is_asked(c, i)) continue;
         gid[k] = (ZOLTAN_ID_TYPE)i, first[k++] = next;
-        int m = edge_of(c, i, edge);
+        int m = hypergraph_edge_of(c, i, edge);
         for (int j = 0; j < m; j++) pin[next++] = (ZOLTAN_ID_TYPE)edge[j];
     }
     *error = ZOLTAN_OK;
@@ -133,13 +133,13 @@ static void edges(void *arg, int gids, int n, int pins, int format, ZOLTAN_ID_PT
 
 static void weight_sizes(void *arg, int *n, int *error)
 {
-    *n = count(arg, error);
+    *n = hypergraph_count(arg, error);
 }
 
 static void edge_weights(void *arg, int gids, int lids, int n, int weights, ZOLTAN_ID_PTR gid,
                          ZOLTAN_ID_PTR lid, float *weight, int *error)
 {
-    const struct cells *c = arg;
+    const struct hypergraph_cells *c = arg;
     int k = 0;
     (void)gids, (void)lids, (void)n, (void)weights;
     for (int64_t i = 0; i < c->n; i++) {
@@ -150,7 +150,7 @@ static void edge_weights(void *arg, int gids, int lids, int n, int weights, ZOLT
     *error = ZOLTAN_OK;
 }
 
-static void *begin(struct comm *t)
+static void *hypergraph_begin(struct comm *t)
 {
     static const char *const set[][2] = { { "LB_METHOD", "HYPERGRAPH" },
                                           { "HYPERGRAPH_PACKAGE", "PHG" },
@@ -163,32 +163,32 @@ static void *begin(struct comm *t)
                                           { "IMBALANCE_TOL", "1.02" },
                                           { "SEED", "1" },
                                           { NULL, NULL } };
-    struct cells *c = comm_new(t, 1, sizeof *c);
+    struct hypergraph_cells *c = comm_new(t, 1, sizeof *c);
     c->comm = t, c->zz = territory_zoltan(t, set);
-    Zoltan_Set_Num_Obj_Fn(c->zz, count, c), Zoltan_Set_Obj_List_Fn(c->zz, list, c);
+    Zoltan_Set_Num_Obj_Fn(c->zz, hypergraph_count, c), Zoltan_Set_Obj_List_Fn(c->zz, hypergraph_list, c);
     Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
     Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);
     Zoltan_Set_HG_Edge_Wts_Fn(c->zz, edge_weights, c);
     return c;
 }
 
-static void forget(struct cells *c)
+static void hypergraph_forget(struct hypergraph_cells *c)
 {
     free(c->owner), free(c->work), free(c->count), free(c->home);
     c->owner = c->home = NULL, c->work = c->count = NULL, c->n = 0;
 }
 
-static void end(void *made)
+static void hypergraph_end(void *made)
 {
-    struct cells *c = made;
-    Zoltan_Destroy(&c->zz), forget(c);
+    struct hypergraph_cells *c = made;
+    Zoltan_Destroy(&c->zz), hypergraph_forget(c);
     free(c);
 }
 
 /* ---- the cut ---- */
 
 /* The grid around the points of all ranks */
-static void lay_grid(struct cells *c, int64_t n, const vec3 *x)
+static void lay_grid(struct hypergraph_cells *c, int64_t n, const vec3 *x)
 {
     struct comm *t = c->comm;
     double most[6] = { -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY, -INFINITY }, all[6];
@@ -218,13 +218,13 @@ static void lay_grid(struct cells *c, int64_t n, const vec3 *x)
 }
 
 /* What is in each cell, of all ranks */
-static void weigh(struct cells *c, int64_t n, const vec3 *x, const float *weight)
+static void hypergraph_weigh(struct hypergraph_cells *c, int64_t n, const vec3 *x, const float *weight)
 {
     struct comm *t = c->comm;
     c->work = comm_new(t, c->n, sizeof *c->work), c->count = comm_new(t, c->n, sizeof *c->count);
     for (int64_t i = 0; i < n; i++) {
         int64_t at[3];
-        place(c, x[i], at);
+        hypergraph_place(c, x[i], at);
         c->work[cell_at(c, at)] += (int64_t)(WEIGHT_UNITS * weight[i] + 0.5f);
         c->count[cell_at(c, at)]++;
     }
@@ -233,14 +233,14 @@ static void weigh(struct cells *c, int64_t n, const vec3 *x, const float *weight
 }
 
 /* Cells in which nothing is go with the nearest, cell by cell outwards. */
-static void spread(struct cells *c)
+static void spread(struct hypergraph_cells *c)
 {
     int64_t *queue = comm_new(c->comm, c->n, sizeof *queue), first = 0, end = 0, near[AROUND];
     for (int64_t i = 0; i < c->n; i++)
         if (c->owner[i] >= 0) queue[end++] = i;
     if (!end) c->owner[0] = 0, queue[end++] = 0;
     for (; first < end; first++) {
-        int n = around(c, queue[first], near);
+        int n = hypergraph_around(c, queue[first], near);
         for (int i = 0; i < n; i++) {
             if (c->owner[near[i]] >= 0) continue;
             c->owner[near[i]] = c->owner[queue[first]], queue[end++] = near[i];
@@ -250,7 +250,7 @@ static void spread(struct cells *c)
 }
 
 /* Asks Zoltan whose the occupied cells are. */
-static void share_out(struct cells *c)
+static void share_out(struct hypergraph_cells *c)
 {
     struct comm *t = c->comm;
     int changes, gids, lids, in, out;
@@ -265,13 +265,13 @@ static void share_out(struct cells *c)
     MPI_Allreduce(MPI_IN_PLACE, c->owner, (int)c->n, MPI_INT, MPI_MAX, t->mpi);
 }
 
-static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
+static void hypergraph_cut(void *made, int64_t n, const vec3 *x, const float *weight)
 {
-    struct cells *c = made;
+    struct hypergraph_cells *c = made;
     struct comm *t = c->comm;
-    forget(c);
+    hypergraph_forget(c);
     lay_grid(c, n, x);
-    weigh(c, n, x, weight);
+    hypergraph_weigh(c, n, x, weight);
     c->owner = comm_new(t, c->n, sizeof *c->owner), c->home = comm_new(t, c->n, sizeof *c->home);
     int64_t occupied = 0, next = 0;
     for (int64_t i = 0; i < c->n; i++) occupied += c->count[i] > 0;
@@ -287,20 +287,20 @@ static void cut(void *made, int64_t n, const vec3 *x, const float *weight)
     spread(c);
 }
 
-static int owner(const void *made, vec3 x)
+static int hypergraph_owner(const void *made, vec3 x)
 {
-    const struct cells *c = made;
+    const struct hypergraph_cells *c = made;
     int64_t at[3];
-    place(c, x, at);
+    hypergraph_place(c, x, at);
     return c->owner[cell_at(c, at)];
 }
 
-static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
+static int hypergraph_meets(const void *made, vec3 lo, vec3 hi, int *rank)
 {
-    const struct cells *c = made;
+    const struct hypergraph_cells *c = made;
     int64_t from[3], to[3], at[3];
     int n = 0;
-    place(c, lo, from), place(c, hi, to);
+    hypergraph_place(c, lo, from), hypergraph_place(c, hi, to);
     for (at[2] = from[2]; at[2] <= to[2]; at[2]++)
         for (at[1] = from[1]; at[1] <= to[1]; at[1]++)
             for (at[0] = from[0]; at[0] <= to[0]; at[0]++) {
@@ -311,4 +311,4 @@ static int meets(const void *made, vec3 lo, vec3 hi, int *rank)
     return n;
 }
 
-const struct cuts cuts_hypergraph = { begin, end, cut, owner, meets };
+const struct cuts cuts_hypergraph = { hypergraph_begin, hypergraph_end, hypergraph_cut, hypergraph_owner, hypergraph_meets };

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, TAKE, FILL };
+enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, TAKE, FILL };
 
 static struct {
     struct comm comm;
@@ -55,21 +55,21 @@ int processes_size(void)
     return self.comm.n;
 }
 
-static enum word next(enum word w)
+static enum mpi_processes_word mpi_processes_next(enum mpi_processes_word w)
 {
     int word = w;
     MPI_Bcast(&word, 1, MPI_INT, 0, self.comm.mpi);
-    return (enum word)word;
+    return (enum mpi_processes_word)word;
 }
 
-static void begin(enum word w, const struct packing *p)
+static void mpi_processes_begin(enum mpi_processes_word w, const struct packing *p)
 {
     struct territory *space = territory_new(&self.comm, options.cut);
     rank_step_begin(&self.step, &self.comm, space, p, w == BEGIN_ROWS ? &self.rows : NULL);
     self.begun = true;
 }
 
-static int fill(hid_t file, const char *path, const struct unfilled *place, int places,
+static int mpi_processes_fill(hid_t file, const char *path, const struct unfilled *place, int places,
                 struct why *why)
 {
     const struct files_wish wish = { file, path, place, places, getenv("NSD_GATHER") != NULL };
@@ -85,26 +85,26 @@ static bool wants(struct distributed *e, const struct packing *settings, int64_t
     return rank_step_scatters(settings, &o);
 }
 
-static int take(struct distributed *e, const struct packing *block, int64_t first, struct why *why)
+static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first, struct why *why)
 {
     (void)why;
-    next(TAKE);
+    mpi_processes_next(TAKE);
     rows_take(&self.rows, &self.comm, block, first, e->n);
     return 0;
 }
 
-static int give(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,
+static int mpi_processes_give(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,
                 int places, struct why *why)
 {
     (void)e;
-    next(FILL);
-    return fill(file, path, place, places, why);
+    mpi_processes_next(FILL);
+    return mpi_processes_fill(file, path, place, places, why);
 }
 
 struct distributed *processes_take_bodies(bool contacts)
 {
     self.contacts = contacts;
-    self.distributed = (struct distributed){ .wants = wants, .take = take, .give = give };
+    self.distributed = (struct distributed){ .wants = wants, .take = mpi_processes_take, .give = mpi_processes_give };
     return &self.distributed;
 }
 
@@ -116,10 +116,10 @@ int processes_follow(void)
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct why why = { 0 };
-    for (enum word w; (w = next(LEAVE)) != LEAVE;) {
-        if (w == BEGIN || w == BEGIN_ROWS) begin(w, &none);
+    for (enum mpi_processes_word w; (w = mpi_processes_next(LEAVE)) != LEAVE;) {
+        if (w == BEGIN || w == BEGIN_ROWS) mpi_processes_begin(w, &none);
         if (w == TAKE) rows_take(&self.rows, &self.comm, NULL, 0, 0);
-        if (w == FILL) fill(-1, NULL, NULL, 0, &why); // the leader says what was wrong
+        if (w == FILL) mpi_processes_fill(-1, NULL, NULL, 0, &why); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
         if (w == ACT) rank_step_act(&self.step, &none);
         if (w != STEP) continue;
@@ -136,12 +136,12 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
 {
     (void)m;
     if (!self.begun)
-        begin(next(f->distributed ? BEGIN_ROWS : BEGIN), &f->packing);
+        mpi_processes_begin(mpi_processes_next(f->distributed ? BEGIN_ROWS : BEGIN), &f->packing);
     else if (changes.bodies)
-        next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
-    if (changes.acts) next(ACT), rank_step_act(&self.step, &f->packing);
+        mpi_processes_next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
+    if (changes.acts) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
-    next(STEP);
+    mpi_processes_next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, why);
 }
 
@@ -149,7 +149,7 @@ const char *processes_leave(void)
 {
     static char text[500];
     const struct rank_step *y = &self.step;
-    if (!self.comm.me) next(LEAVE);
+    if (!self.comm.me) mpi_processes_next(LEAVE);
     double mine[4] = { (double)y->solved[0], (double)y->solved[1], y->busy[0], y->busy[1] },
            most[4] = { 0 };
     MPI_Reduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, 0, self.comm.mpi);

@@ -59,13 +59,13 @@ void rank_step_free(struct rank_step *y)
     subdomain_free(&y->part);
 }
 
-static void fail(const struct rank_step *y, const struct why *why)
+static void rank_step_fail(const struct rank_step *y, const struct why *why)
 {
     comm_fail(y->part.comm, why->status, why->text);
 }
 
 /* Keeps the contacts for which keep[] is true, with all that is known of them. */
-static void sift(struct contacts *s, const bool *keep)
+static void rank_step_sift(struct contacts *s, const bool *keep)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
@@ -85,16 +85,16 @@ static void find_contacts(struct rank_step *y, double gap, double reach, struct 
     struct why why = { 0 };
     double ahead = comm_most(part->comm, swift_reach(&part->p));
     if (subdomain_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
-    if (detect_near(s, &part->p, reach, &y->near, &why)) fail(y, &why);
+    if (detect_near(s, &part->p, reach, &y->near, &why)) rank_step_fail(y, &why);
     bool *keep = comm_new(part->comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_has(part, &s->c[i]);
-    sift(s, keep);
+    rank_step_sift(s, keep);
     free(keep);
-    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) fail(y, &why);
+    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) rank_step_fail(y, &why);
 }
 
 /* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
-static void compare(struct comm *t, const struct contacts *before, const struct contacts *all,
+static void rank_step_compare(struct comm *t, const struct contacts *before, const struct contacts *all,
                     struct verdict *of, struct parcel *added)
 {
     int64_t k = 0;
@@ -154,14 +154,14 @@ static void add_to_all(struct rank_step *y, struct contact_list *list, struct co
 }
 
 /* Contacts that this rank has, and those of all, which the first has */
-struct gathered {
+struct rank_step_gathered {
     struct contacts *here, *all;
     struct contact_list *list; /* which of `all` are whose */
 };
 
 /* The first rank chooses by the laws which of all are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct rank_step *y, const struct packing *whole,
-                          const struct gathered *g, const struct step_opt *o, double reach,
+                          const struct rank_step_gathered *g, const struct step_opt *o, double reach,
                           struct why *why)
 {
     struct contact_list *list = g->list;
@@ -175,7 +175,7 @@ static int choose_by_laws(struct rank_step *y, const struct packing *whole,
         if (contacts_copy(&before, all))
             return free(of), free(mine), why_set(why, EX_SOFTWARE, "no memory for the contacts");
         if (detect_choose(all, whole, o->gap, reach, why)) return free(of), free(mine), why->status;
-        compare(t, &before, all, of, &added);
+        rank_step_compare(t, &before, all, of, &added);
     }
     contact_list_tell(list, &y->part, s, of, mine);
     int64_t n = 0;
@@ -185,7 +185,7 @@ static int choose_by_laws(struct rank_step *y, const struct packing *whole,
     MPI_Bcast(&list->n, 1, MPI_INT64_T, 0, t->mpi);
     bool *keep = comm_new(t, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = mine[i].keep;
-    sift(s, keep);
+    rank_step_sift(s, keep);
     free(keep), free(of), free(mine);
     contacts_free(&before);
     add_to_all(y, list, s, all, &added);
@@ -233,7 +233,7 @@ static double mean_mass(const struct rank_step *y, const struct packing *whole)
 }
 
 /* Prepared, solved and stored, by all ranks */
-static void solve(struct rank_step *y, struct problem *p, struct contacts *s,
+static void rank_step_solve(struct rank_step *y, struct problem *p, struct contacts *s,
                   const struct step_opt *o, struct report *rep)
 {
     int64_t bytes = y->part.comm->bytes, messages = y->part.comm->messages;
@@ -248,7 +248,7 @@ static void solve(struct rank_step *y, struct problem *p, struct contacts *s,
 
 /* In the order of all; returns whether it is solved: else one process has to have all of it. */
 static bool solve_in_order(struct rank_step *y, const struct packing *whole,
-                           const struct gathered *g, const struct step_opt *o, struct report *rep,
+                           const struct rank_step_gathered *g, const struct step_opt *o, struct report *rep,
                            struct why *why)
 {
     const struct contact_list *list = g->list;
@@ -258,7 +258,7 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
     struct problem p;
     struct ordered order = { .of = comm_new(t, t->me ? 0 : list->n, sizeof *order.of) };
     struct verdict *mine = comm_new(t, s->n, sizeof *mine);
-    if (order_all(y, whole, g->all, o->order, &order, why)) fail(y, why);
+    if (order_all(y, whole, g->all, o->order, &order, why)) rank_step_fail(y, why);
     contact_list_tell(list, &y->part, s, order.of, mine);
     free(order.of);
     colours_begin(&c, &y->part, s, mine, order.groups, order.bundles);
@@ -269,8 +269,8 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
                                       .rho_factor = o->solve.method->rho,
                                       .schedule = &c.plan,
                                       .exchange = &c.exchange };
-    if (problem_prepare(&p, &y->part.p, s, &form, why)) fail(y, why);
-    solve(y, &p, s, o, rep);
+    if (problem_prepare(&p, &y->part.p, s, &form, why)) rank_step_fail(y, why);
+    rank_step_solve(y, &p, s, o, rep);
     bool solved = !c.exchange.wants_whole;
     problem_free(&p);
     colours_free(&c);
@@ -285,7 +285,7 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
     struct problem p;
     bool *keep = comm_new(y->part.comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_counts(&y->part, &s->c[i]);
-    sift(s, keep);
+    rank_step_sift(s, keep);
     free(keep);
     blocks_begin(b, &y->part, s, o->order);
     b->exchange.mean_mass = mean_mass(y, whole);
@@ -293,13 +293,13 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
                                       .rho_factor = o->solve.method->rho,
                                       .schedule = &b->plan,
                                       .exchange = &b->exchange };
-    if (problem_prepare(&p, &y->part.p, s, &form, &why)) fail(y, &why);
-    solve(y, &p, s, o, rep);
+    if (problem_prepare(&p, &y->part.p, s, &form, &why)) rank_step_fail(y, &why);
+    rank_step_solve(y, &p, s, o, rep);
     problem_free(&p);
 }
 
 /* Can ranks solve it together? */
-static bool is_shared(const struct packing *p, const struct step_opt *o)
+static bool rank_step_is_shared(const struct packing *p, const struct step_opt *o)
 {
     return step_sweeps(o->solve.global) && !freedoms_in(p);
 }
@@ -315,7 +315,7 @@ static bool bounds_impacts(const struct packing *p)
 
 bool rank_step_scatters(const struct packing *p, const struct step_opt *o)
 {
-    return o->order == ORDER_BLOCK && is_shared(p, o) && !p->law && !o->warm &&
+    return o->order == ORDER_BLOCK && rank_step_is_shared(p, o) && !p->law && !o->warm &&
            !packing_varies(p) && !bounds_impacts(p) && !p->sums.n;
 }
 
@@ -334,7 +334,7 @@ static void detect_here(struct rank_step *y, const struct packing *whole, struct
 }
 
 /* The contacts, and what they start from */
-static int detect(struct rank_step *y, struct packing *whole, const struct gathered *g,
+static int rank_step_detect(struct rank_step *y, struct packing *whole, const struct rank_step_gathered *g,
                   const struct step_opt *o, struct why *why)
 {
     struct contact_list *list = g->list;
@@ -378,7 +378,7 @@ static int detect_by_first(struct step_makers *m, struct packing *whole, struct 
                            const struct step_opt *o, struct why *why)
 {
     struct by_first *f = (struct by_first *)m;
-    return detect(f->y, whole, &(struct gathered){ &f->here, all, &f->list }, o, why);
+    return rank_step_detect(f->y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, why);
 }
 
 static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
@@ -387,12 +387,12 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
     struct by_first *f = (struct by_first *)m;
     struct rank_step *y = f->y;
     struct blocks b;
-    bool solved = is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
+    bool solved = rank_step_is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
     if (blocks)
         solve_in_blocks(y, &b, whole, &f->here, o, rep), blocks_free(&b);
     else if (solved)
         solved =
-            solve_in_order(y, whole, &(struct gathered){ &f->here, all, &f->list }, o, rep, why);
+            solve_in_order(y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, rep, why);
     if (solved) contact_list_found(&f->list, &y->part, &f->here, all);
     y->alone += !solved;
     if (m->helps) return 0;
@@ -407,13 +407,13 @@ static int watch_by_first(struct step_makers *m, const struct packing *whole, st
 }
 
 /* Of a substep: how far the step is, and whether it ends where bodies meet */
-struct turn {
+struct rank_step_turn {
     const struct substeps *steps;
     bool meets;
 };
 
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
-                         const struct step_opt *o, const struct turn *turn, struct report *rep,
+                         const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
                          struct why *why)
 {
     struct comm *t = y->part.comm;
@@ -464,7 +464,7 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
     struct comm *t = y->part.comm;
     struct why why = { 0 };
     bool *own = own_bodies(y);
-    if (depth_of(d, &y->part.p, s, own, &why)) fail(y, &why);
+    if (depth_of(d, &y->part.p, s, own, &why)) rank_step_fail(y, &why);
     free(own);
     const double most = comm_most(t, d->deepest), none = -1e300;
     bool here = d->deepest == most;
@@ -485,7 +485,7 @@ static struct fast_list fast_of_all(struct rank_step *y, const bool *own)
     struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
     struct why why = { 0 };
     struct fast_list here, all = { 0 };
-    if (fast_find(&here, &y->part.p, own, &why)) fail(y, &why);
+    if (fast_find(&here, &y->part.p, own, &why)) rank_step_fail(y, &why);
     if (comm_sum(t, here.n) > 0) {
         parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
         comm_gather(t, &mine, in);
@@ -511,7 +511,7 @@ static void watch_here(struct rank_step *y, struct windows watch, struct report 
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
     if (watch.fixed.length > 0) swift_passed(&here, p, own, y->near.surface, watch.fixed);
-    if (crossing_count(&here, p, own, &fast, watch.bodies, watch.beyond, &why)) fail(y, &why);
+    if (crossing_count(&here, p, own, &fast, watch.bodies, watch.beyond, &why)) rank_step_fail(y, &why);
     free(fast.of), free(own);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
@@ -619,7 +619,7 @@ static int watch_by_all(struct step_makers *m, const struct packing *p, struct w
 }
 
 static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
-                       const struct step_opt *o, const struct turn *turn, struct report *rep,
+                       const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
                        struct why *why)
 {
     struct comm *t = y->part.comm;
@@ -642,7 +642,7 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                         .y = y,
                         .whole = whole,
                         .all = told[1] ? all : NULL };
-    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) fail(y, why);
+    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) rank_step_fail(y, why);
     if (!t->me && report_made(rep)) settings_copy_motion(whole, &y->part.p);
     // with such a step the run ends, and keeps this
     const bool ends = !report_made(rep) || (told[2] && account_step_fails(rep));
@@ -667,7 +667,7 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
     if (fast.n && meeting_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &why))
-        fail(y, &why);
+        rank_step_fail(y, &why);
     if (fast.n) c->length = -comm_most(t, -c->length);
     for (bool passes = fast.n > 0; passes && c->length > substeps_least(s);) {
         p->dt = c->length;
@@ -679,13 +679,13 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
 }
 
 /* Collective */
-static int choose(struct rank_step *y, struct substeps *s, struct turn *turn, struct packing *whole,
+static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank_step_turn *turn, struct packing *whole,
                   bool by_all, const struct step_opt *o, struct why *why)
 {
     struct comm *t = y->part.comm;
     struct substep_choice c = step_substep(s, o);
     turn->steps = s;
-    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, why)) fail(y, why);
+    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, why)) rank_step_fail(y, why);
     if (c.meets && by_all) choose_here(y, &c, s);
     if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, why))
         return why->status;
@@ -697,7 +697,7 @@ static int choose(struct rank_step *y, struct substeps *s, struct turn *turn, st
 }
 
 /* Collective: the substep, of all packings that know the time */
-static int make_substep(struct rank_step *y, struct substeps *s, const struct turn *turn,
+static int make_substep(struct rank_step *y, struct substeps *s, const struct rank_step_turn *turn,
                         struct packing *whole, struct contacts *all, bool by_all,
                         const struct step_opt *o, struct report *rep, struct why *why)
 {
@@ -721,11 +721,11 @@ int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *
     bool by_all = rank_step_scatters(&y->part.p, o) && !y->varies;
     double since = comm_busy() - y->part.comm->waited;
     struct substeps steps;
-    struct turn turn = { &steps, false };
+    struct rank_step_turn turn = { &steps, false };
     int e = 0;
     substeps_begin(&steps, &y->part.p);
     for (int ends = 0; !ends && !e;) {
-        e = choose(y, &steps, &turn, whole, by_all, o, why);
+        e = rank_step_choose(y, &steps, &turn, whole, by_all, o, why);
         if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, why);
         ends = steps.ends;
         // one whose solve diverges ends the step, which the first knows

@@ -5,18 +5,18 @@
 #include <string.h>
 
 /* What is said of a block in front of it */
-struct block {
+struct rows_block {
     int64_t first, n, all;
     int32_t dim;
     uint32_t optional; /* packing_optional() */
 };
 
-static void fail(const struct comm *t, const struct why *why)
+static void rows_fail(const struct comm *t, const struct why *why)
 {
     comm_fail(t, why->status, why->text);
 }
 
-static void make_room(struct rows *r, const struct block *b)
+static void rows_make_room(struct rows *r, const struct rows_block *b)
 {
     struct comm *t = r->comm;
     struct why why = { 0 };
@@ -24,11 +24,11 @@ static void make_room(struct rows *r, const struct block *b)
     *r = (struct rows){ .comm = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
     int64_t n = rows_begin(b->all, t->n, t->me + 1) - r->first;
     if (packing_init(&r->p, b->dim, n, &why) || packing_alloc_optional(&r->p, b->optional, &why))
-        fail(t, &why);
+        rows_fail(t, &why);
 }
 
 /* Rows first .. end - 1 that a block and rank k both have; false: none */
-static bool common(const struct block *b, const struct comm *t, int k, int64_t *first, int64_t *end)
+static bool common(const struct rows_block *b, const struct comm *t, int k, int64_t *first, int64_t *end)
 {
     *first = rows_begin(b->all, t->n, k), *end = rows_begin(b->all, t->n, k + 1);
     if (*first < b->first) *first = b->first;
@@ -39,14 +39,14 @@ static bool common(const struct block *b, const struct comm *t, int k, int64_t *
 void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
                int64_t all)
 {
-    struct block b = { 0 };
+    struct rows_block b = { 0 };
     struct parcel *out = parcels_new(t), mine = { 0 };
     int64_t from, end;
     const struct column *c;
-    if (!t->me) b = (struct block){ first, block->n, all, block->dim, packing_optional(block) };
+    if (!t->me) b = (struct rows_block){ first, block->n, all, block->dim, packing_optional(block) };
     MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->mpi);
     r->comm = t;
-    if (!b.first) make_room(r, &b);
+    if (!b.first) rows_make_room(r, &b);
     for (int q = 0; q < t->n && !t->me; q++)
         for (int k = 0; common(&b, t, q, &from, &end) && k < BODY_COLUMNS; k++)
             if (column_array(c = &body_columns[k].column, block))

@@ -30,7 +30,7 @@ static void take_drives(struct comm *t, struct parcel *o, struct drives *d)
     d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
 }
 
-static void put_names(struct comm *t, struct parcel *o, const struct names *names)
+static void settings_put_names(struct comm *t, struct parcel *o, const struct names *names)
 {
     parcel_put(t, o, &names->n, sizeof names->n);
     for (int32_t k = 0; k < names->n; k++) put_text(t, o, names->text[k]);
@@ -64,12 +64,12 @@ static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *li
     }
 }
 
-static void fail(struct comm *t, const struct why *why)
+static void settings_fail(struct comm *t, const struct why *why)
 {
     comm_fail(t, why->status, why->text);
 }
 
-static void take_shapes(struct comm *t, struct parcel *o, struct shapes *list, int dim)
+static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes *list, int dim)
 {
     int32_t n;
     struct why why = { 0 };
@@ -87,21 +87,21 @@ static void take_shapes(struct comm *t, struct parcel *o, struct shapes *list, i
         s.faces -= s.faces > 0;
         s.corners = (int32_t)parcel_take_array(t, o, &s.corner, sizeof *s.corner);
         const double volume = s.volume, moment[3] = { s.moment[0], s.moment[1], s.moment[2] };
-        if (shape_finish(&s, dim, &why) || shapes_add(list, dim, &s, &why)) fail(t, &why);
+        if (shape_finish(&s, dim, &why) || shapes_add(list, dim, &s, &why)) settings_fail(t, &why);
         struct shape *made = &list->s[list->n - 1];
         made->volume = volume;
         for (int j = 0; j < 3; j++) made->moment[j] = moment[j];
     }
 }
 
-static void put_cell(struct comm *t, struct parcel *o, const struct cell *c)
+static void settings_put_cell(struct comm *t, struct parcel *o, const struct cell *c)
 {
     parcel_put(t, o, c, sizeof *c);
     parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
     parcel_put_array(t, o, c->factor, c->factors, sizeof *c->factor);
 }
 
-static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
+static void settings_take_cell(struct comm *t, struct parcel *o, struct cell *c)
 {
     cell_free(c);
     parcel_take(t, o, c, sizeof *c);
@@ -110,7 +110,7 @@ static void take_cell(struct comm *t, struct parcel *o, struct cell *c)
 }
 
 /* Numbers that are not pointers */
-struct numbers {
+struct settings_numbers {
     int64_t step;
     double t, dt, theta, t0, pulls_most;
     int64_t step0;
@@ -120,9 +120,9 @@ struct numbers {
     uint32_t optional; /* packing_optional() */
 };
 
-static void put(struct comm *t, struct parcel *o, const struct packing *p)
+static void settings_put(struct comm *t, struct parcel *o, const struct packing *p)
 {
-    struct numbers n;
+    struct settings_numbers n;
     int64_t k2 = (int64_t)p->kinds * p->kinds;
     memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
     n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
@@ -136,8 +136,8 @@ static void put(struct comm *t, struct parcel *o, const struct packing *p)
     put_drives(t, o, &p->pulls);
     parcel_put_array(t, o, p->mesh.vertex, p->mesh.vertices, sizeof *p->mesh.vertex);
     parcel_put_array(t, o, p->mesh.element, p->mesh.elements, sizeof *p->mesh.element);
-    put_names(t, o, &p->names);
-    put_cell(t, o, &p->cell);
+    settings_put_names(t, o, &p->names);
+    settings_put_cell(t, o, &p->cell);
     put_shapes(t, o, &p->shapes);
     for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
 #define PUT(member, ...) parcel_put_array(t, o, p->member, k2, sizeof *p->member);
@@ -146,13 +146,13 @@ static void put(struct comm *t, struct parcel *o, const struct packing *p)
     if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
 }
 
-static void take(struct comm *t, struct parcel *o, struct packing *p)
+static void settings_take(struct comm *t, struct parcel *o, struct packing *p)
 {
-    struct numbers n;
+    struct settings_numbers n;
     struct why why = { 0 };
     parcel_take(t, o, &n, sizeof n);
     packing_free(p);
-    if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) fail(t, &why);
+    if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) settings_fail(t, &why);
     p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
     p->pulls_most = n.pulls_most;
     p->t0 = n.t0, p->step0 = n.step0;
@@ -164,22 +164,22 @@ static void take(struct comm *t, struct parcel *o, struct packing *p)
     p->mesh.vertices = (int32_t)parcel_take_array(t, o, &p->mesh.vertex, sizeof *p->mesh.vertex);
     p->mesh.elements = (int32_t)parcel_take_array(t, o, &p->mesh.element, sizeof *p->mesh.element);
     take_names(t, o, &p->names);
-    take_cell(t, o, &p->cell);
-    take_shapes(t, o, &p->shapes, p->dim);
+    settings_take_cell(t, o, &p->cell);
+    settings_take_shapes(t, o, &p->shapes, p->dim);
     for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
 #define TAKE(member, ...) free(p->member), parcel_take_array(t, o, &p->member, sizeof *p->member);
     EVERY_PAIR_COLUMN(TAKE)
 #undef TAKE
     if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
-    if (packing_alloc_optional(p, n.optional, &why)) fail(t, &why);
+    if (packing_alloc_optional(p, n.optional, &why)) settings_fail(t, &why);
 }
 
 void settings_spread(struct comm *t, struct packing *p)
 {
     struct parcel o = { 0 };
-    if (!t->me) put(t, &o, p);
+    if (!t->me) settings_put(t, &o, p);
     comm_spread(t, &o);
-    if (t->me) take(t, &o, p);
+    if (t->me) settings_take(t, &o, p);
     parcel_free(&o);
 }
 
@@ -188,7 +188,7 @@ static void keep_forces(struct comm *t, vec3 **x, bool wanted, int64_t n)
 {
     struct why why = { 0 };
     if (!wanted) free(*x), *x = NULL;
-    if (wanted && outside_alloc(x, n, &why)) fail(t, &why);
+    if (wanted && outside_alloc(x, n, &why)) settings_fail(t, &why);
 }
 
 void settings_act(struct comm *t, struct packing *p, const struct packing *whole)
@@ -219,7 +219,7 @@ void settings_act(struct comm *t, struct packing *p, const struct packing *whole
     parcel_take(t, &o, p->wall, walls * sizeof *p->wall);
     struct why why = { 0 };
     if (!now.push) free(to->push), to->push = NULL;
-    if (now.push && outside_alloc_push(to, p->walls, &why)) fail(t, &why);
+    if (now.push && outside_alloc_push(to, p->walls, &why)) settings_fail(t, &why);
     if (now.push) parcel_take(t, &o, to->push, walls * sizeof *to->push);
     p->g = now.g, to->most = now.most;
     keep_forces(t, &to->force, now.force, p->n), keep_forces(t, &to->torque, now.torque, p->n);

@@ -21,7 +21,7 @@ struct traveller {
     int32_t row, owner, load;
 };
 
-static void fail(const struct subdomain *y, const struct why *why)
+static void subdomain_fail(const struct subdomain *y, const struct why *why)
 {
     comm_fail(y->comm, why->status, why->text);
 }
@@ -83,7 +83,7 @@ static void resize(struct subdomain *y, int64_t n)
 {
     struct why why = { 0 };
     struct packing *p = &y->p;
-    if (packing_resize(p, n, &why)) fail(y, &why);
+    if (packing_resize(p, n, &why)) subdomain_fail(y, &why);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     y->row = comm_new(y->comm, n, sizeof *y->row),
     y->owner = comm_new(y->comm, n, sizeof *y->owner);
@@ -92,7 +92,7 @@ static void resize(struct subdomain *y, int64_t n)
 }
 
 /* What is known of a body that has been copied into row i of y->p */
-static void set_body(struct subdomain *y, int64_t i, struct traveller b)
+static void subdomain_set_body(struct subdomain *y, int64_t i, struct traveller b)
 {
     y->row[i] = b.row, y->owner[i] = b.owner, y->load[i] = b.load;
     y->dealt[i] = y->p.x[i];
@@ -105,7 +105,7 @@ static void take_own(struct subdomain *y, const struct packing *p, int64_t n, in
     resize(y, n);
     for (int64_t i = 0; i < n; i++) {
         packing_copy_body(&y->p, i, p, i);
-        set_body(y, i, (struct traveller){ (int32_t)(first + i), y->comm->me, 0 });
+        subdomain_set_body(y, i, (struct traveller){ (int32_t)(first + i), y->comm->me, 0 });
     }
     y->own = n;
     y->margin = -1; // they are to be dealt
@@ -117,7 +117,7 @@ static void take_all(struct subdomain *y, const struct packing *whole)
     take_own(y, whole, y->comm->me ? 0 : whole->n, 0);
 }
 
-static void begin(struct subdomain *y, struct comm *t, struct territory *space,
+static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct territory *space,
                   const struct packing *settings)
 {
     struct why why = { 0 };
@@ -126,7 +126,7 @@ static void begin(struct subdomain *y, struct comm *t, struct territory *space,
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
         none.memory = (struct memory){ 0 }, none.outside = (struct outside){ 0 };
-        if (packing_copy(&y->p, &none, &why)) fail(y, &why);
+        if (packing_copy(&y->p, &none, &why)) subdomain_fail(y, &why);
     }
     settings_spread(t, &y->p);
     y->p.whole = &y->whole;
@@ -135,7 +135,7 @@ static void begin(struct subdomain *y, struct comm *t, struct territory *space,
 void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
                      const struct packing *whole)
 {
-    begin(y, t, space, whole);
+    subdomain_begin_empty(y, t, space, whole);
     take_all(y, whole);
     subdomain_recut(y);
 }
@@ -143,7 +143,7 @@ void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *spac
 void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
                           const struct packing *settings, const struct own_rows *rows)
 {
-    begin(y, t, space, settings);
+    subdomain_begin_empty(y, t, space, settings);
     take_own(y, rows->p, rows->p->n, rows->first);
     if (y->all != rows->all) comm_fail(t, EX_SOFTWARE, "ranks disagree about rows of bodies");
     subdomain_recut(y);
@@ -204,7 +204,7 @@ void subdomain_recut(struct subdomain *y)
 /* ---- dealing ---- */
 
 /* Has any own body gone further than half the margin, at the predicted position? */
-static bool is_due(const struct subdomain *y)
+static bool subdomain_is_due(const struct subdomain *y)
 {
     bool due = y->margin < 0;
     for (int k = 0; k < 3; k++) due = due || (y->p.cell.repeats[k] && cell_moves(&y->p.cell, k));
@@ -245,7 +245,7 @@ static int by_row(const void *a, const void *b)
 }
 
 /* The lists of bodies that are here and elsewhere: a copy's rank tells the owner. */
-static void find_borders(struct subdomain *y)
+static void subdomain_find_borders(struct subdomain *y)
 {
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
@@ -281,7 +281,7 @@ static void find_borders(struct subdomain *y)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-static double mean_radius(const struct subdomain *y)
+static double subdomain_mean_radius(const struct subdomain *y)
 {
     double sum = 0, all;
     for (int64_t i = 0; i < y->p.n; i++) sum += y->owner[i] == y->comm->me ? y->p.radius[i] : 0;
@@ -292,7 +292,7 @@ static double mean_radius(const struct subdomain *y)
 /* m: every step must stay within half of it */
 static double choose_margin(const struct subdomain *y)
 {
-    double r = mean_radius(y), step = y->p.dt * y->whole.speed;
+    double r = subdomain_mean_radius(y), step = y->p.dt * y->whole.speed;
     double m = fmax(fmin(STEPS_AHEAD * step, MARGIN_MOST * r), MARGIN_LEAST * r);
     return fmax(m, 2.1 * step);
 }
@@ -328,7 +328,7 @@ static void give_back(void)
 bool subdomain_deal(struct subdomain *y, double reach)
 {
     struct comm *t = y->comm;
-    if (!is_due(y)) return false;
+    if (!subdomain_is_due(y)) return false;
     y->margin = choose_margin(y), y->deals++;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     send_bodies(y, reach, out);
@@ -349,12 +349,12 @@ bool subdomain_deal(struct subdomain *y, double reach)
     for (int64_t i = 0; i < n; i++) {
         b[i].parcel->at = b[i].at;
         take_body(t, b[i].parcel, &y->p, i, false), take_force(t, b[i].parcel, &y->p, i);
-        set_body(y, i, b[i].body);
+        subdomain_set_body(y, i, b[i].body);
         y->own += b[i].body.owner == t->me;
     }
     free(b);
     parcels_free(t, out), parcels_free(t, in);
-    find_borders(y);
+    subdomain_find_borders(y);
     give_back();
     return true;
 }
@@ -374,7 +374,7 @@ int32_t subdomain_find(const struct subdomain *y, int32_t row)
 /* ---- places and motion ---- */
 
 /* act: and what acts on them */
-static void follow(struct subdomain *y, const struct packing *whole, bool act)
+static void subdomain_follow_all(struct subdomain *y, const struct packing *whole, bool act)
 {
     struct comm *t = y->comm;
     struct parcel rows = { 0 }, mine = { 0 }, *in = parcels_new(t), *out = parcels_new(t);
@@ -397,13 +397,13 @@ static void follow(struct subdomain *y, const struct packing *whole, bool act)
 
 void subdomain_follow(struct subdomain *y, const struct packing *whole)
 {
-    follow(y, whole, false);
+    subdomain_follow_all(y, whole, false);
 }
 
 void subdomain_act(struct subdomain *y, const struct packing *whole, bool scattered)
 {
     settings_act(y->comm, &y->p, whole);
-    if (!scattered) follow(y, whole, true);
+    if (!scattered) subdomain_follow_all(y, whole, true);
 }
 
 void subdomain_collect(const struct subdomain *y, struct packing *whole)

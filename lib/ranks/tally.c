@@ -9,19 +9,19 @@ enum {
 };
 
 /* A slot here: the rank that adds it up, its place in the order of all, its place here */
-struct item {
+struct contact_list_item {
     int64_t rank, place, slot;
 };
 
-static int by_place(const void *a, const void *b)
+static int contact_list_by_place(const void *a, const void *b)
 {
-    const struct item *x = a, *y = b;
+    const struct contact_list_item *x = a, *y = b;
     if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
     return x->place < y->place ? -1 : x->place > y->place;
 }
 
 /* owner[chunks]: the rank that has most of a chunk */
-static int *chunk_owners(struct comm *t, const struct item *item, int64_t n, int64_t chunks)
+static int *chunk_owners(struct comm *t, const struct contact_list_item *item, int64_t n, int64_t chunks)
 {
     struct {
         int n, rank;
@@ -38,15 +38,15 @@ static int *chunk_owners(struct comm *t, const struct item *item, int64_t n, int
 void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
                  const int64_t *slot, int64_t bundles)
 {
-    struct item *item = comm_new(t, p->slots, sizeof *item);
+    struct contact_list_item *item = comm_new(t, p->slots, sizeof *item);
     *o = (struct tally_order){ 0 };
     for (int64_t i = 0; i < p->slots; i++)
         if (p->contact[i] >= 0 && slot[p->contact[i]] >= 0)
-            item[o->n++] = (struct item){ 0, slot[p->contact[i]], i };
+            item[o->n++] = (struct contact_list_item){ 0, slot[p->contact[i]], i };
     int *owner = chunk_owners(t, item, o->n, bundles / OWNED + 1);
     for (int64_t i = 0; i < o->n; i++) item[i].rank = owner[item[i].place / BUNDLE / OWNED];
     free(owner);
-    qsort(item, (size_t)o->n, sizeof *item, by_place);
+    qsort(item, (size_t)o->n, sizeof *item, contact_list_by_place);
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
     o->mine = comm_new(t, o->n, sizeof *o->mine);
     o->out = comm_new(t, t->n, sizeof *o->out), o->in = comm_new(t, t->n, sizeof *o->in);
@@ -66,7 +66,7 @@ void tally_begin(struct tally_order *o, struct comm *t, const struct problem *p,
             item[k].slot = k;
             parcel_take(t, &in[q], &item[k].place, sizeof item->place);
         }
-    qsort(item, (size_t)o->got, sizeof *item, by_place);
+    qsort(item, (size_t)o->got, sizeof *item, contact_list_by_place);
     o->at = comm_new(t, o->got, sizeof *o->at), o->where = comm_new(t, o->got, sizeof *o->where);
     for (int64_t i = 0; i < o->got; i++) o->at[i] = item[i].slot, o->where[i] = item[i].place;
     free(item);

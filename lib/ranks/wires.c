@@ -22,7 +22,7 @@ static struct wire *wire_to(struct wires *w, int rank)
     return x;
 }
 
-static int64_t largest(const int64_t *first, int64_t groups)
+static int64_t halo_largest(const int64_t *first, int64_t groups)
 {
     int64_t most = 0;
     for (int64_t g = 0; g < groups; g++)
@@ -74,8 +74,8 @@ void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64
     for (int k = 0; k < w->n; k++) {
         struct wire *x = &w->wire[k];
         for (int64_t g = 0; g < groups; g++) x->go[g + 1] += x->go[g], x->come[g + 1] += x->come[g];
-        x->go_v = comm_new(t, TWIST * largest(x->go, groups), sizeof *x->go_v);
-        x->come_v = comm_new(t, TWIST * largest(x->come, groups), sizeof *x->come_v);
+        x->go_v = comm_new(t, TWIST * halo_largest(x->go, groups), sizeof *x->go_v);
+        x->come_v = comm_new(t, TWIST * halo_largest(x->come, groups), sizeof *x->come_v);
     }
 }
 

@@ -36,7 +36,7 @@ struct fit {
 /* ---- the surface ---- */
 
 /* By the divergence theorem; the triangles as a shape of its own, of which nothing else is asked */
-static int moments_of(struct solid *out, const struct mesh *m, struct why *why)
+static int clump_fit_moments_of(struct solid *out, const struct mesh *m, struct why *why)
 {
     struct shape s = { 0 };
     if (shape_alloc(&s, m->vertices, m->elements, 3 * m->elements, why)) return why->status;
@@ -55,7 +55,7 @@ static int moments_of(struct solid *out, const struct mesh *m, struct why *why)
                                                      : why_set(why, EX_DATAERR, "has no volume");
 }
 
-static double area_of(const struct mesh *m)
+static double clump_fit_area_of(const struct mesh *m)
 {
     double sum = 0;
     for (int32_t i = 0; i < m->elements; i++) {
@@ -70,7 +70,7 @@ static double area_of(const struct mesh *m)
 /* Places on each triangle, apart by a distance that gives SAMPLES_MOST at most; its corners among them */
 static int sample_surface(struct fit *f, struct why *why)
 {
-    const double apart = fmax(f->grid.h, sqrt(2 * area_of(f->mesh) / SAMPLES_MOST));
+    const double apart = fmax(f->grid.h, sqrt(2 * clump_fit_area_of(f->mesh) / SAMPLES_MOST));
     const int64_t room = SAMPLES_MOST + (int64_t)6 * f->mesh->elements;
     f->sample = malloc((size_t)room * sizeof *f->sample);
     f->gap = malloc((size_t)room * sizeof *f->gap);
@@ -103,7 +103,7 @@ static bool is_better(const struct candidate *a, const struct candidate *b)
     return a->gain != b->gain ? a->gain > b->gain : a->point < b->point;
 }
 
-static void sift(struct candidate *heap, int64_t n, int64_t k)
+static void clump_fit_sift(struct candidate *heap, int64_t n, int64_t k)
 {
     for (int64_t child; (child = 2 * k + 1) < n; k = child) {
         if (child + 1 < n && is_better(&heap[child + 1], &heap[child])) child++;
@@ -114,7 +114,7 @@ static void sift(struct candidate *heap, int64_t n, int64_t k)
 }
 
 /* Points of the grid within a ball that no ball has filled; they are filled where `fill` */
-static int64_t count(const struct fit *f, vec3 c, double r, bool fill)
+static int64_t clump_fit_count(const struct fit *f, vec3 c, double r, bool fill)
 {
     const struct clump_grid *g = &f->grid;
     int64_t n = 0;
@@ -161,9 +161,9 @@ static vec3 climb(const struct fit *f, vec3 c, double *r)
 }
 
 /* One more ball, unless it fills nothing */
-static bool take(struct fit *f, vec3 c, double r)
+static bool clump_fit_take(struct fit *f, vec3 c, double r)
 {
-    if (!count(f, c, r, true)) return false;
+    if (!clump_fit_count(f, c, r, true)) return false;
     f->centre[f->balls] = c, f->radius[f->balls++] = r;
     for (int64_t k = 0; k < f->samples; k++)
         f->gap[k] = fmin(f->gap[k], v3_norm(v3_sub(f->sample[k], c)) - r);
@@ -172,7 +172,7 @@ static bool take(struct fit *f, vec3 c, double r)
     return true;
 }
 
-static int by_value(const void *one, const void *other)
+static int clump_fit_by_value(const void *one, const void *other)
 {
     const double a = *(const double *)one, b = *(const double *)other;
     return (a > b) - (a < b);
@@ -182,19 +182,19 @@ static int by_value(const void *one, const void *other)
 static double growth_of(struct fit *f)
 {
     memcpy(f->sorted, f->field, (size_t)f->grid.points * sizeof *f->sorted);
-    qsort(f->sorted, (size_t)f->grid.points, sizeof *f->sorted, by_value);
+    qsort(f->sorted, (size_t)f->grid.points, sizeof *f->sorted, clump_fit_by_value);
     return fmax(0, f->sorted[f->grid.inside - 1]);
 }
 
 /* m: from places of the surface to the balls that have grown */
-static double farthest(const struct fit *f, double growth)
+static double clump_fit_farthest(const struct fit *f, double growth)
 {
     double most = 0;
     for (int64_t k = 0; k < f->samples; k++) most = fmax(most, fabs(f->gap[k] - growth));
     return most;
 }
 
-static int choose(struct fit *f, const struct clump_limits *limits, struct why *why)
+static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, struct why *why)
 {
     const struct clump_grid *g = &f->grid;
     struct candidate *heap = malloc((size_t)g->inside * sizeof *heap);
@@ -205,24 +205,24 @@ static int choose(struct fit *f, const struct clump_limits *limits, struct why *
         const double r = g->depth[k] / g->h + 1;
         if (g->depth[k] > 0) heap[n++] = (struct candidate){ 4.2 * r * r * r, k, -1 };
     }
-    for (int64_t k = n / 2; k-- > 0;) sift(heap, n, k);
+    for (int64_t k = n / 2; k-- > 0;) clump_fit_sift(heap, n, k);
     while (f->balls < limits->balls && n) {
         struct candidate *top = &heap[0];
         vec3 c = clump_grid_at(g, top->point);
         double r = g->depth[top->point];
         if (top->counted != f->balls) {
-            top->gain = (double)count(f, c, r, false), top->counted = f->balls;
-            sift(heap, n, 0);
+            top->gain = (double)clump_fit_count(f, c, r, false), top->counted = f->balls;
+            clump_fit_sift(heap, n, 0);
             continue;
         }
         if (!(top->gain > 0)) break;
         c = climb(f, c, &r);
-        if (!take(f, c, r)) {
+        if (!clump_fit_take(f, c, r)) {
             top->gain = 0;
-            sift(heap, n, 0);
+            clump_fit_sift(heap, n, 0);
             continue;
         }
-        if (limits->error > 0 && farthest(f, growth_of(f)) <= limits->error * f->reach) break;
+        if (limits->error > 0 && clump_fit_farthest(f, growth_of(f)) <= limits->error * f->reach) break;
     }
     free(heap);
     return 0;
@@ -230,7 +230,7 @@ static int choose(struct fit *f, const struct clump_limits *limits, struct why *
 
 /* ---- the clump ---- */
 
-static int make_shape(struct shape *s, const struct fit *f, double growth, struct why *why)
+static int clump_fit_make_shape(struct shape *s, const struct fit *f, double growth, struct why *why)
 {
     if (shape_alloc(s, f->balls, 0, 0, why)) return why->status;
     s->form = SHAPE_CLUMP;
@@ -264,13 +264,13 @@ static int search_growth(struct shape *s, struct solid *balls, const struct fit 
 }
 
 /* The radii grow until the balls have the volume; d volume / d growth is about the surface's area. */
-static int grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
+static int clump_fit_grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
                 struct why *why)
 {
-    const double area = area_of(f->mesh);
+    const double area = clump_fit_area_of(f->mesh);
     double growth = growth_of(f), least = INFINITY;
     for (int32_t i = 0; i < f->balls; i++) least = fmin(least, f->radius[i]);
-    if (make_shape(s, f, growth, why)) return why->status;
+    if (clump_fit_make_shape(s, f, growth, why)) return why->status;
     for (int round = 0; !solid_of(balls, s, 3, why) && round < ROUNDS; round++) {
         growth = fmax(-0.5 * least, growth + (of->volume - balls->volume) / area);
         for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
@@ -281,7 +281,7 @@ static int grow(struct shape *s, struct solid *balls, struct fit *f, const struc
 }
 
 /* The k-th of DIRECTIONS places on the unit sphere, on a spiral */
-static vec3 direction(int k)
+static vec3 clump_fit_direction(int k)
 {
     const double z = 1 - (2 * k + 1) / (double)DIRECTIONS, r = sqrt(1 - z * z);
     const vec3 x = quat_turn(quat_rotation(v3(0, 0, 2.399963229728653 * k)), v3(r, 0, 0));
@@ -300,7 +300,7 @@ static double distance_of(const struct fit *f, const struct shape *s)
     }
     for (int32_t i = 0; i < s->vertices; i++)
         for (int k = 0; k < DIRECTIONS; k++) {
-            const vec3 x = v3_axpy(s->vertex[i], s->ball[i], direction(k));
+            const vec3 x = v3_axpy(s->vertex[i], s->ball[i], clump_fit_direction(k));
             bool bare = true;
             for (int32_t j = 0; j < s->vertices && bare; j++)
                 bare = j == i || v3_norm(v3_sub(x, s->vertex[j])) >= s->ball[j];
@@ -323,7 +323,7 @@ static double moments_error(const struct solid *a, const struct solid *of)
     return sqrt(sum) * scale;
 }
 
-static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct why *why)
+static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t balls, struct why *why)
 {
     if (clump_grid_init(&f->grid, f->mesh, why)) return why->status;
     for (int32_t e = 0; e < f->mesh->elements; e++)
@@ -340,7 +340,7 @@ static int prepare(struct fit *f, const struct solid *of, int32_t balls, struct 
     return sample_surface(f, why);
 }
 
-static int judge(const struct clump_errors *e, struct why *why)
+static int clump_fit_judge(const struct clump_errors *e, struct why *why)
 {
     if (fabs(e->volume) <= VOLUME_MOST && e->moments <= MOMENTS_MOST &&
         e->distance <= DISTANCE_MOST)
@@ -358,16 +358,16 @@ int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
 {
     struct fit f = { .mesh = m };
     struct solid got = { 0 };
-    if (mesh_check(m, 3, why) || mesh_closed(m, why) || moments_of(of, m, why) ||
+    if (mesh_check(m, 3, why) || mesh_closed(m, why) || clump_fit_moments_of(of, m, why) ||
         crossings_judge(m, why))
         return why->status;
-    if (!prepare(&f, of, limits->balls, why) && !choose(&f, limits, why) &&
-        !grow(s, &got, &f, of, why)) {
+    if (!clump_fit_prepare(&f, of, limits->balls, why) && !clump_fit_choose(&f, limits, why) &&
+        !clump_fit_grow(s, &got, &f, of, why)) {
         *errors = (struct clump_errors){ .balls = f.balls,
                                          .volume = got.volume / of->volume - 1,
                                          .distance = distance_of(&f, s) / f.reach,
                                          .moments = moments_error(&got, of) };
-        judge(errors, why);
+        clump_fit_judge(errors, why);
     }
     if (why->status) shape_free(s);
     clump_grid_free(&f.grid);

@@ -12,7 +12,7 @@ enum { INSIDE_LEAST = 200 };
 static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
 
 /* Of the points along an axis (0, 1, 2) those, lo .. hi, that may be in [a, b] (m) */
-static void span(const struct clump_grid *g, int axis, double a, double b, int *lo, int *hi)
+static void clump_fit_span(const struct clump_grid *g, int axis, double a, double b, int *lo, int *hi)
 {
     const double from[3] = { g->origin.x, g->origin.y, g->origin.z };
     const int n = g->n[axis];
@@ -30,7 +30,7 @@ static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
         int lo, hi;
         within -= c[i].way;
         if (within < 1) continue;
-        span(g, 0, c[i].x, c[i + 1].x, &lo, &hi);
+        clump_fit_span(g, 0, c[i].x, c[i + 1].x, &lo, &hi);
         for (int k = lo; k <= hi; k++) {
             double *at = &g->depth[(int64_t)c[i].line * g->n[0] + k];
             g->inside += *at == 0;

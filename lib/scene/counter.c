@@ -8,37 +8,37 @@ struct state {
 static const uint64_t golden = 0x9e3779b97f4a7c15;
 
 /* The finalizer of SplitMix64, Stafford's variant 13 */
-static uint64_t mix(uint64_t z)
+static uint64_t random_mix(uint64_t z)
 {
     z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
     z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
     return z ^ (z >> 31);
 }
 
-static uint64_t next(struct state *s)
+static uint64_t random_next(struct state *s)
 {
     s->at += golden;
-    return mix(s->at);
+    return random_mix(s->at);
 }
 
-static void set(void *state, unsigned long seed)
+static void random_set(void *state, unsigned long seed)
 {
-    ((struct state *)state)->at = mix(seed + golden);
+    ((struct state *)state)->at = random_mix(seed + golden);
 }
 
 static unsigned long get(void *state)
 {
-    return (unsigned long)(next(state) >> 32);
+    return (unsigned long)(random_next(state) >> 32);
 }
 
 /* [0, 1), of 53 bits */
 static double get_double(void *state)
 {
-    return (double)(next(state) >> 11) * 0x1p-53;
+    return (double)(random_next(state) >> 11) * 0x1p-53;
 }
 
 static const gsl_rng_type type = { "counter", 0xffffffff, 0,         sizeof(struct state),
-                                   set,       get,        get_double };
+                                   random_set,       get,        get_double };
 
 gsl_rng *counter_alloc(void)
 {
@@ -50,6 +50,6 @@ void counter_start(gsl_rng *rng, uint64_t seed, enum counter_use use, uint64_t a
 {
     const uint64_t word[] = { seed, (uint64_t)use, a, b, c };
     uint64_t key = 0;
-    for (int k = 0; k < 5; k++) key = mix((key ^ mix(word[k] + golden)) + golden);
+    for (int k = 0; k < 5; k++) key = random_mix((key ^ random_mix(word[k] + golden)) + golden);
     ((struct state *)rng->state)->at = key;
 }

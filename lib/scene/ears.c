@@ -10,7 +10,7 @@ static const double LINE = 1e-9;      /* of the extent: how far off a line round
 enum { UNKNOWN, NO_EAR };
 
 /* A polygon in its plane, counterclockwise, while corners are cut off */
-struct polygon {
+struct ears_polygon {
     int32_t n;
     double extent;
     double u[POLYGON_CORNERS_MOST], v[POLYGON_CORNERS_MOST];
@@ -20,31 +20,31 @@ struct polygon {
 };
 
 /* Twice the area of the triangle a b c */
-static double twice_area(const struct polygon *p, int32_t a, int32_t b, int32_t c)
+static double twice_area(const struct ears_polygon *p, int32_t a, int32_t b, int32_t c)
 {
     return (p->u[b] - p->u[a]) * (p->v[c] - p->v[a]) - (p->v[b] - p->v[a]) * (p->u[c] - p->u[a]);
 }
 
 /* How far c lies to the left of the line from a to b */
-static double left_of(const struct polygon *p, int32_t a, int32_t b, int32_t c)
+static double left_of(const struct ears_polygon *p, int32_t a, int32_t b, int32_t c)
 {
     double x = p->u[b] - p->u[a], y = p->v[b] - p->v[a], length = sqrt(x * x + y * y);
     return length > 0 ? twice_area(p, a, b, c) / length : 0;
 }
 
-static bool same_place(const struct polygon *p, int32_t a, int32_t b)
+static bool ears_same_place(const struct ears_polygon *p, int32_t a, int32_t b)
 {
     return p->u[a] == p->u[b] && p->v[a] == p->v[b];
 }
 
 /* How far the polygon bulges at i beyond the line between its neighbours; negative: at a concave corner */
-static double bulge(const struct polygon *p, int32_t i)
+static double bulge(const struct ears_polygon *p, int32_t i)
 {
     return left_of(p, p->next[i], p->last[i], i);
 }
 
 /* Does the polygon turn left at i? Not where that is rounding. */
-static bool turns_left(const struct polygon *p, int32_t i)
+static bool turns_left(const struct ears_polygon *p, int32_t i)
 {
     return bulge(p, i) > LINE * p->extent;
 }
@@ -70,7 +70,7 @@ static bool on_a_line(const vec3 *x, int32_t n, double extent)
 }
 
 /* Leaves out the coordinate along which the normal is largest: the others keep their digits. */
-static void lay_down(struct polygon *p, const vec3 *x, vec3 normal)
+static void lay_down(struct ears_polygon *p, const vec3 *x, vec3 normal)
 {
     double a = fabs(normal.x), b = fabs(normal.y), c = fabs(normal.z);
     int axis = a >= b && a >= c ? 0 : b >= c ? 1 : 2;
@@ -96,35 +96,35 @@ static bool is_bent(const vec3 *x, int32_t n, vec3 normal, double extent)
 
 /* ---- does it cross itself? ---- */
 
-static bool before(const struct polygon *p, int32_t a, int32_t b)
+static bool ears_before(const struct ears_polygon *p, int32_t a, int32_t b)
 {
     return p->u[a] != p->u[b] ? p->u[a] < p->u[b] : p->v[a] < p->v[b];
 }
 
 /* How often it comes to a place that lies farthest to the right: once, if it is convex and winds once */
-static int32_t count_turns(const struct polygon *p)
+static int32_t count_turns(const struct ears_polygon *p)
 {
     int32_t turns = 0;
     for (int32_t i = 0; i < p->n; i++)
-        turns += before(p, p->last[i], i) && before(p, p->next[i], i);
+        turns += ears_before(p, p->last[i], i) && ears_before(p, p->next[i], i);
     return turns;
 }
 
 /* Are a and b on different sides of the line from c to d, and not as near as rounding puts them? */
-static bool parted(const struct polygon *p, int32_t a, int32_t b, int32_t c, int32_t d)
+static bool parted(const struct ears_polygon *p, int32_t a, int32_t b, int32_t c, int32_t d)
 {
     double least = LINE * p->extent, x = left_of(p, c, d, a), y = left_of(p, c, d, b);
     return (x > least && y < -least) || (x < -least && y > least);
 }
 
 /* Do the sides from a and from b cross, each within the other? Touching is none. */
-static bool sides_cross(const struct polygon *p, int32_t a, int32_t b)
+static bool sides_cross(const struct ears_polygon *p, int32_t a, int32_t b)
 {
     int32_t c = p->next[a], d = p->next[b];
     return parted(p, b, d, a, c) && parted(p, a, c, b, d);
 }
 
-static bool crosses_itself(const struct polygon *p)
+static bool crosses_itself(const struct ears_polygon *p)
 {
     for (int32_t i = 0; i < p->n; i++)
         for (int32_t j = 0; j < i; j++)
@@ -134,26 +134,26 @@ static bool crosses_itself(const struct polygon *p)
 
 /* ---- ears ---- */
 
-static bool is_in(const struct polygon *p, int32_t a, int32_t b, int32_t c, int32_t i)
+static bool is_in(const struct ears_polygon *p, int32_t a, int32_t b, int32_t c, int32_t i)
 {
     double least = -LINE * p->extent;
     return left_of(p, a, b, i) > least && left_of(p, b, c, i) > least &&
            left_of(p, c, a, i) > least;
 }
 
-static bool is_ear(const struct polygon *p, int32_t i)
+static bool is_ear(const struct ears_polygon *p, int32_t i)
 {
     int32_t a = p->last[i], b = p->next[i];
     if (!turns_left(p, i)) return false;
     for (int32_t k = 0; k < p->blunts; k++) {
         int32_t j = p->blunt[k];
-        if (same_place(p, j, a) || same_place(p, j, i) || same_place(p, j, b)) continue;
+        if (ears_same_place(p, j, a) || ears_same_place(p, j, i) || ears_same_place(p, j, b)) continue;
         if (is_in(p, a, i, b, j)) return false;
     }
     return true;
 }
 
-static void cut_off(struct polygon *p, int32_t i)
+static void cut_off(struct ears_polygon *p, int32_t i)
 {
     int32_t a = p->last[i], b = p->next[i];
     p->next[a] = b, p->last[b] = a;
@@ -166,7 +166,7 @@ static void cut_off(struct polygon *p, int32_t i)
     p->blunts = kept;
 }
 
-static const char *clip(struct polygon *p, int32_t (*triangle)[3], int32_t *triangles)
+static const char *ears_clip(struct ears_polygon *p, int32_t (*triangle)[3], int32_t *triangles)
 {
     int32_t left = p->n, i = 1;
     for (int32_t tried = 0; left > 3; i = p->next[i]) {
@@ -187,7 +187,7 @@ static const char *clip(struct polygon *p, int32_t (*triangle)[3], int32_t *tria
 const char *ears_cut(const vec3 *x, int32_t n, int32_t (*triangle)[3], int32_t *triangles,
                      int64_t *work)
 {
-    struct polygon p;
+    struct ears_polygon p;
     *triangles = 0;
     if (n < 3) return NULL;
     if (n > POLYGON_CORNERS_MOST) return "a polygon of more than 4096 corners";
@@ -211,5 +211,5 @@ const char *ears_cut(const vec3 *x, int32_t n, int32_t (*triangle)[3], int32_t *
             return "too many concave polygons: cut them into triangles where they are made";
         if (crosses_itself(&p)) return "a polygon that crosses itself";
     }
-    return clip(&p, triangle, triangles);
+    return ears_clip(&p, triangle, triangles);
 }

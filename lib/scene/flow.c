@@ -61,7 +61,7 @@ void flow_free(struct flow *f)
     scene_free(&f->scene);
 }
 
-static void note(struct packing *p, int64_t i, bool came, int32_t which, struct why *why)
+static void inlet_note(struct packing *p, int64_t i, bool came, int32_t which, struct why *why)
 {
     struct event e = { p->step,      p->t,       p->id[i], came,   which,
                        p->radius[i], p->mass[i], p->x[i],  p->v[i] };
@@ -78,7 +78,7 @@ static bool in_box(const struct scene_box *b, vec3 x, int dim)
     return true;
 }
 
-static int by_number(const void *a, const void *b)
+static int inlet_by_number(const void *a, const void *b)
 {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return x < y ? -1 : x > y;
@@ -90,7 +90,7 @@ static bool takes(const struct scene_removal *r, const struct packing *p, int64_
     if (p->t < r->from || p->t > r->until) return false;
     if (r->kind >= 0 && p->kind[i] != r->kind) return false;
     if (r->group && (!p->group || p->group[i] != r->group)) return false;
-    if (r->ids && !bsearch(&p->id[i], r->id, (size_t)r->ids, sizeof *r->id, by_number))
+    if (r->ids && !bsearch(&p->id[i], r->id, (size_t)r->ids, sizeof *r->id, inlet_by_number))
         return false;
     if (r->region == REGION_ALL) return true;
     if (r->region == REGION_BELOW) return v3_dot(v3_sub(x, r->point), r->normal) < 0;
@@ -126,7 +126,7 @@ static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, 
             continue;
         }
         p->removed[k].bodies++, p->removed[k].mass += p->mass[i];
-        note(p, i, false, k, why);
+        inlet_note(p, i, false, k, why);
         if (why->status) return why->status; // the tool ends here
     }
     outside_follow(&p->outside, row, p->n);
@@ -134,7 +134,7 @@ static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, 
 }
 
 /* The contacts of bodies that are still there, in their new rows, in the same order */
-static void follow(struct contacts *s, const int32_t *row)
+static void inlet_follow(struct contacts *s, const int32_t *row)
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < s->n; i++) {
@@ -173,13 +173,13 @@ int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, stru
     follow_bonds(&p->bonds, row);
     memory_follow(&p->memory, row);
     outside_follow(&p->outside, row, p->n);
-    if (last) follow(last, row);
+    if (last) inlet_follow(last, row);
     return packing_resize(p, kept, why);
 }
 
 /* ---- pours ---- */
 
-static bool is_due(const struct scene_pour *o, const struct passage *so_far, double t)
+static bool inlet_is_due(const struct scene_pour *o, const struct passage *so_far, double t)
 {
     if (t < o->from || t > o->until || (double)so_far->bodies >= o->count) return false;
     double had = o->by_mass ? so_far->mass : (double)so_far->bodies;
@@ -187,7 +187,7 @@ static bool is_due(const struct scene_pour *o, const struct passage *so_far, dou
 }
 
 /* Two unit vectors across a normal; in the plane the first lies in it. */
-static void across(vec3 n, int dim, vec3 *a, vec3 *b)
+static void inlet_across(vec3 n, int dim, vec3 *a, vec3 *b)
 {
     double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
     vec3 least = x <= y && x <= z ? v3(1, 0, 0) : y <= z ? v3(0, 1, 0) : v3(0, 0, 1);
@@ -197,7 +197,7 @@ static void across(vec3 n, int dim, vec3 *a, vec3 *b)
 }
 
 /* A place in the opening, each as likely */
-static vec3 draw_place(const struct scene_pour *o, int dim, gsl_rng *rng)
+static vec3 inlet_draw_place(const struct scene_pour *o, int dim, gsl_rng *rng)
 {
     if (!o->disc) {
         double x[3] = { 0 };
@@ -207,7 +207,7 @@ static vec3 draw_place(const struct scene_pour *o, int dim, gsl_rng *rng)
     }
     double u, w;
     vec3 a, b;
-    across(o->normal, dim, &a, &b);
+    inlet_across(o->normal, dim, &a, &b);
     do {
         u = 2 * gsl_rng_uniform(rng) - 1, w = dim == 2 ? 0 : 2 * gsl_rng_uniform(rng) - 1;
     } while (u * u + w * w > 1);
@@ -231,7 +231,7 @@ static void crowd_free(struct crowd *c)
 
 /* Is x, or an image of it, this near to 0? The nearest image is at most one edge from the one that is nearest in
    edges, for these do not lean by more than one another's length [bodies/wrap.h]. */
-static bool is_near(const struct cell *c, const vec3 inverse[3], vec3 x, double most)
+static bool inlet_is_near(const struct cell *c, const vec3 inverse[3], vec3 x, double most)
 {
     int reach[3] = { 0, 0, 0 };
     for (int k = 2; k >= 0; k--) {
@@ -263,7 +263,7 @@ static bool may_meet(const struct scene_pour *o, const struct packing *p, const 
     for (int k = 0; k < 3; k++) // images have the edges' rates besides
         if (p->cell.repeats[k]) way += 2 * p->dt * v3_norm(p->cell.rate[k]);
     double most = (far + o->size.max + p->radius[i] + way) * (1 + 1e-9);
-    return is_near(&p->cell, inverse, v3_sub(p->x[i], middle), most);
+    return inlet_is_near(&p->cell, inverse, v3_sub(p->x[i], middle), most);
 }
 
 static int crowd_gather(struct crowd *c, const struct packing *p, const struct scene_pour *o,
@@ -303,7 +303,7 @@ struct newcomer {
 };
 
 /* Would it meet nothing, neither now nor at the predicted positions? */
-static bool is_free(struct crowd *c, const struct scene_pour *o, const struct newcomer *g,
+static bool inlet_is_free(struct crowd *c, const struct scene_pour *o, const struct newcomer *g,
                     struct why *why)
 {
     int64_t last = c->p.n - 1;
@@ -340,7 +340,7 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
     if (p->shape) p->shape[i] = o->form.shape;
     if (p->group) p->group[i] = o->group;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
-    note(p, i, true, which, why);
+    inlet_note(p, i, true, which, why);
     return why->status;
 }
 
@@ -362,8 +362,8 @@ static bool pour_one(const struct scene *s, struct packing *p, int32_t which, gs
     bool poured = false;
     crowd_gather(&c, p, o, why);
     for (int try = 0; try < TRIES && !poured && !why->status; try++) {
-        g.x = draw_place(o, p->dim, rng);
-        poured = is_free(&c, o, &g, why) && !add_grain(p, o, which, &g, why);
+        g.x = inlet_draw_place(o, p->dim, rng);
+        poured = inlet_is_free(&c, o, &g, why) && !add_grain(p, o, which, &g, why);
     }
     crowd_free(&c);
     return poured;
@@ -382,11 +382,11 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     else if (!remove_bodies(f, p, row, why)) {
         follow_bonds(&p->bonds, row);
         memory_follow(&p->memory, row);
-        if (last) follow(last, row);
+        if (last) inlet_follow(last, row);
     }
     for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
         for (int n = 0; n < POURED_MOST && !why->status; n++)
-            if (!is_due(&f->scene.pour[k], &p->poured[k], p->t) ||
+            if (!inlet_is_due(&f->scene.pour[k], &p->poured[k], p->t) ||
                 !pour_one(&f->scene, p, k, rng, why))
                 break;
     *changed = p->events.n > before;

@@ -27,7 +27,7 @@ void grains_free(struct grains *t)
 }
 
 /* The scene's kind of this name; -1 where it has none */
-static int32_t kind_named(const struct scene *s, const char *name)
+static int32_t grains_kind_named(const struct scene *s, const char *name)
 {
     for (int32_t k = 0; k < s->kinds; k++)
         if (!strcmp(s->kind[k].name, name)) return k;
@@ -37,15 +37,15 @@ static int32_t kind_named(const struct scene *s, const char *name)
 int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k)
 {
     const struct packing *p = b->document;
-    if (!b->foreign) return kind_named(s, p->kind_name[k]);
+    if (!b->foreign) return grains_kind_named(s, p->kind_name[k]);
     for (int32_t i = 0; i < b->types; i++)
         if (!strcmp(b->type[i].name, p->kind_name[k])) return b->type[i].kind;
-    int32_t kind = kind_named(s, p->kind_name[k]);
+    int32_t kind = grains_kind_named(s, p->kind_name[k]);
     return kind < 0 && p->kinds == 1 && !b->types ? 0 : kind;
 }
 
 /* kind[k]: the scene's kind for kind k of the document */
-static int add_body(struct grains *out, const struct scene_bodies *b, const int32_t *kind,
+static int grains_add_body(struct grains *out, const struct scene_bodies *b, const int32_t *kind,
                     int64_t i, struct why *why)
 {
     const struct packing *p = b->document;
@@ -79,7 +79,7 @@ int grains_of_document(struct grains *out, const struct scene *s, const struct s
     int32_t *kind = calloc((size_t)b->document->kinds + 1, sizeof *kind);
     if (!kind) return why_set(why, EX_SOFTWARE, "no memory for the bodies");
     for (int32_t k = 0; k < b->document->kinds; k++) kind[k] = grains_kind(s, b, k);
-    for (int64_t i = 0; i < b->document->n && !why->status; i++) add_body(out, b, kind, i, why);
+    for (int64_t i = 0; i < b->document->n && !why->status; i++) grains_add_body(out, b, kind, i, why);
     free(kind);
     return why->status;
 }

@@ -18,12 +18,12 @@ struct hull {
     struct facet *facet; /* [facets] of these points */
 };
 
-static int no_memory(struct why *why)
+static int hull_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for a hull");
 }
 
-static int is_flat(struct why *why)
+static int hull_is_flat(struct why *why)
 {
     return why_set(why, EX_DATAERR, "is flat: its points have no volume");
 }
@@ -58,7 +58,7 @@ static int take_facets(struct hull *h, qhT *qh, struct why *why)
     facetT *facet;
     int32_t *number = calloc((size_t)qh->facet_id + 1, sizeof *number), n = 0;
     h->facet = malloc(((size_t)qh->num_facets + 1) * sizeof *h->facet);
-    if (!number || !h->facet) no_memory(why);
+    if (!number || !h->facet) hull_no_memory(why);
     // cppcheck-suppress uninitvar ; the loop sets it
     FORALLfacets if (!why->status) number[facet->id] = n++;
     // cppcheck-suppress uninitvar
@@ -87,7 +87,7 @@ static int ask_qhull(struct hull *h, struct why *why)
     if (!flat || !silent) {
         free(flat);
         if (silent) fclose(silent);
-        return no_memory(why);
+        return hull_no_memory(why);
     }
     for (int64_t i = 0; i < h->n; i++) {
         const double of[3] = { h->x[i].x, h->x[i].y, h->x[i].z };
@@ -96,7 +96,7 @@ static int ask_qhull(struct hull *h, struct why *why)
     char command[] = "qhull QJ";
     qh_zero(qh, silent);
     if (qh_new_qhull(qh, h->dim, (int)h->n, flat, False, command, NULL, silent))
-        is_flat(why);
+        hull_is_flat(why);
     else if (!take_facets(h, qh, why))
         turn_outward(h);
     int left, total;
@@ -110,7 +110,7 @@ static int ask_qhull(struct hull *h, struct why *why)
 /* ---- the shape ---- */
 
 /* Does face (first place, length) a come before b? By corners, the shorter first where all are the same */
-static bool comes_before(const struct shape *s, const int32_t a[2], const int32_t b[2])
+static bool hull_comes_before(const struct shape *s, const int32_t a[2], const int32_t b[2])
 {
     for (int32_t k = 0; k < a[1] && k < b[1]; k++) {
         int32_t x = s->corner[a[0] + k], y = s->corner[b[0] + k];
@@ -127,7 +127,7 @@ static int sort_faces(struct shape *s, struct why *why)
     for (int32_t f = 0; f < s->faces && face && corner; f++) {
         const int32_t new[2] = { s->first[f], s->first[f + 1] - s->first[f] };
         int32_t k = f;
-        for (; k > 0 && comes_before(s, new, face[k - 1]); k--)
+        for (; k > 0 && hull_comes_before(s, new, face[k - 1]); k--)
             memcpy(face[k], face[k - 1], sizeof *face);
         memcpy(face[k], new, sizeof new);
     }
@@ -138,7 +138,7 @@ static int sort_faces(struct shape *s, struct why *why)
     if (face && corner)
         memcpy(s->corner, corner, (size_t)n * sizeof *corner);
     else
-        no_memory(why);
+        hull_no_memory(why);
     free(face), free(corner);
     return why->status;
 }
@@ -154,12 +154,12 @@ static int32_t count_corners(const struct loops *l, int64_t points, int32_t *num
     return n;
 }
 
-static int make_shape(struct shape *s, const struct hull *h, const struct loops *l, const vec3 *x,
+static int hull_make_shape(struct shape *s, const struct hull *h, const struct loops *l, const vec3 *x,
                       struct why *why)
 {
     int32_t *number = malloc(((size_t)h->n + 1) * sizeof *number), corners = l->first[l->faces];
     int32_t n = number ? count_corners(l, h->n, number) : 0;
-    if (!number) no_memory(why);
+    if (!number) hull_no_memory(why);
     if (n > SHAPE_VERTICES_MOST)
         why_set(why, EX_DATAERR,
                 "its hull has %d corners, and a shape has %d at most: leave out points "
@@ -180,27 +180,27 @@ static int make_shape(struct shape *s, const struct hull *h, const struct loops 
 static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why)
 {
     double size = thin_extent(x, n);
-    if (!(size > 0)) return is_flat(why);
+    if (!(size > 0)) return hull_is_flat(why);
     if (!isfinite(size)) return why_set(why, EX_DATAERR, "the extent of its points is not finite");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
     h->x = calloc((size_t)n + 1, sizeof *h->x);
-    if (!h->kept || !h->x) return no_memory(why);
+    if (!h->kept || !h->x) return hull_no_memory(why);
     if (thin_out(h->kept, x, n, HULL_APART * size, why)) return why->status;
     for (int32_t i = 0; i < n; i++)
         if (h->kept[i] == i) h->kept[h->n++] = i; // not behind what is read
     for (int64_t i = 0; i < h->n; i++) h->x[i] = v3_scale(1 / size, v3_sub(x[h->kept[i]], x[0]));
-    return h->n > h->dim ? 0 : is_flat(why);
+    return h->n > h->dim ? 0 : hull_is_flat(why);
 }
 
 int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, struct why *why)
 {
     struct hull h = { .dim = dim };
     struct loops l = { 0 };
-    if (n <= dim) return is_flat(why);
+    if (n <= dim) return hull_is_flat(why);
     if (!take_points(&h, n, x, why) && !ask_qhull(&h, why)) {
         const struct facets all = { h.facets, h.facet, (int32_t)h.n, h.x };
         if (!(dim == 2 ? hull_loop : hull_faces)(&l, &all, HULL_FLAT, why))
-            make_shape(s, &h, &l, x, why);
+            hull_make_shape(s, &h, &l, x, why);
     }
     loops_free(&l);
     free(h.kept), free(h.x), free(h.facet);

@@ -4,12 +4,12 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static int no_memory(struct why *why)
+static int hull_faces_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for a hull");
 }
 
-static int is_flat(struct why *why)
+static int hull_faces_is_flat(struct why *why)
 {
     return why_set(why, EX_DATAERR, "is flat to rounding");
 }
@@ -24,7 +24,7 @@ static int loops_alloc(struct loops *l, int32_t faces, int32_t corners, struct w
 {
     l->first = calloc((size_t)faces + 1, sizeof *l->first);
     l->corner = calloc((size_t)corners + 1, sizeof *l->corner);
-    return l->first && l->corner ? 0 : no_memory(why);
+    return l->first && l->corner ? 0 : hull_faces_no_memory(why);
 }
 
 /* ---- faces grow ---- */
@@ -37,7 +37,7 @@ static bool in_plane(const struct facet *f, vec3 n, double at, const vec3 *x, do
 }
 
 /* Gives a facet, and all that are joined to it in its plane, to one face; stack: room for all facets */
-static void grow(const struct facets *hull, int32_t seed, int32_t face, double flat, int32_t *stack)
+static void hull_grow(const struct facets *hull, int32_t seed, int32_t face, double flat, int32_t *stack)
 {
     struct facet *facet = hull->of;
     const vec3 *x = hull->x;
@@ -69,7 +69,7 @@ static int compare_sizes(const void *one, const void *other)
 }
 
 /* The largest facets know their planes best. Returns how many faces there are; -1: no memory. */
-static int32_t join(const struct facets *hull, double flat)
+static int32_t hull_join(const struct facets *hull, double flat)
 {
     struct facet *facet = hull->of;
     const int32_t facets = hull->n;
@@ -85,7 +85,7 @@ static int32_t join(const struct facets *hull, double flat)
     }
     if (stack && order) qsort(order, (size_t)facets, sizeof *order, compare_sizes);
     for (int32_t i = 0; i < facets && stack && order; i++)
-        if (facet[order[i].facet].face < 0) grow(hull, order[i].facet, faces++, flat, stack);
+        if (facet[order[i].facet].face < 0) hull_grow(hull, order[i].facet, faces++, flat, stack);
     bool done = stack && order;
     free(stack), free(order);
     return done ? faces : -1;
@@ -94,30 +94,30 @@ static int32_t join(const struct facets *hull, double flat)
 /* ---- their loops ---- */
 
 /* A side of a face, with what is inside on its left */
-struct side {
+struct hull_side {
     int32_t face, tail, head;
 };
 
 static int by_tail(const void *one, const void *other)
 {
-    const struct side *a = one, *b = other;
+    const struct hull_side *a = one, *b = other;
     if (a->face != b->face) return a->face < b->face ? -1 : 1;
     return (a->tail > b->tail) - (a->tail < b->tail);
 }
 
 /* Goes around each face, from its least corner. */
-static int close_loops(struct loops *l, struct side *side, int32_t sides, struct why *why)
+static int close_loops(struct loops *l, struct hull_side *side, int32_t sides, struct why *why)
 {
     int32_t n = 0;
     qsort(side, (size_t)sides, sizeof *side, by_tail);
     for (int32_t start = 0, end; start < sides; start = end, l->first[++l->faces] = n) {
-        const struct side *at = &side[start];
+        const struct hull_side *at = &side[start];
         for (end = start; end < sides && side[end].face == side[start].face;) end++;
         for (int32_t k = start; k < end; k++) {
             l->corner[n++] = at->tail;
-            const struct side next = { at->face, at->head, 0 };
+            const struct hull_side next = { at->face, at->head, 0 };
             at = bsearch(&next, side + start, (size_t)(end - start), sizeof *side, by_tail);
-            if (!at || (at == &side[start]) != (k == end - 1)) return is_flat(why);
+            if (!at || (at == &side[start]) != (k == end - 1)) return hull_faces_is_flat(why);
         }
     }
     return 0;
@@ -148,20 +148,20 @@ int hull_faces(struct loops *l, const struct facets *hull, double flat, struct w
 {
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;
-    int32_t faces = join(hull, flat), sides = 0;
-    struct side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
+    int32_t faces = hull_join(hull, flat), sides = 0;
+    struct hull_side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
     int32_t *of = calloc((size_t)hull->points + 1, sizeof *of);
-    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, why)) no_memory(why);
+    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, why)) hull_faces_no_memory(why);
     for (int32_t i = 0; i < facets && !why->status; i++)
         for (int k = 0; k < 3; k++) {
             const struct facet *f = &facet[i];
             if (facet[f->next[k]].face == f->face) continue;
-            side[sides++] = (struct side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
+            side[sides++] = (struct hull_side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
         }
     if (!why->status && !close_loops(l, side, sides, why)) {
         while (thin_loops(l, of, hull->points)) {
         }
-        if (l->faces < 4) is_flat(why);
+        if (l->faces < 4) hull_faces_is_flat(why);
     }
     free(side), free(of);
     return why->status;
@@ -181,10 +181,10 @@ int hull_loop(struct loops *l, const struct facets *hull, double flat, struct wh
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;
     const vec3 *x = hull->x;
-    struct side *side = malloc(((size_t)facets + 1) * sizeof *side);
-    if (!side || loops_alloc(l, facets, facets, why)) no_memory(why);
+    struct hull_side *side = malloc(((size_t)facets + 1) * sizeof *side);
+    if (!side || loops_alloc(l, facets, facets, why)) hull_faces_no_memory(why);
     for (int32_t i = 0; i < facets && !why->status; i++)
-        side[i] = (struct side){ 0, facet[i].point[0], facet[i].point[1] };
+        side[i] = (struct hull_side){ 0, facet[i].point[0], facet[i].point[1] };
     if (!why->status && !close_loops(l, side, facets, why)) {
         int32_t m = l->first[1], kept = 0;
         for (int32_t k = 0; k < m; k++) { // corners from the last one that is kept to the next one
@@ -193,7 +193,7 @@ int hull_loop(struct loops *l, const struct facets *hull, double flat, struct wh
                 l->corner[kept++] = l->corner[k];
         }
         l->first[1] = kept;
-        if (kept < 3) is_flat(why);
+        if (kept < 3) hull_faces_is_flat(why);
     }
     free(side);
     return why->status;

@@ -178,7 +178,7 @@ static const char *next_name(const char *s, size_t *n)
     return *n ? s : NULL;
 }
 
-static bool is_among(const char *names, const char *key)
+static bool json_node_is_among(const char *names, const char *key)
 {
     size_t n;
     for (const char *s = names; (s = next_name(s, &n)); s += n)
@@ -194,7 +194,7 @@ int json_node_only(jnode o, const char *names)
     json_object_foreach(
         o.json, key,
         value) if (strcmp(key, "comment") &&
-                   !is_among(names, key)) return json_node_fault(json_node_key(&o, key),
+                   !json_node_is_among(names, key)) return json_node_fault(json_node_key(&o, key),
                                                                  "unknown key; known here: %s",
                                                                  names);
     return 0;

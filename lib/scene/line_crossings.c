@@ -11,7 +11,7 @@ static const double ROUNDING = 1e-6; /* of the extent: solids that touch overlap
 /* Shares of h by which lines pass beside what surfaces have at round numbers */
 static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
 
-static int add(struct crossings *t, struct crossing c, struct why *why)
+static int line_crossings_add(struct crossings *t, struct crossing c, struct why *why)
 {
     if (t->n == CROSSINGS_MOST)
         return why_set(why, EX_DATAERR, "has too many triangles above one another");
@@ -47,14 +47,14 @@ static vec3 turned(vec3 x, int axis)
     return axis == 0 ? x : axis == 1 ? v3(x.y, x.z, x.x) : v3(x.z, x.x, x.y);
 }
 
-static void span(double from, double h, int n, double a, double b, int *lo, int *hi)
+static void line_crossings_span(double from, double h, int n, double a, double b, int *lo, int *hi)
 {
     *lo = (int)fmax(0, fmin(n, ceil((a - from) / h)));
     *hi = (int)fmax(-1, fmin(n - 1, floor((b - from) / h)));
 }
 
 /* Where the triangle is along y at this z; a hair more */
-static void cut(const vec3 v[3], double z, double hair, double *from, double *to)
+static void line_crossings_cut(const vec3 v[3], double z, double hair, double *from, double *to)
 {
     *from = INFINITY, *to = -INFINITY;
     for (int e = 0; e < 3; e++) {
@@ -67,25 +67,25 @@ static void cut(const vec3 v[3], double z, double hair, double *from, double *to
     }
 }
 
-static int cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct why *why)
+static int line_crossings_cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct why *why)
 {
     int j0, j1, k0, k1;
     const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
-    span(l->origin.z, l->h, l->n[1], lo.z, hi.z, &k0, &k1);
+    line_crossings_span(l->origin.z, l->h, l->n[1], lo.z, hi.z, &k0, &k1);
     for (int k = k0; k <= k1; k++) {
         double from, to; // row by row: the box around a thin triangle has many lines that miss it
-        cut(v, l->origin.z + k * l->h, 1e-6 * l->h, &from, &to);
-        span(l->origin.y, l->h, l->n[0], fmax(from, lo.y), fmin(to, hi.y), &j0, &j1);
+        line_crossings_cut(v, l->origin.z + k * l->h, 1e-6 * l->h, &from, &to);
+        line_crossings_span(l->origin.y, l->h, l->n[0], fmax(from, lo.y), fmin(to, hi.y), &j0, &j1);
         for (int j = j0; j <= j1; j++) {
             struct crossing c = { k * l->n[0] + j, 0, 0 };
             c.way = crossing_of(v, l->origin.y + j * l->h, l->origin.z + k * l->h, &c.x);
-            if (c.way && add(t, c, why)) return why->status;
+            if (c.way && line_crossings_add(t, c, why)) return why->status;
         }
     }
     return 0;
 }
 
-static int by_place(const void *one, const void *other)
+static int line_crossings_by_place(const void *one, const void *other)
 {
     const struct crossing *a = one, *b = other;
     if (a->line != b->line) return a->line < b->line ? -1 : 1;
@@ -100,9 +100,9 @@ int crossings_find(struct crossings *t, const struct mesh *m, const struct lines
     for (int32_t e = 0; e < m->elements && !why->status; e++) {
         vec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = turned(m->vertex[m->element[e][k]], l->axis);
-        cross(t, l, v, why);
+        line_crossings_cross(t, l, v, why);
     }
-    if (!why->status && t->n) qsort(t->c, (size_t)t->n, sizeof *t->c, by_place);
+    if (!why->status && t->n) qsort(t->c, (size_t)t->n, sizeof *t->c, line_crossings_by_place);
     return why->status;
 }
 
@@ -120,7 +120,7 @@ struct windings {
     vec3 place; /* m */
 };
 
-static void add_line(struct windings *w, const struct lines *l, const struct crossing *c, int64_t n,
+static void line_crossings_add_line(struct windings *w, const struct lines *l, const struct crossing *c, int64_t n,
                      double rounding)
 {
     int winding = 0;
@@ -141,7 +141,7 @@ static void add_line(struct windings *w, const struct lines *l, const struct cro
     }
 }
 
-static int judge(const struct windings *w, struct why *why)
+static int line_crossings_judge(const struct windings *w, struct why *why)
 {
     const vec3 x = w->place;
     if (w->inside_out > WRONG_MOST * (w->body + w->inside_out))
@@ -178,10 +178,10 @@ int crossings_judge(const struct mesh *m, struct why *why)
         crossings_find(&t, m, &l, why);
         for (int64_t i = 0, end; i < t.n && !why->status; i = end) {
             for (end = i; end < t.n && t.c[end].line == t.c[i].line;) end++;
-            add_line(&w, &l, t.c + i, end - i, ROUNDING * extent);
+            line_crossings_add_line(&w, &l, t.c + i, end - i, ROUNDING * extent);
         }
         crossings_free(&t);
-        if (!why->status) judge(&w, why);
+        if (!why->status) line_crossings_judge(&w, why);
     }
     return why->status;
 }

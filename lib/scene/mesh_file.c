@@ -74,7 +74,7 @@ int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mes
 }
 
 /* Opens a plain file; nothing else has an end that is known. Returns -1 after a fault. */
-static int open_plain(const char *path, int64_t most, int64_t *size, struct why *why)
+static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, struct why *why)
 {
     struct stat st;
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // of a FIFO it would wait
@@ -111,7 +111,7 @@ static int read_path(struct mesh *to, struct scene_files *files, const char *pat
                      int32_t *left_out, struct why *why)
 {
     int64_t size, n;
-    int fd = open_plain(path, MESH_BYTES_MOST - files->mesh_bytes, &size, why);
+    int fd = mesh_file_open_plain(path, MESH_BYTES_MOST - files->mesh_bytes, &size, why);
     if (fd < 0) return why->status;
     files->mesh_bytes += size;
     char *bytes = slurp(fd, path, size, &n, why);

@@ -19,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_among(struct word word, const char *const *list)
+static bool mesh_obj_is_among(struct word word, const char *const *list)
 {
     for (; *list; list++)
         if (word_is(word, *list)) return true;
@@ -51,7 +51,7 @@ static int read_index(struct words *w, struct word word, int64_t *corner)
     return 0;
 }
 
-static int read_face(struct words *w)
+static int mesh_obj_read_face(struct words *w)
 {
     int64_t corner[POLYGON_CORNERS_MOST + 1], n = 0;
     struct word word;
@@ -61,7 +61,7 @@ static int read_face(struct words *w)
 }
 
 /* The names of an object (0), or of groups (1) */
-static int read_names(struct words *w, int which)
+static int mesh_obj_read_names(struct words *w, int which)
 {
     struct word word;
     if (!w->soup->grouped) return 0;
@@ -77,7 +77,7 @@ static int read_names(struct words *w, int which)
 static const char *const curved[] = { "cstype", "curv", "curv2", "surf", "bzp",
                                       "bsp",    "cdc",  "cdp",   "res",  NULL };
 
-static int read(struct soup *s, const char *bytes, int64_t n)
+static int mesh_obj_read(struct soup *s, const char *bytes, int64_t n)
 {
     struct words w = words_of(s, bytes, n);
     w.joined = w.comments = true;
@@ -85,18 +85,18 @@ static int read(struct soup *s, const char *bytes, int64_t n)
         struct word word;
         if (!words_next(&w, &word)) continue;
         if (word_is(word, "v")                          ? read_corner(&w)
-            : word_is(word, "f") || word_is(word, "fo") ? read_face(&w)
-            : word_is(word, "o") || word_is(word, "g")  ? read_names(&w, word_is(word, "g"))
+            : word_is(word, "f") || word_is(word, "fo") ? mesh_obj_read_face(&w)
+            : word_is(word, "o") || word_is(word, "g")  ? mesh_obj_read_names(&w, word_is(word, "g"))
             : word_is(word, "call")
                 ? word_fault(&w, word, "names another file, and no other is read")
-                : is_among(word, curved) &&
+                : mesh_obj_is_among(word, curved) &&
                       word_fault(&w, word, "is free-form geometry: write the surface as polygons"))
             return 1;
     } while (words_line(&w));
     return 0;
 }
 
-static bool looks(const char *bytes, int64_t n)
+static bool mesh_obj_looks(const char *bytes, int64_t n)
 {
     static const char *const usual[] = { "v", "vt", "vn",     "vp",     "f", "g",
                                          "o", "s",  "mtllib", "usemtl", NULL };
@@ -105,7 +105,7 @@ static bool looks(const char *bytes, int64_t n)
     struct word word;
     w.comments = true;
     return !memchr(bytes, 0, (size_t)(n < 512 ? n : 512)) && words_any(&w, &word) &&
-           is_among(word, usual);
+           mesh_obj_is_among(word, usual);
 }
 
-const struct mesh_format mesh_obj = { "OBJ", ".obj", looks, read };
+const struct mesh_format mesh_obj = { "OBJ", ".obj", mesh_obj_looks, mesh_obj_read };

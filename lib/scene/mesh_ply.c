@@ -27,11 +27,11 @@ enum {
 };
 
 /* What is taken: the places of x, y and z, and the list of corners */
-enum role { NOTHING = -1, X, Y, Z, CORNERS, ROLES };
+enum mesh_ply_role { NOTHING = -1, X, Y, Z, CORNERS, ROLES };
 static const char *const role_name[ROLES] = { "x", "y", "z", "vertex_indices" };
 
 struct property {
-    enum role role;
+    enum mesh_ply_role role;
     enum bytes_type type;
     bool list;
     enum bytes_type count; /* of a list */
@@ -54,7 +54,7 @@ struct ply {
 
 /* ---- the header ---- */
 
-static bool looks(const char *bytes, int64_t n)
+static bool mesh_ply_looks(const char *bytes, int64_t n)
 {
     struct soup none = { 0 };
     struct words w = words_of(&none, bytes, n);
@@ -85,7 +85,7 @@ static int read_type(struct words *w, enum bytes_type *type)
     return k < 0;
 }
 
-static int read_format(struct ply *p)
+static int mesh_ply_read_format(struct ply *p)
 {
     static const char *const names[] = { "ascii", "binary_little_endian", "binary_big_endian" };
     struct word version;
@@ -112,10 +112,10 @@ static int read_element(struct ply *p)
     return e->n >= 0 ? 0 : soup_fault(p->soup, "a negative number of elements");
 }
 
-static enum role role_of(const struct element *e, struct word name, bool list)
+static enum mesh_ply_role role_of(const struct element *e, struct word name, bool list)
 {
     for (int k = X; k <= Z && e->kind == VERTEX && !list; k++)
-        if (word_is(name, role_name[k])) return (enum role)k;
+        if (word_is(name, role_name[k])) return (enum mesh_ply_role)k;
     bool corners = word_is(name, "vertex_indices") || word_is(name, "vertex_index");
     return e->kind == FACE && list && corners ? CORNERS : NOTHING;
 }
@@ -148,7 +148,7 @@ static int read_property(struct ply *p)
     return 0;
 }
 
-static bool has(const struct ply *p, int kind, enum role role)
+static bool mesh_ply_has(const struct ply *p, int kind, enum mesh_ply_role role)
 {
     for (int i = 0; i < p->elements; i++)
         for (int k = p->element[i].first; k < p->element[i].end; k++)
@@ -158,8 +158,8 @@ static bool has(const struct ply *p, int kind, enum role role)
 
 static int check_header(struct ply *p)
 {
-    for (enum role r = X; r < ROLES; r++)
-        if (!has(p, r == CORNERS ? FACE : VERTEX, r))
+    for (enum mesh_ply_role r = X; r < ROLES; r++)
+        if (!mesh_ply_has(p, r == CORNERS ? FACE : VERTEX, r))
             return soup_fault(p->soup, "no %s of %s", role_name[r],
                               r == CORNERS ? "face: strips and clouds of points are not read"
                                            : "vertex");
@@ -174,7 +174,7 @@ static int read_header(struct ply *p)
     static const char *const names[] = { "format", "element", "property", "comment obj_info",
                                          "end_header" };
     bool format = false;
-    if (!looks(p->w.at, p->w.end - p->w.at))
+    if (!mesh_ply_looks(p->w.at, p->w.end - p->w.at))
         return soup_fault(p->soup, "no PLY: it begins otherwise");
     while (words_line(&p->w)) {
         struct word none;
@@ -186,7 +186,7 @@ static int read_header(struct ply *p)
         if (k == 4)
             return words_line(&p->w) ? check_header(p)
                                      : soup_fault(p->soup, "ends with its header");
-        if (k == 0 ? read_format(p) : k == 1 ? read_element(p) : k == 2 && read_property(p))
+        if (k == 0 ? mesh_ply_read_format(p) : k == 1 ? read_element(p) : k == 2 && read_property(p))
             return 1;
         format |= k == 0;
         if (k != 3 && words_next(&p->w, &none)) return word_fault(&p->w, none, "is too much");
@@ -287,7 +287,7 @@ static int go_through(struct ply *p, int kind)
     return 0;
 }
 
-static int read(struct soup *s, const char *bytes, int64_t n)
+static int mesh_ply_read(struct soup *s, const char *bytes, int64_t n)
 {
     struct ply p = { .soup = s, .w = words_of(s, bytes, n) };
     struct word rest;
@@ -305,4 +305,4 @@ static int read(struct soup *s, const char *bytes, int64_t n)
                : 0;
 }
 
-const struct mesh_format mesh_ply = { "PLY", ".ply", looks, read };
+const struct mesh_format mesh_ply = { "PLY", ".ply", mesh_ply_looks, mesh_ply_read };

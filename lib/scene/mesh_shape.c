@@ -12,29 +12,29 @@ static const double CONVEX = 1e-5;
 
 enum { CORNERS_MOST = 1 << 20 /* whose hull takes ten seconds */ };
 
-static int no_memory(struct why *why)
+static int surface_parts_no_memory(struct why *why)
 {
     return why_set(why, EX_SOFTWARE, "no memory for a mesh");
 }
 
 /* A side of a triangle, from the lesser vertex to the greater or back */
-struct side {
+struct surface_parts_side {
     int32_t lo, hi, back, triangle;
 };
 
 static int by_vertices(const void *one, const void *other)
 {
-    const struct side *a = one, *b = other;
+    const struct surface_parts_side *a = one, *b = other;
     if (a->lo != b->lo) return a->lo < b->lo ? -1 : 1;
     if (a->hi != b->hi) return a->hi < b->hi ? -1 : 1;
     if (a->back != b->back) return a->back - b->back;
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-static int judge_sides(const struct side *side, int32_t n, struct why *why)
+static int surface_parts_judge_sides(const struct surface_parts_side *side, int32_t n, struct why *why)
 {
     for (int32_t k = 0, end; k < n; k = end) {
-        const struct side *a = &side[k];
+        const struct surface_parts_side *a = &side[k];
         for (end = k + 1; end < n && side[end].lo == a->lo && side[end].hi == a->hi;) end++;
         if (end - k == 1)
             return why_set(why, EX_DATAERR, "is open: triangle %d has a side without a neighbour",
@@ -53,28 +53,28 @@ static int judge_sides(const struct side *side, int32_t n, struct why *why)
 /* Is every side that of two triangles, once either way? Corners as near as those of a hull may be are one. */
 int mesh_closed(const struct mesh *m, struct why *why)
 {
-    struct side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
+    struct surface_parts_side *side = malloc((3 * (size_t)m->elements + 1) * sizeof *side);
     int32_t *to = malloc(((size_t)m->vertices + 1) * sizeof *to), n = 0;
     double apart = HULL_APART * thin_extent(m->vertex, m->vertices);
-    if (!side || !to) no_memory(why);
+    if (!side || !to) surface_parts_no_memory(why);
     if (!why->status && !thin_out(to, m->vertex, m->vertices, apart, why)) {
         for (int32_t i = 0; i < m->elements; i++) {
             const int32_t *e = m->element[i], c[3] = { to[e[0]], to[e[1]], to[e[2]] };
             if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue; // has become a line
             for (int k = 0; k < 3; k++) {
                 int32_t p = c[k], q = c[(k + 1) % 3];
-                side[n++] = (struct side){ p < q ? p : q, p < q ? q : p, p > q, i };
+                side[n++] = (struct surface_parts_side){ p < q ? p : q, p < q ? q : p, p > q, i };
             }
         }
         qsort(side, (size_t)n, sizeof *side, by_vertices);
-        judge_sides(side, n, why);
+        surface_parts_judge_sides(side, n, why);
     }
     free(side), free(to);
     return why->status;
 }
 
 /* m^3: within the triangles, by the divergence theorem, about one of the corners */
-static double volume_of(const struct mesh *m)
+static double surface_parts_volume_of(const struct mesh *m)
 {
     double sum = 0;
     vec3 o = m->vertex[m->element[0][0]];
@@ -90,7 +90,7 @@ static double volume_of(const struct mesh *m)
 static int judge_convex(const struct mesh *m, const struct shape *s, struct why *why)
 {
     struct solid hull;
-    double volume = volume_of(m);
+    double volume = surface_parts_volume_of(m);
     if (solid_of(&hull, s, 3, why)) return why->status;
     if (volume < 0) return why_set(why, EX_DATAERR, "is turned inside out: turn its faces outward");
     if (crossings_judge(m, why)) return why->status;

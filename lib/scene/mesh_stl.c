@@ -68,7 +68,7 @@ static int read_facet(struct words *w)
     return want(w, "endloop") || want(w, "endfacet") || soup_polygon(w->soup, corner, 3);
 }
 
-static int read_solid(struct words *w)
+static int mesh_stl_read_solid(struct words *w)
 {
     struct word word;
     words_line(w); // past the name
@@ -87,14 +87,14 @@ static int read_text(struct soup *s, const char *bytes, int64_t n)
     struct word word;
     while (words_any(&w, &word)) {
         if (!word_is(word, "solid")) return word_fault(&w, word, "where solid should be");
-        if (read_solid(&w)) return 1;
+        if (mesh_stl_read_solid(&w)) return 1;
     }
     return 0;
 }
 
 /* ---- binary ---- */
 
-static int64_t size_of(const char *bytes)
+static int64_t mesh_stl_size_of(const char *bytes)
 {
     return HEADER + TRIANGLE * (int64_t)bytes_number(bytes + 80, BYTES_U32, false);
 }
@@ -105,7 +105,7 @@ static int read_binary(struct soup *s, const char *bytes, int64_t n)
         return soup_fault(s, "no STL: %lld bytes that do not begin with solid", (long long)n);
     if (!memchr(bytes, 0, HEADER))
         return soup_fault(s, "no STL: text that does not begin with solid");
-    int64_t size = size_of(bytes), triangles = (size - HEADER) / TRIANGLE;
+    int64_t size = mesh_stl_size_of(bytes), triangles = (size - HEADER) / TRIANGLE;
     if (n < size)
         return soup_fault(s,
                           "cut off, or no STL: %lld bytes, which should be %lld for %lld triangles",
@@ -127,14 +127,14 @@ static int read_binary(struct soup *s, const char *bytes, int64_t n)
     return 0;
 }
 
-static bool looks(const char *bytes, int64_t n)
+static bool mesh_stl_looks(const char *bytes, int64_t n)
 {
-    return is_text(bytes, n) || (n >= HEADER && size_of(bytes) == n);
+    return is_text(bytes, n) || (n >= HEADER && mesh_stl_size_of(bytes) == n);
 }
 
-static int read(struct soup *s, const char *bytes, int64_t n)
+static int mesh_stl_read(struct soup *s, const char *bytes, int64_t n)
 {
     return is_text(bytes, n) ? read_text(s, bytes, n) : read_binary(s, bytes, n);
 }
 
-const struct mesh_format mesh_stl = { "STL", ".stl", looks, read };
+const struct mesh_format mesh_stl = { "STL", ".stl", mesh_stl_looks, mesh_stl_read };

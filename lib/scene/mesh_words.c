@@ -25,7 +25,7 @@ static bool is_blank(char c)
 }
 
 /* Is this the backslash before the end of a line? */
-static bool goes_on(const struct words *w)
+static bool mesh_file_goes_on(const struct words *w)
 {
     const char *s = w->at + 1;
     return w->joined && *w->at == '\\' && (*s == '\n' || (*s == '\r' && s[1] == '\n'));
@@ -33,7 +33,7 @@ static bool goes_on(const struct words *w)
 
 bool words_next(struct words *w, struct word *word)
 {
-    while (is_blank(*w->at) || goes_on(w)) {
+    while (is_blank(*w->at) || mesh_file_goes_on(w)) {
         if (*w->at++ != '\\') continue;
         w->at = strchr(w->at, '\n') + 1;
         w->soup->at++;
@@ -41,7 +41,7 @@ bool words_next(struct words *w, struct word *word)
     if (w->comments && *w->at == '#')
         while (w->at < w->end && *w->at != '\n') w->at++;
     word->s = w->at;
-    while (w->at < w->end && *w->at != '\n' && !is_blank(*w->at) && !goes_on(w)) w->at++;
+    while (w->at < w->end && *w->at != '\n' && !is_blank(*w->at) && !mesh_file_goes_on(w)) w->at++;
     word->n = (int)(w->at - word->s < INT32_MAX ? w->at - word->s : INT32_MAX);
     return word->n > 0;
 }

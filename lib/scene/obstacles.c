@@ -72,7 +72,7 @@ static bool is_closed(const struct packing *p, const struct wall *w, const struc
 /* ---- one wall ---- */
 
 /* x in the axes in which the wall is described */
-static vec3 place_of(const struct obstacles *all, const struct obstacle *o, vec3 x)
+static vec3 obstacles_place_of(const struct obstacles *all, const struct obstacle *o, vec3 x)
 {
     const struct wall *w = &all->p->wall[o->wall];
     return v3_sub(quat_turn_back(o->pose.q, v3_sub(x, o->pose.shift)), w->x);
@@ -97,7 +97,7 @@ static bool has_sides(const struct packing *p, const struct obstacle *o)
 }
 
 /* Does a ball touch it, and where? One of a side that the box does not reach only where its surface is */
-static bool touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r)
+static bool obstacles_touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r)
 {
     const struct wall *w = &all->p->wall[o->wall];
     struct touch t;
@@ -117,8 +117,8 @@ bool obstacles_meet(const struct obstacles *all, vec3 x, double r)
 {
     for (int32_t k = 0; k < all->n; k++) {
         const struct obstacle *o = &all->o[k];
-        const vec3 c = place_of(all, o, x);
-        if (touches(all, o, c, r)) return true;
+        const vec3 c = obstacles_place_of(all, o, x);
+        if (obstacles_touches(all, o, c, r)) return true;
         if (o->sided && is_free_side(all, o, c) != o->hollow) return true;
     }
     return false;
@@ -130,7 +130,7 @@ double obstacles_push(const struct obstacles *all, vec3 *x, double r)
     double deepest = 0;
     for (int32_t k = 0; k < all->n; k++) {
         const struct obstacle *o = &all->o[k];
-        const int n = find_touches(all, o, place_of(all, o, *x), r, touch);
+        const int n = find_touches(all, o, obstacles_place_of(all, o, *x), r, touch);
         for (int i = 0; i < n; i++) {
             const double depth = r - touch[i].distance;
             deepest = fmax(deepest, depth);
@@ -143,7 +143,7 @@ double obstacles_push(const struct obstacles *all, vec3 *x, double r)
 /* ---- all of them ---- */
 
 /* Place k of a sequence that fills the unit cube evenly: multiples of powers of the root of x^4 = x + 1 [Roberts 2018] */
-static vec3 sample(const struct scene_box *box, const struct cell *cell, int dim, int k)
+static vec3 obstacles_sample(const struct scene_box *box, const struct cell *cell, int dim, int k)
 {
     static const double step[3] = { 0.8191725133961645, 0.6710436067037893, 0.5497004779019703 };
     double u[3] = { 0 };
@@ -167,7 +167,7 @@ static bool contains(const struct obstacles *all, const struct obstacle *o,
                                all->p->dim == 2 ? 0
                                : k & 4          ? box->hi[2]
                                                 : box->lo[2]);
-        const vec3 c = place_of(all, o, corner), lo = v3_sub(b->lo, c), hi = v3_sub(c, b->hi);
+        const vec3 c = obstacles_place_of(all, o, corner), lo = v3_sub(b->lo, c), hi = v3_sub(c, b->hi);
         if (fmax(fmax(lo.x, hi.x), fmax(lo.y, hi.y)) > hair || fmax(lo.z, hi.z) > hair)
             return false;
     }
@@ -175,14 +175,14 @@ static bool contains(const struct obstacles *all, const struct obstacle *o,
 }
 
 /* On which sides of the walls the box has places, which of them are free, and how much of the box */
-static void judge_sides(struct obstacles *all, const struct scene_box *box, const struct cell *cell)
+static void obstacles_judge_sides(struct obstacles *all, const struct scene_box *box, const struct cell *cell)
 {
     int64_t free = 0;
     bool any = false;
     for (int32_t k = 0; k < all->n; k++) {
         struct obstacle *o = &all->o[k];
         for (int i = 0; i < SAMPLES && o->sided; i++)
-            *(is_free_side(all, o, place_of(all, o, sample(box, cell, all->p->dim, i)))
+            *(is_free_side(all, o, obstacles_place_of(all, o, obstacles_sample(box, cell, all->p->dim, i)))
                   ? &o->has_free
                   : &o->has_other) = true;
         const bool mesh = all->p->wall[o->wall].shape == BOUNDARY_MESH;
@@ -191,11 +191,11 @@ static void judge_sides(struct obstacles *all, const struct scene_box *box, cons
         any = any || o->sided;
     }
     for (int i = 0; i < SAMPLES && any; i++) {
-        const vec3 x = sample(box, cell, all->p->dim, i);
+        const vec3 x = obstacles_sample(box, cell, all->p->dim, i);
         bool is_free = true;
         for (int32_t k = 0; k < all->n && is_free; k++) {
             const struct obstacle *o = &all->o[k];
-            is_free = !o->sided || is_free_side(all, o, place_of(all, o, x)) == o->hollow;
+            is_free = !o->sided || is_free_side(all, o, obstacles_place_of(all, o, x)) == o->hollow;
         }
         free += is_free;
     }
@@ -219,7 +219,7 @@ int obstacles_init(struct obstacles *all, const struct packing *p, const struct 
         o->surface.seen = &all->seen, o->surface.seen_most = OBSTACLES_SEEN;
         o->sided = has_sides(p, o);
     }
-    judge_sides(all, box, cell);
+    obstacles_judge_sides(all, box, cell);
     return 0;
 }
 

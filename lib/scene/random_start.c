@@ -25,7 +25,7 @@ static const double BETWEEN = 0.02; /* smaller radii: overlap that may remain be
 static const double REACH = 0.5;    /* mean radii: pairs this near are kept in the list */
 
 /* The grains in work, sorted: the largest first */
-struct start {
+struct random_start_all {
     int dim;
     const struct scene_box *box;
     const struct cell *cell; /* in place of the box: bodies and their images fill it; or NULL */
@@ -47,12 +47,12 @@ struct level {
     int64_t *head; /* [mask + 1] the last grain of a bucket, -1: none */
 };
 
-struct placed {
+struct random_start_placed {
     struct level level[LEVELS];
     int64_t *next; /* [n] the grain before in the same bucket */
 };
 
-static uint64_t bucket(const struct level *l, const int64_t cell[3])
+static uint64_t random_start_bucket(const struct level *l, const int64_t cell[3])
 {
     uint64_t h = (uint64_t)cell[0] * 0x9e3779b97f4a7c15 ^ (uint64_t)cell[1] * 0xc2b2ae3d27d4eb4f ^
                  (uint64_t)cell[2] * 0x165667b19e3779f9;
@@ -63,7 +63,7 @@ static uint64_t bucket(const struct level *l, const int64_t cell[3])
    of 64 bits. */
 #define FAR_CELL 1e15
 
-static void cell_of(const struct level *l, const struct start *s, vec3 x, int64_t cell[3])
+static void cell_of(const struct level *l, const struct random_start_all *s, vec3 x, int64_t cell[3])
 {
     const double at[3] = { x.x, x.y, x.z };
     for (int k = 0; k < 3; k++) {
@@ -72,26 +72,26 @@ static void cell_of(const struct level *l, const struct start *s, vec3 x, int64_
     }
 }
 
-static double radius(const struct start *s, int64_t i)
+static double radius(const struct random_start_all *s, int64_t i)
 {
     return s->scale * s->p.radius[i];
 }
 
-static int level_of(const struct start *s, int64_t i)
+static int random_start_level_of(const struct random_start_all *s, int64_t i)
 {
     int l = ilogb(s->p.radius[0] / s->p.radius[i]);
     return l < LEVELS ? l : LEVELS - 1;
 }
 
-static bool placed_alloc(struct placed *t, const struct start *s)
+static bool placed_alloc(struct random_start_placed *t, const struct random_start_all *s)
 {
     int64_t count[LEVELS] = { 0 };
-    *t = (struct placed){ 0 };
+    *t = (struct random_start_placed){ 0 };
     if (!(t->next = malloc(((size_t)s->p.n + 1) * sizeof *t->next))) return false;
     for (int64_t i = 0; i < s->p.n; i++) {
-        struct level *l = &t->level[level_of(s, i)];
+        struct level *l = &t->level[random_start_level_of(s, i)];
         l->h = fmax(l->h, 2 * radius(s, i));
-        count[level_of(s, i)]++;
+        count[random_start_level_of(s, i)]++;
     }
     for (int k = 0; k < LEVELS; k++) {
         struct level *l = &t->level[k];
@@ -104,7 +104,7 @@ static bool placed_alloc(struct placed *t, const struct start *s)
     return true;
 }
 
-static void placed_free(struct placed *t)
+static void random_start_placed_free(struct random_start_placed *t)
 {
     for (int k = 0; k < LEVELS; k++) free(t->level[k].head);
     free(t->next);
@@ -112,7 +112,7 @@ static void placed_free(struct placed *t)
 
 /* m: the middle of a grain in the cell, u edges from its origin; along those that do not repeat it stays inside
    with this radius */
-static vec3 in_cell(const struct start *s, const double u[3], double r)
+static vec3 in_cell(const struct random_start_all *s, const double u[3], double r)
 {
     vec3 x = s->cell->origin;
     for (int k = 0; k < s->dim; k++) {
@@ -123,10 +123,10 @@ static vec3 in_cell(const struct start *s, const double u[3], double r)
 }
 
 /* Would grain i, no larger than those that are placed, meet one of this cell? */
-static bool meets(const struct placed *t, const struct level *l, const struct start *s, int64_t i,
+static bool random_start_meets(const struct random_start_placed *t, const struct level *l, const struct random_start_all *s, int64_t i,
                   vec3 x, const int64_t cell[3])
 {
-    for (int64_t j = l->head[bucket(l, cell)]; j >= 0; j = t->next[j]) {
+    for (int64_t j = l->head[random_start_bucket(l, cell)]; j >= 0; j = t->next[j]) {
         vec3 d = v3_sub(x, s->p.x[j]);
         double most = (radius(s, i) + radius(s, j)) * (1 + FURTHER);
         if (v3_dot(d, d) < most * most) return true;
@@ -134,9 +134,9 @@ static bool meets(const struct placed *t, const struct level *l, const struct st
     return false;
 }
 
-static bool is_free_at(const struct placed *t, const struct start *s, int64_t i, vec3 x)
+static bool is_free_at(const struct random_start_placed *t, const struct random_start_all *s, int64_t i, vec3 x)
 {
-    for (int k = level_of(s, i); k >= 0; k--) {
+    for (int k = random_start_level_of(s, i); k >= 0; k--) {
         const struct level *l = &t->level[k];
         int64_t c[3], at[3], up = s->dim == 3;
         if (!l->head) continue;
@@ -144,13 +144,13 @@ static bool is_free_at(const struct placed *t, const struct start *s, int64_t i,
         for (at[2] = c[2] - up; at[2] <= c[2] + up; at[2]++)
             for (at[1] = c[1] - 1; at[1] <= c[1] + 1; at[1]++)
                 for (at[0] = c[0] - 1; at[0] <= c[0] + 1; at[0]++)
-                    if (meets(t, l, s, i, x, at)) return false;
+                    if (random_start_meets(t, l, s, i, x, at)) return false;
     }
     return true;
 }
 
 /* The same with all images of the grain that may meet one in the cell; not in a wall, as large as it will be */
-static bool is_free(const struct placed *t, const struct start *s, int64_t i, vec3 x)
+static bool random_start_is_free(const struct random_start_placed *t, const struct random_start_all *s, int64_t i, vec3 x)
 {
     int from[3] = { 0, 0, 0 }, to[3] = { 0, 0, 0 };
     if (obstacles_meet(&s->walls, x, s->p.radius[i] * (1 + FURTHER))) return false;
@@ -171,7 +171,7 @@ static bool is_free(const struct placed *t, const struct start *s, int64_t i, ve
 }
 
 /* A place in the box, or the cell, where grain i stays inside */
-static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
+static vec3 random_start_draw_place(const struct random_start_all *s, int64_t i, gsl_rng *rng)
 {
     double u[3] = { 0 };
     for (int k = 0; k < s->dim && s->cell; k++) u[k] = gsl_rng_uniform(rng);
@@ -184,20 +184,20 @@ static vec3 draw_place(const struct start *s, int64_t i, gsl_rng *rng)
     return v3(x[0], x[1], x[2]);
 }
 
-static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why *why)
+static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, struct why *why)
 {
-    struct placed t;
+    struct random_start_placed t;
     int64_t all = TRIES_FREE + TRIES_MEAN * s->p.n;
     if (!placed_alloc(&t, s)) {
-        placed_free(&t);
+        random_start_placed_free(&t);
         return why_set(why, EX_SOFTWARE, "no memory for a random start");
     }
     for (int64_t i = 0; i < s->p.n && !why->status; i++) {
         int tries = 0;
         bool found;
         do {
-            s->p.x[i] = draw_place(s, i, rng);
-            found = is_free(&t, s, i, s->p.x[i]);
+            s->p.x[i] = random_start_draw_place(s, i, rng);
+            found = random_start_is_free(&t, s, i, s->p.x[i]);
         } while (!found && ++tries < TRIES && --all > 0);
         if (!found)
             why_set(why, EX_DATAERR,
@@ -205,30 +205,30 @@ static int add_one_by_one(struct start *s, double phi, gsl_rng *rng, struct why 
                     "fill %.3g of the box, of which %.3g is free: a smaller phi or count, or a "
                     "wider box",
                     (long long)i, (long long)s->p.n, phi * s->walls.free, s->walls.free);
-        struct level *l = &t.level[level_of(s, i)];
+        struct level *l = &t.level[random_start_level_of(s, i)];
         int64_t c[3];
         cell_of(l, s, s->p.x[i], c);
-        t.next[i] = l->head[bucket(l, c)];
-        l->head[bucket(l, c)] = i;
+        t.next[i] = l->head[random_start_bucket(l, c)];
+        l->head[random_start_bucket(l, c)] = i;
     }
-    placed_free(&t);
+    random_start_placed_free(&t);
     return why->status;
 }
 
 /* ---- growth ---- */
 
 /* m: from a to the image of b that it is near to */
-static vec3 way_of(const struct start *s, const struct pair *pair)
+static vec3 random_start_way_of(const struct random_start_all *s, const struct pair *pair)
 {
     vec3 d = v3_sub(s->p.x[pair->b], s->p.x[pair->a]);
     return s->cell ? v3_add(d, cell_shift(s->cell->edge, pair->shift)) : d;
 }
 
 /* Pushes the pair apart, to beyond touching; returns its overlap, in radii of the smaller. */
-static double push_pair(struct start *s, const struct pair *pair)
+static double push_pair(struct random_start_all *s, const struct pair *pair)
 {
     int64_t a = pair->a, b = pair->b;
-    vec3 d = way_of(s, pair);
+    vec3 d = random_start_way_of(s, pair);
     double touch = radius(s, a) + radius(s, b), d2 = v3_dot(d, d);
     double wanted = touch * (1 + FURTHER);
     if (d2 >= wanted * wanted) return 0;
@@ -241,7 +241,7 @@ static double push_pair(struct start *s, const struct pair *pair)
 }
 
 /* Back into the cell along edges that do not repeat */
-static void push_into_cell(struct start *s, int64_t i)
+static void push_into_cell(struct random_start_all *s, int64_t i)
 {
     double r = radius(s, i) * (1 + FURTHER);
     for (int k = 0; k < s->dim; k++) {
@@ -254,7 +254,7 @@ static void push_into_cell(struct start *s, int64_t i)
 }
 
 /* Grains that have left the cell are their images inside. */
-static void wrap(struct start *s)
+static void wrap(struct random_start_all *s)
 {
     int32_t w[3];
     for (int64_t i = 0; i < s->p.n && s->cell; i++) {
@@ -266,14 +266,14 @@ static void wrap(struct start *s)
 
 /* Out of the walls that it has come into, by less than off the faces of the box, so that a wall there never counts; how deep
    it was in them, in radii */
-static double push_off_walls(struct start *s, int64_t i)
+static double push_off_walls(struct random_start_all *s, int64_t i)
 {
     const double r = radius(s, i), further = 0.5 * FURTHER;
     return fmax(0, obstacles_push(&s->walls, &s->p.x[i], r * (1 + further)) / r - further);
 }
 
 /* Back into the box, where it has left it */
-static void push_in(struct start *s, int64_t i)
+static void push_in(struct random_start_all *s, int64_t i)
 {
     if (s->cell) {
         push_into_cell(s, i);
@@ -288,7 +288,7 @@ static void push_in(struct start *s, int64_t i)
 }
 
 /* Sweeps over the pairs until no overlap is above `most` (smaller radii); *left: the largest. */
-static int push_apart(struct start *s, struct neighbours *near, double most, int sweeps,
+static int push_apart(struct random_start_all *s, struct neighbours *near, double most, int sweeps,
                       double *left, struct why *why)
 {
     double sum = 0;
@@ -325,7 +325,7 @@ static int push_apart(struct start *s, struct neighbours *near, double most, int
 }
 
 /* What overlaps in the end, all pushing done, in smaller radii */
-static int worst(struct start *s, struct neighbours *near, double *left, struct why *why)
+static int worst(struct random_start_all *s, struct neighbours *near, double *left, struct why *why)
 {
     *left = 0;
     wrap(s);
@@ -334,7 +334,7 @@ static int worst(struct start *s, struct neighbours *near, double *left, struct 
     for (int64_t i = 0; i < near->list.n; i++) {
         int64_t a = near->list.pair[i].a, b = near->list.pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];
-        double gap = v3_norm(way_of(s, &near->list.pair[i])) - r;
+        double gap = v3_norm(random_start_way_of(s, &near->list.pair[i])) - r;
         *left = fmax(*left, -gap / fmin(s->p.radius[a], s->p.radius[b]));
     }
     for (int64_t i = 0; i < s->p.n; i++)
@@ -344,7 +344,7 @@ static int worst(struct start *s, struct neighbours *near, double *left, struct 
 
 /* m: of the box, along the last axis, or of the cell, in which grains of this volume come to rest as dense as
    they are likely to */
-static double height_of(const struct start *s, double volume)
+static double height_of(const struct random_start_all *s, double volume)
 {
     double area = 1;
     for (int k = 0; k < s->dim - 1; k++) area *= s->box->hi[k] - s->box->lo[k];
@@ -352,7 +352,7 @@ static double height_of(const struct start *s, double volume)
 }
 
 /* From s->scale to 1 */
-static int grow(struct start *s, double phi, struct why *why)
+static int random_start_grow(struct random_start_all *s, double phi, struct why *why)
 {
     struct neighbours near = { 0 };
     double step = pow(s->scale, -1.0 / STEPS), left = 0;
@@ -375,7 +375,7 @@ static int grow(struct start *s, double phi, struct why *why)
 
 /* ---- */
 
-static double volume(int dim, double r)
+static double random_start_volume(int dim, double r)
 {
     double mass, inertia;
     packing_solid(dim, r, 1, &mass, &inertia);
@@ -394,12 +394,12 @@ static double box_volume(const struct scene_box *b, int dim)
 static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, double room,
                          gsl_rng *rng, struct why *why)
 {
-    double filled = 0, least = (double)b->count * volume(dim, b->size.min) / room;
+    double filled = 0, least = (double)b->count * random_start_volume(dim, b->size.min) / room;
     int64_t most = b->phi > 0 ? FILL_MOST : b->count;
     if (b->count > FILL_MOST && least > FULL) return least; // none needs to be drawn
     for (int64_t i = 0; i < most; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
-        double v = b->form.fill * volume(dim, g.r);
+        double v = b->form.fill * random_start_volume(dim, g.r);
         if (b->phi > 0 && filled + v > b->phi * room &&
             filled + v - b->phi * room > b->phi * room - filled)
             break;
@@ -422,7 +422,7 @@ struct drawn {
     int64_t i;
 };
 
-static int larger_first(const void *one, const void *other)
+static int random_start_larger_first(const void *one, const void *other)
 {
     const struct drawn *a = one, *b = other;
     if (a->r != b->r) return a->r > b->r ? -1 : 1;
@@ -430,7 +430,7 @@ static int larger_first(const void *one, const void *other)
 }
 
 /* The bodies of s, the largest first; from[]: which of the radii each has */
-static int sort_radii(struct start *s, const struct grains *g, struct why *why)
+static int sort_radii(struct random_start_all *s, const struct grains *g, struct why *why)
 {
     int e = packing_init(&s->p, s->dim, g->n, why);
     if (e) return e;
@@ -441,7 +441,7 @@ static int sort_radii(struct start *s, const struct grains *g, struct why *why)
         return why_set(why, EX_SOFTWARE, "no memory for a random start");
     }
     for (int64_t i = 0; i < g->n; i++) d[i] = (struct drawn){ g->g[i].r, i };
-    qsort(d, (size_t)g->n, sizeof *d, larger_first);
+    qsort(d, (size_t)g->n, sizeof *d, random_start_larger_first);
     for (int64_t i = 0; i < g->n; i++) {
         double r = d[i].r / d[0].r;
         s->p.radius[i] = d[i].r, s->from[i] = d[i].i;
@@ -458,7 +458,7 @@ static double cell_volume(const struct cell *c, int dim)
 }
 
 /* The grains are in this cell, at rest, for the search of pairs. */
-static int set_cell(struct start *s, struct why *why)
+static int random_start_set_cell(struct random_start_all *s, struct why *why)
 {
     if (!s->cell) return 0;
     for (int k = 0; k < 3; k++)
@@ -471,7 +471,7 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, cons
                  const struct packing *walls, gsl_rng *rng, struct why *why)
 {
     /* cells of the grid count from the corner of b->box, wherever the cell is */
-    struct start s = { .dim = dim, .box = &b->box, .cell = cell, .scale = 1 };
+    struct random_start_all s = { .dim = dim, .box = &b->box, .cell = cell, .scale = 1 };
     if (cell) cell_inverse(cell->edge, s.inverse), cell_heights(cell, s.height);
     if (walls && obstacles_init(&s.walls, walls, &b->box, cell, why)) {
         obstacles_free(&s.walls);
@@ -491,9 +491,9 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, cons
             "a random start cannot fill %.3g of its box, of which %.3g is free of walls: at %g it "
             "is %.4g m high",
             phi * s.walls.free, s.walls.free, dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
-    if (!why->status && !sort_radii(&s, out, why) && !set_cell(&s, why)) {
+    if (!why->status && !sort_radii(&s, out, why) && !random_start_set_cell(&s, why)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
-        if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) grow(&s, phi, why);
+        if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) random_start_grow(&s, phi, why);
         for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);

@@ -97,7 +97,7 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
     return 0;
 }
 
-static int read_document(jnode o, struct scene_bodies *b)
+static int scene_bodies_read_document(jnode o, struct scene_bodies *b)
 {
     const char *name = NULL;
     if (json_node_only(o, "document frame at_rest v w kind density mass fixed name") ||
@@ -130,7 +130,7 @@ static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
     return 0;
 }
 
-static int read_repeats(jnode o, int dim, struct scene_bodies *b)
+static int scene_bodies_read_repeats(jnode o, int dim, struct scene_bodies *b)
 {
     size_t n;
     if (!o.json) return 0;
@@ -150,7 +150,7 @@ static int read_import(jnode o, const struct scene *s, struct scene_bodies *b)
         json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
         json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest) ||
         read_types(json_node_key(&o, "types"), s, b) ||
-        read_repeats(json_node_key(&o, "repeats"), s->dim, b))
+        scene_bodies_read_repeats(json_node_key(&o, "repeats"), s->dim, b))
         return 1;
     b->foreign = true, b->file = strdup(name);
     return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
@@ -172,7 +172,7 @@ static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
     return 0;
 }
 
-static int read_table(jnode o, struct scene_bodies *b)
+static int scene_bodies_read_table(jnode o, struct scene_bodies *b)
 {
     const char *name = NULL;
     if (json_node_only(o, "file v w kind density mass fixed name") ||
@@ -224,8 +224,8 @@ static int read_group(jnode o, struct scene *s, const struct scene_box *box, str
         return 1;
     int bad = which == 0   ? read_one(o, s, b)
               : which == 1 ? read_lattice(o, s, box, b)
-              : which == 2 ? read_table(o, b)
-              : which == 3 ? read_document(o, b)
+              : which == 2 ? scene_bodies_read_table(o, b)
+              : which == 3 ? scene_bodies_read_document(o, b)
               : which == 5 ? read_import(o, s, b)
                            : read_random(o, s, box, b);
     return bad || read_common(o, s, b);

@@ -22,7 +22,7 @@
 
 /* ---- bodies ---- */
 
-static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x, double r,
+static int scene_build_set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x, double r,
                     struct why *why)
 {
     double mass, inertia;
@@ -45,7 +45,7 @@ static int set_body(struct packing *p, int64_t i, const struct scene_bodies *b, 
 
 /* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in a
    periodic cell along its edges. */
-static vec3 draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
+static vec3 scene_build_draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
                        const struct packing *p, int64_t k, double r, gsl_rng *rng)
 {
     const int dim = p->dim;
@@ -78,22 +78,22 @@ static int fill_lattice(struct packing *p, int64_t first, const struct scene_bod
     struct scene_lattice l = scene_lattice(b, p->dim);
     for (int64_t k = 0; k < b->count; k++) {
         double r = scene_size_draw(&b->size, rng);
-        vec3 x = draw_place(b, &l, p, k, r, rng);
-        if (set_body(p, first + k, b, x, r, why)) return why->status;
+        vec3 x = scene_build_draw_place(b, &l, p, k, r, rng);
+        if (scene_build_set_body(p, first + k, b, x, r, why)) return why->status;
         if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
     }
     return 0;
 }
 
 /* Where the shapes and groups of a document are in the packing */
-struct rows {
+struct scene_build_rows {
     int32_t *shape, *group; /* [shapes.n], [1 + names.n] */
 };
 
-static int find_rows(struct rows *to, const struct packing *p, const struct packing *from,
+static int scene_build_find_rows(struct scene_build_rows *to, const struct packing *p, const struct packing *from,
                      struct why *why)
 {
-    *to = (struct rows){ 0 };
+    *to = (struct scene_build_rows){ 0 };
     if (!from) return 0;
     to->shape = calloc((size_t)from->shapes.n + 1, sizeof *to->shape);
     to->group = calloc((size_t)from->names.n + 1, sizeof *to->group);
@@ -108,7 +108,7 @@ static int find_rows(struct rows *to, const struct packing *p, const struct pack
 
 /* What is said of a grain comes before what its kind is; what its group says, before both. */
 static int set_grain(struct packing *p, int64_t i, const struct scene *s,
-                     const struct scene_bodies *b, const struct grain *g, const struct rows *to,
+                     const struct scene_bodies *b, const struct grain *g, const struct scene_build_rows *to,
                      struct why *why)
 {
     struct scene_bodies one = *b;
@@ -120,7 +120,7 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
     if (g->shape && to->shape) one.form.shape = to->shape[g->shape];
     if (g->group && to->group && !b->group) one.group = to->group[g->group];
-    if (set_body(p, i, &one, g->x, g->r, why)) return why->status;
+    if (scene_build_set_body(p, i, &one, g->x, g->r, why)) return why->status;
     p->q[i] = g->q, p->id[i] = g->id;
     if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
     return 0;
@@ -129,8 +129,8 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
 static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
                        const struct scene_bodies *b, const struct grains *list, struct why *why)
 {
-    struct rows to;
-    find_rows(&to, p, b->document, why);
+    struct scene_build_rows to;
+    scene_build_find_rows(&to, p, b->document, why);
     for (int64_t k = 0; k < list->n && !why->status; k++)
         set_grain(p, first + k, s, b, &list->g[k], &to, why);
     free(to.shape), free(to.group);
@@ -197,7 +197,7 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
     for (int64_t g = 0; g < s->groups; g++) {
         const struct scene_bodies *b = &s->bodies[g];
         int bad = is_list(b)             ? fill_grains(p, first, s, b, &list[g], why)
-                  : b->from == SCENE_ONE ? set_body(p, first, b, b->x, b->size.min, why)
+                  : b->from == SCENE_ONE ? scene_build_set_body(p, first, b, b->x, b->size.min, why)
                                          : fill_lattice(p, first, b, rng, why);
         if (bad) return bad;
         if (is_list(b)) draw_velocities(p, first, list[g].n, b, rng);
@@ -217,7 +217,7 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
 /* ---- the packing ---- */
 
 /* The shapes of a document, behind the scene's: a name stands for one shape. */
-static int take_shapes(struct packing *p, const struct scene_bodies *b, struct why *why)
+static int scene_build_take_shapes(struct packing *p, const struct scene_bodies *b, struct why *why)
 {
     const struct shapes *from = &b->document->shapes;
     struct shapes copy;
@@ -238,7 +238,7 @@ static int set_shapes(struct packing *p, const struct scene *s, struct why *why)
 {
     if (shapes_copy(&p->shapes, &s->shapes, why)) return why->status;
     for (int64_t g = 0; g < s->groups; g++)
-        if (s->bodies[g].document && take_shapes(p, &s->bodies[g], why)) return why->status;
+        if (s->bodies[g].document && scene_build_take_shapes(p, &s->bodies[g], why)) return why->status;
     return p->shapes.n ? packing_alloc_shapes(p, why) : 0;
 }
 
@@ -380,7 +380,7 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
 enum { PLACE = 40 + NAME_BYTES }; /* bytes of the place of a row in a scene */
 
 /* "bodies[1]", "walls[1], floor": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
-static const char *place_of(const struct scene *s, const struct grains *list, int32_t row,
+static const char *scene_build_place_of(const struct scene *s, const struct grains *list, int32_t row,
                             char text[PLACE])
 {
     int64_t g = 0, end = 0;
@@ -410,7 +410,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
         double r = packing_smaller_radius(p, c);
         bool by_run = settled[c->b] && (c->a < 0 || settled[c->a]);
         if (c->gap >= -(by_run ? LEFT_BY_A_RUN : ROUNDING) * r) continue;
-        place_of(s, list, c->a, a), place_of(s, list, c->b, b);
+        scene_build_place_of(s, list, c->a, a), scene_build_place_of(s, list, c->b, b);
         e = c->a < 0 ? why_set(why, EX_DATAERR, "body %d is %.3g m deep in wall %d (%s%s%s", c->b,
                                -c->gap, -1 - c->a, b, a, cure)
                      : why_set(why, EX_DATAERR, "bodies %d and %d overlap by %.3g m (%s, %s%s",
@@ -442,7 +442,7 @@ static int name_wall(const struct scene *s, struct why *why)
 }
 
 /* The dt of a scene that leaves it to us, which adapts from then on */
-static int set_dt(struct packing *p, const struct scene *s, struct why *why)
+static int scene_build_set_dt(struct packing *p, const struct scene *s, struct why *why)
 {
     struct time_step t;
     if (s->dt > 0) return 0;
@@ -455,7 +455,7 @@ static int set_dt(struct packing *p, const struct scene *s, struct why *why)
                          "chosen: give a number of seconds");
 }
 
-static int by_number(const void *a, const void *b)
+static int scene_build_by_number(const void *a, const void *b)
 {
     const int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return x < y ? -1 : x > y;
@@ -468,10 +468,10 @@ static int check_forces(const struct packing *p, struct why *why)
     int32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
     if (!id) return why_set(why, EX_SOFTWARE, "no memory to look for the bodies of forces");
     if (p->n) memcpy(id, p->id, (size_t)p->n * sizeof *id);
-    qsort(id, (size_t)p->n, sizeof *id, by_number);
+    qsort(id, (size_t)p->n, sizeof *id, scene_build_by_number);
     for (int32_t k = 0; k < p->pulls.n && !why->status; k++) {
         const int32_t wanted = p->pulls.drive[k].boundary;
-        if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, by_number))
+        if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, scene_build_by_number))
             why_set(why, EX_DATAERR, "forces: no body has the id %d (nsd-info -p shows them)",
                     wanted);
     }
@@ -594,7 +594,7 @@ static int set_masses(struct packing *p, const struct scene *s, struct why *why)
 }
 
 /* The whole cell of a document, its moments as if the document's time were the scene's */
-static int take_cell(struct packing *p, const struct scene *s, const struct packing *from)
+static int scene_build_take_cell(struct packing *p, const struct scene *s, const struct packing *from)
 {
     if (cell_copy(&p->cell, &from->cell)) return 1;
     for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
@@ -632,7 +632,7 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct why *wh
     if (s->cell.goes_on && !repeats)
         return why_set(why, EX_DATAERR, "cell: has no edges, and nor has the first document");
     if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
-    if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
+    if (s->cell.goes_on ? complete_cell(p, s, from) : scene_build_take_cell(p, s, from))
         return why_set(why, EX_SOFTWARE, "no memory for the cell");
     return packing_alloc_images(p, why);
 }
@@ -670,7 +670,7 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         packing_wrap(p, NULL);
         names_settle(&p->names);
         p->pulls_most = pulls_most(&p->pulls, p->n, p->id, p->mass);
-        if (!set_masses(p, s, why) && !set_dt(p, s, why)) {
+        if (!set_masses(p, s, why) && !scene_build_set_dt(p, s, why)) {
             scene_carry_dt(p, s);
             check_packing(p, s, list, why);
         }

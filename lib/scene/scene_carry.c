@@ -42,7 +42,7 @@ struct carried {
 };
 
 /* What body or wall a of the document is in p; false: it is not there. */
-static bool find(const struct carried *y, int32_t *a)
+static bool scene_carry_find(const struct carried *y, int32_t *a)
 {
     if (*a < 0) return same_wall(y->p, y->s, y->from, -1 - *a);
     *a += (int32_t)y->row;
@@ -72,7 +72,7 @@ static int carry_bonds(const struct carried *y, struct why *why)
     for (int64_t i = 0; p->law && i < y->from->bonds.n; i++) {
         struct bond b = y->from->bonds.bond[i];
         const int32_t wall = -1 - b.a;
-        if (!find(y, &b.a)) continue;
+        if (!scene_carry_find(y, &b.a)) continue;
         b.b += (int32_t)y->row;
         const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
         if (!pair_law_wets(l)) b.wet = 0;
@@ -95,7 +95,7 @@ static int carry_memory(const struct carried *y, struct why *why)
     m->recall = more, m->room = m->n + from->n + 1, m->on = true;
     for (int64_t i = 0; i < from->n; i++) {
         struct recall x = from->recall[i];
-        if (!find(y, &x.a) || !has_images(y, x.shift)) continue;
+        if (!scene_carry_find(y, &x.a) || !has_images(y, x.shift)) continue;
         x.b += (int32_t)y->row;
         m->recall[m->n++] = x;
     }

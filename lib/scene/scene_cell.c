@@ -2,7 +2,7 @@
 #include "scene/scene_read.h"
 
 /* dim rows of dim numbers; where `given` is not NULL an item may be null, which leaves it out. */
-static int read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
+static int scene_cell_read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
 {
     size_t rows = 0, columns = 0;
     if (json_node_array(n, &rows)) return 1;
@@ -21,7 +21,7 @@ static int read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
     return 0;
 }
 
-static int read_edges(jnode o, int dim, struct cell *c)
+static int scene_cell_read_edges(jnode o, int dim, struct cell *c)
 {
     jnode edges = json_node_key(&o, "edges");
     size_t n = 0;
@@ -44,7 +44,7 @@ static int read_edges(jnode o, int dim, struct cell *c)
     return 0;
 }
 
-static int read_repeats(jnode a, int dim, struct cell *c)
+static int scene_cell_read_repeats(jnode a, int dim, struct cell *c)
 {
     size_t n = 0;
     for (int k = 0; k < dim; k++) c->repeats[k] = true;
@@ -60,7 +60,7 @@ static int read_moment(jnode o, int dim, struct cell_gradient *g)
 {
     return json_node_only(o, "t L") || json_node_need(&o, "t L") ||
            json_node_number(json_node_key(&o, "t"), J_ANY, &g->t) ||
-           read_matrix(json_node_key(&o, "L"), dim, g->L, NULL);
+           scene_cell_read_matrix(json_node_key(&o, "L"), dim, g->L, NULL);
 }
 
 static int read_gradient(jnode a, int dim, struct cell *c)
@@ -72,7 +72,7 @@ static int read_gradient(jnode a, int dim, struct cell *c)
     if (!table) n = 1;
     if (!(c->gradient = scene_alloc(a, n, sizeof *c->gradient))) return 1;
     c->gradients = (int32_t)n;
-    if (!table) return read_matrix(a, dim, c->gradient[0].L, NULL);
+    if (!table) return scene_cell_read_matrix(a, dim, c->gradient[0].L, NULL);
     for (size_t m = 0; m < n; m++) {
         jnode moment = json_node_item(&a, m);
         if (read_moment(moment, dim, &c->gradient[m])) return 1;
@@ -106,7 +106,7 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out
     bool matrix = json_is_array(n.json), given[3][3] = { { false } };
     if (!n.json) out->by_rule = true;
     if (n.json &&
-        (matrix ? read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)))
+        (matrix ? scene_cell_read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)))
         return 1;
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {
@@ -182,7 +182,7 @@ static int read_stress(jnode o, int dim, struct scene_cell *out)
         return 1;
     if (which == 2) return read_mean(o, dim, out);
     jnode pressure = json_node_key(&o, "pressure"), matrix = json_node_key(&o, "target");
-    if (which == 1 && read_matrix(matrix, dim, target, yields)) return 1;
+    if (which == 1 && scene_cell_read_matrix(matrix, dim, target, yields)) return 1;
     for (int k = 0; which == 0 && k < dim; k++) {
         yields[k][k] = c->repeats[k];
         if (json_node_number(pressure, J_ANY, &target[k][k])) return 1;
@@ -206,8 +206,8 @@ int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cel
     out->goes_on =
         documents && !json_node_key(&o, "edges").json && !json_node_key(&o, "lengths").json;
     if (json_node_only(o, "edges lengths repeats origin gradient affine stress") ||
-        (!out->goes_on && read_edges(o, dim, c)) ||
-        read_repeats(json_node_key(&o, "repeats"), dim, c) ||
+        (!out->goes_on && scene_cell_read_edges(o, dim, c)) ||
+        scene_cell_read_repeats(json_node_key(&o, "repeats"), dim, c) ||
         json_node_vector(json_node_key(&o, "origin"), dim, &c->origin) ||
         read_gradient(json_node_key(&o, "gradient"), dim, c) ||
         json_node_bool(json_node_key(&o, "affine"), &out->affine) ||

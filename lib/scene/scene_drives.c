@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 /* Room for `more` in an array of n; NULL is told. */
-static void *grown(jnode at, void *array, int32_t n, size_t more, size_t size)
+static void *scene_drives_grown(jnode at, void *array, int32_t n, size_t more, size_t size)
 {
     void *new = realloc(array, ((size_t)n + more + 1) * size);
     if (!new) why_set(at.in->why, EX_SOFTWARE, "no memory for the drives");
@@ -12,12 +12,12 @@ static void *grown(jnode at, void *array, int32_t n, size_t more, size_t size)
 }
 
 /* [[t, s], ...], t rising */
-static int read_table(jnode a, struct drives *list, struct drive *d)
+static int scene_drives_read_table(jnode a, struct drives *list, struct drive *d)
 {
     size_t rows = 0;
     if (json_node_array(a, &rows)) return 1;
     if (!rows || rows > 1 << 24) return json_node_fault(a, "needs [[time, value], ...]");
-    struct drive_row *row = grown(a, list->row, list->rows, rows, sizeof *row);
+    struct drive_row *row = scene_drives_grown(a, list->row, list->rows, rows, sizeof *row);
     if (!row) return 1;
     list->row = row, row += list->rows;
     d->first = list->rows, d->rows = (int32_t)rows;
@@ -47,13 +47,13 @@ static int read_signal(jnode o, struct drives *list, int which, struct drive *d)
                json_node_number(json_node_key(&o, "frequency"), J_NOT_NEGATIVE, &d->frequency) ||
                json_node_number(json_node_key(&o, "phase"), J_ANY, &d->phase);
     default:
-        return read_table(json_node_key(&o, "table"), list, d);
+        return scene_drives_read_table(json_node_key(&o, "table"), list, d);
     }
 }
 
 static int add_signal(jnode o, struct drives *list, struct drive d)
 {
-    struct drive *more = grown(o, list->drive, list->n, 1, sizeof *more);
+    struct drive *more = scene_drives_grown(o, list->drive, list->n, 1, sizeof *more);
     if (!more) return 1;
     list->drive = more, more[list->n++] = d;
     return 0;
@@ -74,7 +74,7 @@ static int read_axis(jnode o, int dim, struct drive *d)
 
 /* "since_from": the drive's clock shows 0 at `from`, by which a sine without a phase begins where the
    boundary is. */
-static int read_clock(jnode o, struct drive *d)
+static int scene_drives_read_clock(jnode o, struct drive *d)
 {
     bool since = false;
     if (json_node_bool(json_node_key(&o, "since_from"), &since)) return 1;
@@ -84,7 +84,7 @@ static int read_clock(jnode o, struct drive *d)
     return 0;
 }
 
-static int read_drive(jnode o, struct scene *s, int32_t wall)
+static int scene_drives_read_drive(jnode o, struct scene *s, int32_t wall)
 {
     static const char *const keys[] = { "speed", "amplitude frequency phase since_from",
                                         "table since_from" };
@@ -103,7 +103,7 @@ static int read_drive(jnode o, struct scene *s, int32_t wall)
         return 1;
     if (!(d.from <= d.until))
         return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
-    return read_clock(o, &d) || add_signal(o, &s->drives, d);
+    return scene_drives_read_clock(o, &d) || add_signal(o, &s->drives, d);
 }
 
 int scene_read_drives(jnode a, struct scene *s, int32_t wall)
@@ -111,7 +111,7 @@ int scene_read_drives(jnode a, struct scene *s, int32_t wall)
     size_t n = 0;
     if (json_node_array(a, &n)) return 1;
     for (size_t i = 0; i < n; i++)
-        if (read_drive(json_node_item(&a, i), s, wall)) return 1;
+        if (scene_drives_read_drive(json_node_item(&a, i), s, wall)) return 1;
     return 0;
 }
 
@@ -151,7 +151,7 @@ static int read_constant(jnode n, struct scene *s, struct drive *d)
     double value = 0;
     struct drive_row *row;
     if (json_node_number(n, J_ANY, &value)) return 1;
-    if (!(row = grown(n, s->pulls.row, s->pulls.rows, 1, sizeof *row))) return 1;
+    if (!(row = scene_drives_grown(n, s->pulls.row, s->pulls.rows, 1, sizeof *row))) return 1;
     s->pulls.row = row, row[s->pulls.rows] = (struct drive_row){ 0, value };
     d->signal = DRIVE_TABLE, d->first = s->pulls.rows++, d->rows = 1;
     return 0;

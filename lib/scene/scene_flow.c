@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int read_disc(jnode o, int dim, struct scene_pour *p)
+static int scene_flow_read_disc(jnode o, int dim, struct scene_pour *p)
 {
     p->disc = true;
     return json_node_only(o, "center normal radius") ||
@@ -18,7 +18,7 @@ static int read_opening(jnode o, int dim, struct scene_pour *p)
 {
     int which = json_node_choice(o, "box disc");
     if (which < 0 || json_node_only(o, "box disc")) return 1;
-    if (which == 1) return read_disc(json_node_key(&o, "disc"), dim, p);
+    if (which == 1) return scene_flow_read_disc(json_node_key(&o, "disc"), dim, p);
     jnode box = json_node_key(&o, "box");
     if (scene_read_box(box, dim, &p->box)) return 1;
     for (int i = 0; i < dim; i++)
@@ -77,7 +77,7 @@ int scene_read_pours(jnode a, struct scene *s)
     return 0;
 }
 
-static int by_number(const void *a, const void *b)
+static int scene_flow_by_number(const void *a, const void *b)
 {
     int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
     return x < y ? -1 : x > y;
@@ -97,7 +97,7 @@ static int read_ids(jnode a, struct scene_removal *r)
         if (json_node_integer(many ? json_node_item(&a, k) : a, 0, INT32_MAX, &id)) return 1;
         r->id[r->ids++] = (int32_t)id;
     }
-    qsort(r->id, n, sizeof *r->id, by_number);
+    qsort(r->id, n, sizeof *r->id, scene_flow_by_number);
     return 0;
 }
 

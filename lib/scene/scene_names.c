@@ -26,7 +26,7 @@ int scene_read_group(jnode n, struct scene *s, int32_t *group)
     return 0;
 }
 
-static int read_part(jnode o, struct scene *s)
+static int scene_material_read_part(jnode o, struct scene *s)
 {
     const char *name;
     int64_t first = 0, last = 0;
@@ -55,6 +55,6 @@ int scene_read_parts(jnode a, struct scene *s, bool *groups)
         return json_node_fault(a, "needs \"groups\" or a list [{name, faces}, ...]");
     if (json_node_array(a, &n)) return 1;
     for (size_t i = 0; i < n; i++)
-        if (read_part(json_node_item(&a, i), s)) return 1;
+        if (scene_material_read_part(json_node_item(&a, i), s)) return 1;
     return 0;
 }

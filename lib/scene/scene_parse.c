@@ -47,7 +47,7 @@ static int read_dt(jnode n, double *dt)
                : 0;
 }
 
-static int read_scene(jnode o, struct scene *s)
+static int scene_parse_read_scene(jnode o, struct scene *s)
 {
     int64_t dim = 3, seed = 1;
     double density = 2500;
@@ -95,7 +95,7 @@ int scene_parse(struct scene *s, const char *text, size_t length, struct scene_f
     struct json_doc t;
     *s = (struct scene){ .theta = 0.5, .files = files };
     if (json_doc_parse(&t, text, length, why)) return why->status;
-    int bad = read_scene(json_doc_root(&t), s);
+    int bad = scene_parse_read_scene(json_doc_root(&t), s);
     s->files = NULL;
     if (!bad && !(s->text = s->rewritten ? json_dumps(t.root, JSON_COMPACT) : compact(t.text)))
         bad = why_set(why, EX_SOFTWARE, "no memory for the scene's text");

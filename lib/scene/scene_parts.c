@@ -21,7 +21,7 @@ static int copy_drives(struct scene *s, struct wall *w, struct why *why)
 }
 
 /* Makes room for one more wall. */
-static int grow(struct scene *s, struct why *why)
+static int surface_parts_grow(struct scene *s, struct why *why)
 {
     const size_t n = (size_t)s->walls + 1;
     struct wall *wall = realloc(s->wall, n * sizeof *wall);
@@ -54,11 +54,11 @@ static int name_parts(int32_t *of, const struct scene *s, int32_t w, struct why 
 }
 
 /* The elements of part k become those of a new wall; *at, where they lie. */
-static int add_part(struct scene *s, int32_t k, int32_t first, int32_t n, struct why *why)
+static int surface_parts_add_part(struct scene *s, int32_t k, int32_t first, int32_t n, struct why *why)
 {
     const struct scene_part *part = &s->part[k];
     struct wall w = s->wall[part->wall];
-    if (grow(s, why) || copy_drives(s, &w, why)) return why->status;
+    if (surface_parts_grow(s, why) || copy_drives(s, &w, why)) return why->status;
     w.kind = part->kind, w.belt = part->belt, w.first_element = first, w.elements = n;
     s->wall_item[s->walls] = s->wall_item[part->wall];
     s->wall[s->walls++] = w;
@@ -86,7 +86,7 @@ static int split(struct scene *s, int32_t w, struct why *why)
                 s->wall[w].kind = s->part[k].kind, s->wall[w].belt = s->part[k].belt,
                 s->wall[w].elements = at;
             else
-                add_part(s, k, first + from, at - from, why);
+                surface_parts_add_part(s, k, first + from, at - from, why);
         }
     }
     free(of), free(had);

@@ -19,7 +19,7 @@ static int read_uniform(jnode a, struct scene_size *z)
 }
 
 /* Probability that a standard normal deviate is below z */
-static double normal_below(double z)
+static double scene_bodies_normal_below(double z)
 {
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
@@ -41,7 +41,7 @@ static int read_bell(jnode o, struct scene_size *z)
     double from = gauss ? z->min - z->mid : log(z->min / z->mid);
     double to = gauss ? z->max - z->mid : log(z->max / z->mid);
     bool enough = z->spread > 0
-                      ? normal_below(to / z->spread) - normal_below(from / z->spread) > 1e-3
+                      ? scene_bodies_normal_below(to / z->spread) - scene_bodies_normal_below(from / z->spread) > 1e-3
                       : from <= 0 && to >= 0;
     return enough ? 0 : json_node_fault(o, "[min, max] keeps less than a thousandth of it");
 }
@@ -74,7 +74,7 @@ static int read_point(jnode point, double *size, double *passing)
 
 /* How many grains a share of the mass between the diameters a and b is, times a constant: its
    integral of d^-dim over log d. In units of b^dim, so that nothing overflows. */
-static double number_of(double share, double a, double b, int dim)
+static double scene_bodies_number_of(double share, double a, double b, int dim)
 {
     double x = log(b / a) * dim;
     return x > 0 ? share * expm1(x) / x : share;
@@ -103,7 +103,7 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
             return json_node_fault(point, "sizes and shares must not fall");
         if (size[1] > 2 * MOST_RATIO * z->min)
             return json_node_fault(point, "more than %g times the first", MOST_RATIO);
-        double grains = number_of(passing[1] - passing[0], size[0], size[1], dim);
+        double grains = scene_bodies_number_of(passing[1] - passing[0], size[0], size[1], dim);
         sum += grains * pow(2 * z->min / size[1], dim);
         z->sieve[i - 1] = (struct scene_sieve){ 0.5 * size[0], 0.5 * size[1], sum };
     }
@@ -116,7 +116,7 @@ static int read_sieve(jnode a, int dim, struct scene_size *z)
     return 0;
 }
 
-static int read_law(jnode n, int dim, struct scene_size *z)
+static int scene_bodies_read_law(jnode n, int dim, struct scene_size *z)
 {
     static const char laws[] = "uniform gaussian lognormal uniform_by_mass power sieve";
     if (!json_is_object(n.json)) {
@@ -150,6 +150,6 @@ static int read_law(jnode n, int dim, struct scene_size *z)
 int scene_read_size(jnode n, int dim, struct scene_size *z)
 {
     if (!n.json) return 0;
-    if (read_law(n, dim, z)) return 1;
+    if (scene_bodies_read_law(n, dim, z)) return 1;
     return z->max <= MOST_SIZE ? 0 : json_node_fault(n, "above %g: too large", MOST_SIZE);
 }

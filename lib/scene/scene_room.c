@@ -48,7 +48,7 @@ static int add_named(jnode n, struct scene *s, bool *in)
     return json_node_fault(n, "no wall '%s', but %s", name, all);
 }
 
-static int read_names(jnode n, struct scene *s, bool *in)
+static int scene_walls_read_names(jnode n, struct scene *s, bool *in)
 {
     size_t count = 0;
     if (json_is_string(n.json)) return add_named(n, s, in);
@@ -194,7 +194,7 @@ int scene_read_room(jnode o, struct scene *s)
     if (!s->has_walls)
         return json_node_fault(o, "needs \"walls\" in the scene: those of a document bring theirs");
     bool *in = scene_alloc(o, (size_t)s->walls, sizeof *in);
-    int bad = !in || read_names(json_node_key(&o, "walls"), s, in) || set_loads(o, s, in);
+    int bad = !in || scene_walls_read_names(json_node_key(&o, "walls"), s, in) || set_loads(o, s, in);
     free(in);
     return bad;
 }

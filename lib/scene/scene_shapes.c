@@ -5,7 +5,7 @@
 #include <string.h>
 
 /* A unit vector across n, next to the one given, or to an axis of space */
-static vec3 across(vec3 n, vec3 wish)
+static vec3 scene_shapes_across(vec3 n, vec3 wish)
 {
     vec3 e = v3_axpy(wish, -v3_dot(wish, n), n);
     double length = v3_norm(e);
@@ -17,7 +17,7 @@ static int read_along(jnode o, int dim, struct wall *w)
     vec3 wish = v3(0, 0, 0);
     jnode along = json_node_key(&o, "along");
     if (scene_read_direction(along, dim, &wish)) return 1;
-    w->along = across(w->n, wish);
+    w->along = scene_shapes_across(w->n, wish);
     return 0;
 }
 
@@ -30,7 +30,7 @@ static int read_two(jnode a, enum json_range range, double out[2])
            json_node_number(json_node_item(&a, 1), range, &out[1]);
 }
 
-static int read_side(jnode o, struct wall *w)
+static int scene_shapes_read_side(jnode o, struct wall *w)
 {
     int side = w->side;
     if (json_node_word(json_node_key(&o, "side"), boundary_side_name, &side)) return 1;
@@ -58,7 +58,7 @@ static int read_rectangle(jnode o, struct scene *s, struct wall *w)
            read_two(json_node_key(&o, "sides"), J_POSITIVE, w->size);
 }
 
-static int read_disc(jnode o, struct scene *s, struct wall *w)
+static int scene_shapes_read_disc(jnode o, struct scene *s, struct wall *w)
 {
     (void)s;
     if (json_node_only(o, "center normal radius hole") ||
@@ -81,7 +81,7 @@ static int read_cylinder(jnode o, struct scene *s, struct wall *w)
            scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
            json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
            json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) ||
-           read_side(o, w) || read_arc(o, 3, w);
+           scene_shapes_read_side(o, w) || read_arc(o, 3, w);
 }
 
 static int read_cone(jnode o, struct scene *s, struct wall *w)
@@ -93,7 +93,7 @@ static int read_cone(jnode o, struct scene *s, struct wall *w)
         json_node_vector(json_node_key(&o, "point"), 3, &w->x) ||
         scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
         read_two(radii, J_NOT_NEGATIVE, w->size) ||
-        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) || read_side(o, w) ||
+        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) || scene_shapes_read_side(o, w) ||
         read_arc(o, 3, w))
         return 1;
     return w->size[0] + w->size[1] > 0 ? 0 : json_node_fault(radii, "must not both be 0");
@@ -105,11 +105,11 @@ static int read_sphere(jnode o, struct scene *s, struct wall *w)
     return json_node_only(o, "center radius side") || json_node_need(&o, "center radius") ||
            json_node_vector(json_node_key(&o, "center"), 3, &w->x) ||
            json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           read_side(o, w);
+           scene_shapes_read_side(o, w);
 }
 
 /* The file is read by whoever can, before the scene is built. */
-static int read_mesh(jnode o, struct scene *s, struct wall *w)
+static int scene_shapes_read_mesh(jnode o, struct scene *s, struct wall *w)
 {
     const char *name = NULL;
     struct scene_mesh m = { .wall = s->walls, .scale = 1 };
@@ -133,7 +133,7 @@ struct reader_of_shape {
     int (*read)(jnode o, struct scene *s, struct wall *w);
 };
 
-static int read_shape(jnode o, const char *common, struct scene *s, struct wall *w,
+static int scene_shapes_read_shape(jnode o, const char *common, struct scene *s, struct wall *w,
                       const struct reader_of_shape *r)
 {
     char names[100];
@@ -151,14 +151,14 @@ int scene_read_shape_3d(jnode o, const char *common, struct scene *s, struct wal
 {
     static const struct reader_of_shape in_space[] = {
         { "rectangle", BOUNDARY_RECTANGLE, read_rectangle },
-        { "disc", BOUNDARY_DISC, read_disc },
+        { "disc", BOUNDARY_DISC, scene_shapes_read_disc },
         { "cylinder", BOUNDARY_CYLINDER, read_cylinder },
         { "cone", BOUNDARY_CONE, read_cone },
         { "sphere", BOUNDARY_SPHERE, read_sphere },
-        { "mesh", BOUNDARY_MESH, read_mesh },
+        { "mesh", BOUNDARY_MESH, scene_shapes_read_mesh },
         { 0 },
     };
-    return read_shape(o, common, s, w, in_space);
+    return scene_shapes_read_shape(o, common, s, w, in_space);
 }
 
 /* ---- in the plane ---- */
@@ -187,7 +187,7 @@ static int read_circle(jnode o, struct scene *s, struct wall *w)
     return json_node_only(o, "center radius side") || json_node_need(&o, "center radius") ||
            json_node_vector(json_node_key(&o, "center"), 2, &w->x) ||
            json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           read_side(o, w);
+           scene_shapes_read_side(o, w);
 }
 
 static int read_arc_2d(jnode o, struct scene *s, struct wall *w)
@@ -197,11 +197,11 @@ static int read_arc_2d(jnode o, struct scene *s, struct wall *w)
            json_node_need(&o, "center radius along arc") ||
            json_node_vector(json_node_key(&o, "center"), 2, &w->x) ||
            json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           read_side(o, w) || read_arc(o, 2, w);
+           scene_shapes_read_side(o, w) || read_arc(o, 2, w);
 }
 
 /* A chain of segments; closed: from the last point to the first, too */
-static int read_polygon(jnode o, struct scene *s, struct wall *w)
+static int scene_shapes_read_polygon(jnode o, struct scene *s, struct wall *w)
 {
     size_t n = 0;
     bool closed = true;
@@ -235,8 +235,8 @@ int scene_read_shape_2d(jnode o, const char *common, struct scene *s, struct wal
         { "segment", BOUNDARY_RECTANGLE, read_segment },
         { "circle", BOUNDARY_CYLINDER, read_circle },
         { "arc", BOUNDARY_CYLINDER, read_arc_2d },
-        { "polygon", BOUNDARY_MESH, read_polygon },
+        { "polygon", BOUNDARY_MESH, scene_shapes_read_polygon },
         { 0 },
     };
-    return read_shape(o, common, s, w, in_plane);
+    return scene_shapes_read_shape(o, common, s, w, in_plane);
 }

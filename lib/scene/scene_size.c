@@ -17,7 +17,7 @@ double scene_draw_normal(gsl_rng *rng, double sd)
     return (float)gsl_ran_gaussian(rng, sd);
 }
 
-static double within(const struct scene_size *z, double r)
+static double scene_size_within(const struct scene_size *z, double r)
 {
     return fmin(fmax(r, z->min), z->max);
 }
@@ -69,9 +69,9 @@ double scene_size_draw(const struct scene_size *z, gsl_rng *rng)
         if (z->min == z->max) return z->min;
         return gsl_ran_flat(rng, z->min, z->max);
     case SIZE_POWER:
-        return within(z, z->min * invert_power(z->exponent, z->min, z->max, gsl_rng_uniform(rng)));
+        return scene_size_within(z, z->min * invert_power(z->exponent, z->min, z->max, gsl_rng_uniform(rng)));
     case SIZE_SIEVE:
-        return within(z, draw_sieve(z, rng));
+        return scene_size_within(z, draw_sieve(z, rng));
     default:
         return draw_bell(z, rng);
     }

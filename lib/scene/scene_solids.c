@@ -30,7 +30,7 @@ static int make_box(struct shape *s, int dim, vec3 sides, struct why *why)
     return 0;
 }
 
-static int read_box(jnode o, struct shape *s, int dim)
+static int scene_solids_read_box(jnode o, struct shape *s, int dim)
 {
     jnode box = json_node_key(&o, "box");
     vec3 a = v3(1, 1, 1);
@@ -115,7 +115,7 @@ static int read_hull(jnode o, struct shape *s, int dim)
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
 }
 
-static int read_polygon(jnode o, struct shape *s)
+static int scene_solids_read_polygon(jnode o, struct shape *s)
 {
     size_t n;
     vec3 *x = read_points(json_node_key(&o, "polygon"), 2, 3, SHAPE_VERTICES_MOST, &n);
@@ -127,7 +127,7 @@ static int read_polygon(jnode o, struct shape *s)
 }
 
 /* The corners of a face */
-static int read_face(jnode face, struct shape *s, size_t room)
+static int scene_solids_read_face(jnode face, struct shape *s, size_t room)
 {
     size_t n;
     if (json_node_array(face, &n)) return 1;
@@ -157,7 +157,7 @@ static int read_polyhedron(jnode o, struct shape *s)
     s->faces = s->corners = 0;
     if (!bad && (faces < 4 || faces > 2 * n))
         return json_node_fault(list, "%zu faces close no body of %zu vertices", faces, n);
-    for (size_t f = 0; !bad && f < faces; f++) bad = read_face(json_node_item(&list, f), s, room);
+    for (size_t f = 0; !bad && f < faces; f++) bad = scene_solids_read_face(json_node_item(&list, f), s, room);
     return bad;
 }
 
@@ -223,7 +223,7 @@ static void turn_moments(double to[3][3], double of[3][3], double share)
 }
 
 /* "solid": what the balls of a clump stand for: its volume, m^3, its centre, m, and its inertia about that, m^5 */
-static int read_solid(jnode o, struct solid *as)
+static int scene_solids_read_solid(jnode o, struct solid *as)
 {
     jnode n = json_node_key(&o, "solid"), rows = json_node_key(&n, "inertia");
     double inertia[3][3];
@@ -320,11 +320,11 @@ static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const c
     if (why.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, why.text);
     if (why.status) return why_set(o.in->why, why.status, "%s", why.text);
     if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
-    return read_solid(o, as); // as who reads the rewritten scene gets it
+    return scene_solids_read_solid(o, as); // as who reads the rewritten scene gets it
 }
 
 /* A polyhedron, or a clump, from the triangles of a file */
-static int read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *scene)
+static int scene_solids_read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *scene)
 {
     const char *name = NULL;
     double scale = 1;
@@ -359,7 +359,7 @@ static int read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *s
 }
 
 /* x^p for x in [0, 1], the same on every machine: the last bits of pow() are not. */
-static double power(double x, double p)
+static double scene_solids_power(double x, double p)
 {
     return (double)(float)pow(x, p);
 }
@@ -399,11 +399,11 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
             if (rest < 0 || (dim == 2 && rest)) continue;
             for (int k = -rest; k <= rest; k += rest ? 2 * rest : 1) {
                 double length = sqrt(i * i + j * j + k * k), across = sqrt(i * i + j * j);
-                double R = dim == 2 ? 1 : power(across / length, 2 / m);
-                double cx = across > 0 ? power(abs(i) / across, 2 / n) : 0;
-                double cy = across > 0 ? power(abs(j) / across, 2 / n) : 0;
+                double R = dim == 2 ? 1 : scene_solids_power(across / length, 2 / m);
+                double cx = across > 0 ? scene_solids_power(abs(i) / across, 2 / n) : 0;
+                double cy = across > 0 ? scene_solids_power(abs(j) / across, 2 / n) : 0;
                 x[count++] = v3(copysign(a.x * R * cx, i), copysign(a.y * R * cy, j),
-                                copysign(a.z * power(abs(k) / length, 2 / m), k));
+                                copysign(a.z * scene_solids_power(abs(k) / length, 2 / m), k));
             }
         }
     struct why why = { 0 };
@@ -434,19 +434,19 @@ static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *s
         if (extra.json && which != (k ? 2 : 7))
             return json_node_fault(extra, "goes with %s", k ? "balls" : "mesh");
     }
-    return which == 0   ? read_box(o, s, dim)
+    return which == 0   ? scene_solids_read_box(o, s, dim)
            : which == 1 ? read_capsule(o, s)
-           : which == 2 ? read_balls(o, s, dim) || (dim == 3 && read_solid(o, as))
+           : which == 2 ? read_balls(o, s, dim) || (dim == 3 && scene_solids_read_solid(o, as))
            : which == 3 ? read_hull(o, s, dim)
            : which == 4 ? read_regular(o, s, dim)
            : which == 5 ? read_superquadric(o, s, dim)
-           : which == 7 ? read_mesh(o, s, as, scene)
-           : dim == 2   ? read_polygon(o, s)
+           : which == 7 ? scene_solids_read_mesh(o, s, as, scene)
+           : dim == 2   ? scene_solids_read_polygon(o, s)
                         : read_polyhedron(o, s);
 }
 
 /* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
-static int settle(jnode o, struct shape *s, const struct solid *as, int dim,
+static int scene_solids_settle(jnode o, struct shape *s, const struct solid *as, int dim,
                   struct solid_frame *solid)
 {
     struct why why = { 0 };
@@ -459,7 +459,7 @@ static int settle(jnode o, struct shape *s, const struct solid *as, int dim,
     return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
 }
 
-static int read_shape(jnode o, struct scene *s, const char *name)
+static int scene_solids_read_shape(jnode o, struct scene *s, const char *name)
 {
     struct shape shape = { 0 };
     struct solid_frame solid = { 0 };
@@ -469,7 +469,7 @@ static int read_shape(jnode o, struct scene *s, const char *name)
     bad = bad || (hull && json_node_number(json_node_key(&o, "round"), J_POSITIVE, &shape.round));
     for (int32_t i = 0; !bad && shape.form != SHAPE_CLUMP && i < shape.vertices; i++)
         shape.ball[i] = shape.round;
-    bad = bad || settle(o, &shape, &as, s->dim, &solid);
+    bad = bad || scene_solids_settle(o, &shape, &as, s->dim, &solid);
     if (!bad && !(shape.name = strdup(name)))
         bad = why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
     if (bad) return shape_free(&shape), 1;
@@ -495,7 +495,7 @@ int scene_read_shapes(jnode o, struct scene *s)
         const char *trouble = name_trouble_of_kind(name, strlen(name));
         if (trouble) return json_node_fault(n, "the name of a shape %s", trouble);
         if (!strcmp(name, "ball")) return json_node_fault(n, "a ball is a ball");
-        if (read_shape(n, s, name)) return 1;
+        if (scene_solids_read_shape(n, s, name)) return 1;
     }
     return 0;
 }

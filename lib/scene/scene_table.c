@@ -45,7 +45,7 @@ static const char *const column_name[NAMES] = { "x",  "y",  "z",  "r",  "d",    
                                                 "vx", "vy", "vz", "wx", "wy",   "wz",   "qw",
                                                 "qx", "qy", "qz", "id", "kind", "fixed" };
 
-struct table {
+struct grains_table {
     const char *path;
     int64_t line; /* its number, from 1 */
     const struct scene *scene;
@@ -56,7 +56,7 @@ struct table {
     bool endless; /* perhaps: it is no file, whose size says how long it is */
 };
 
-static int fault(const struct table *t, struct why *why, const char *trouble, const char *word)
+static int grains_fault(const struct grains_table *t, struct why *why, const char *trouble, const char *word)
 {
     return why_set(why, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line, trouble,
                    word ? " \"" : "", word ? word : "", word ? "\"" : "");
@@ -87,20 +87,20 @@ static bool of_space(enum heading c)
     return c == Z || c == VZ || c == WX || c == WY;
 }
 
-static int add_column(struct table *t, char *word, struct why *why)
+static int grains_add_column(struct grains_table *t, char *word, struct why *why)
 {
     int k = name_index(word);
-    if (k < 0) return fault(t, why, "no column is called", word);
-    if (t->has[k]) return fault(t, why, "named twice: the column", word);
+    if (k < 0) return grains_fault(t, why, "no column is called", word);
+    if (t->has[k]) return grains_fault(t, why, "named twice: the column", word);
     if (t->scene->dim == 2 && of_space((enum heading)k))
-        return fault(t, why, "the scene's dim is 2, there is no column", word);
+        return grains_fault(t, why, "the scene's dim is 2, there is no column", word);
     t->has[k] = true;
     t->column[t->n++] = (enum heading)k; // at most NAMES, for none comes twice
     return 0;
 }
 
 /* The columns that the first line, a comment, names: if its first two words are names. */
-static int read_names(struct table *t, char *line, struct why *why)
+static int grains_read_names(struct grains_table *t, char *line, struct why *why)
 {
     char copy[LINE], *at = strcpy(copy, line), *first = next_word(&at), *second = next_word(&at);
     if (!first || !second || name_index(first) < 0 || name_index(second) < 0) return 0;
@@ -108,18 +108,18 @@ static int read_names(struct table *t, char *line, struct why *why)
     memset(t->has, 0, sizeof t->has);
     char *word;
     for (at = line; (word = next_word(&at));)
-        if (add_column(t, word, why)) return why->status;
+        if (grains_add_column(t, word, why)) return why->status;
     for (int k = X; k <= Z; k++)
         if (!t->has[k] && !(k == Z && t->scene->dim == 2))
-            return fault(t, why, "there is no column", column_name[k]);
-    if (!t->has[R] && !t->has[D]) return fault(t, why, "there is no column", "r");
-    if (t->has[R] && t->has[D]) return fault(t, why, "both r and", "d");
-    if (t->has[MASS] && t->has[DENSITY]) return fault(t, why, "both mass and", "density");
+            return grains_fault(t, why, "there is no column", column_name[k]);
+    if (!t->has[R] && !t->has[D]) return grains_fault(t, why, "there is no column", "r");
+    if (t->has[R] && t->has[D]) return grains_fault(t, why, "both r and", "d");
+    if (t->has[MASS] && t->has[DENSITY]) return grains_fault(t, why, "both mass and", "density");
     int q = t->has[QW] + t->has[QX] + t->has[QY] + t->has[QZ];
-    return !q || q == 4 ? 0 : fault(t, why, "an orientation is qw qx qy qz", NULL);
+    return !q || q == 4 ? 0 : grains_fault(t, why, "an orientation is qw qx qy qz", NULL);
 }
 
-static void usual_columns(struct table *t)
+static void usual_columns(struct grains_table *t)
 {
     static const enum heading usual[] = { X, Y, Z, R };
     t->n = 0;
@@ -130,41 +130,41 @@ static void usual_columns(struct table *t)
 
 /* ---- a line ---- */
 
-static int fault_usual(const struct table *t, struct why *why)
+static int fault_usual(const struct grains_table *t, struct why *why)
 {
-    return fault(t, why, t->scene->dim == 2 ? "needs x y r" : "needs x y z r", NULL);
+    return grains_fault(t, why, t->scene->dim == 2 ? "needs x y r" : "needs x y z r", NULL);
 }
 
-static int read_number(const struct table *t, enum heading c, const char *word, double *x,
+static int read_number(const struct grains_table *t, enum heading c, const char *word, double *x,
                        struct why *why)
 {
     char *end, text[80];
     *x = number_read(word, &end);
     if (*end && !t->named) return fault_usual(t, why);
     snprintf(text, sizeof text, "%s: not a number:", column_name[c]);
-    if (*end) return fault(t, why, text, word);
+    if (*end) return grains_fault(t, why, text, word);
     snprintf(text, sizeof text, "%s: not finite", column_name[c]);
-    if (!isfinite(*x)) return fault(t, why, t->named ? text : "not finite", NULL);
+    if (!isfinite(*x)) return grains_fault(t, why, t->named ? text : "not finite", NULL);
     snprintf(text, sizeof text, "the %s must be positive", c == R ? "radius" : column_name[c]);
     bool positive = c == R || c == D || c == MASS || c == DENSITY;
-    if (positive && !(*x > 0)) return fault(t, why, text, NULL);
+    if (positive && !(*x > 0)) return grains_fault(t, why, text, NULL);
     bool whole = *x == floor(*x) && *x >= 0 && *x <= INT32_MAX;
-    if (c == ID && !whole) return fault(t, why, "an id must be a whole number:", word);
-    if (c == FIXED && *x != 0 && *x != 1) return fault(t, why, "fixed must be 0 or 1:", word);
+    if (c == ID && !whole) return grains_fault(t, why, "an id must be a whole number:", word);
+    if (c == FIXED && *x != 0 && *x != 1) return grains_fault(t, why, "fixed must be 0 or 1:", word);
     return 0;
 }
 
-static int read_kind(const struct table *t, const char *word, int32_t *kind, struct why *why)
+static int read_kind(const struct grains_table *t, const char *word, int32_t *kind, struct why *why)
 {
     for (int32_t k = 0; k < t->scene->kinds; k++) {
         if (strcmp(t->scene->kind[k].name, word) != 0) continue;
         *kind = k;
         return 0;
     }
-    return fault(t, why, "the scene names no kind", word);
+    return grains_fault(t, why, "the scene names no kind", word);
 }
 
-static int make_grain(const struct table *t, const double *x, struct grain *g, struct why *why)
+static int make_grain(const struct grains_table *t, const double *x, struct grain *g, struct why *why)
 {
     *g = grain_at(v3(x[X], x[Y], x[Z]), t->has[D] ? 0.5 * x[D] : x[R]);
     g->mass = x[MASS], g->density = x[DENSITY];
@@ -176,12 +176,12 @@ static int make_grain(const struct table *t, const double *x, struct grain *g, s
     if (!t->has[QW]) return 0;
     quat q = { x[QW], x[QX], x[QY], x[QZ] };
     double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    if (!(fabs(length - 1) < 1e-3)) return fault(t, why, "qw qx qy qz is no unit quaternion", NULL);
+    if (!(fabs(length - 1) < 1e-3)) return grains_fault(t, why, "qw qx qy qz is no unit quaternion", NULL);
     g->q = quat_unit(q);
     return 0;
 }
 
-static int read_line(struct table *t, char *line, struct grains *out, struct why *why)
+static int read_line(struct grains_table *t, char *line, struct grains *out, struct why *why)
 {
     double x[NAMES] = { 0 };
     int32_t kind = -1;
@@ -197,10 +197,10 @@ static int read_line(struct table *t, char *line, struct grains *out, struct why
     }
     if (!n) return 0;
     if (word || n != t->n)
-        return t->named ? fault(t, why, "not as many words as columns", NULL) : fault_usual(t, why);
-    if (out->n == MOST_ROWS) return fault(t, why, "a table of too many bodies", NULL);
+        return t->named ? grains_fault(t, why, "not as many words as columns", NULL) : fault_usual(t, why);
+    if (out->n == MOST_ROWS) return grains_fault(t, why, "a table of too many bodies", NULL);
     if (t->endless && out->n == MOST_PIPED)
-        return fault(t, why, "too many bodies for a pipe (endless?): put the table into a file",
+        return grains_fault(t, why, "too many bodies for a pipe (endless?): put the table into a file",
                      NULL);
     if (make_grain(t, x, &g, why)) return why->status;
     g.kind = kind;
@@ -208,7 +208,7 @@ static int read_line(struct table *t, char *line, struct grains *out, struct why
 }
 
 /* A line of a table without its newline; false at the end, and where it is too long. */
-static bool next_line(FILE *f, char line[LINE], const struct table *t, struct why *why)
+static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table *t, struct why *why)
 {
     size_t n = 0;
     int c = 0;
@@ -221,27 +221,27 @@ static bool next_line(FILE *f, char line[LINE], const struct table *t, struct wh
     return n || c != EOF;
 }
 
-static int read_lines(struct table *t, FILE *f, struct grains *out, struct why *why)
+static int read_lines(struct grains_table *t, FILE *f, struct grains *out, struct why *why)
 {
     char line[LINE] = "";
-    for (t->line = 1; !why->status && next_line(f, line, t, why); t->line++) {
+    for (t->line = 1; !why->status && grains_next_line(f, line, t, why); t->line++) {
         if (t->endless && t->line > MOST_LINES)
-            return fault(t, why, "too many lines for a pipe (endless?): put the table into a file",
+            return grains_fault(t, why, "too many lines for a pipe (endless?): put the table into a file",
                          NULL);
         char *s = line + (t->line == 1 ? mark_length(line, strlen(line)) : 0);
         s += strspn(s, " \t\r\v\f");
         if (t->line == 1 && *s == '#')
-            read_names(t, s + 1, why);
+            grains_read_names(t, s + 1, why);
         else
             read_line(t, s, out, why);
     }
     return why->status;
 }
 
-static int read_table(struct grains *out, const struct scene *s, const char *path, struct why *why)
+static int grains_read_table(struct grains *out, const struct scene *s, const char *path, struct why *why)
 {
     struct stat st;
-    struct table t = { .path = path, .scene = s };
+    struct grains_table t = { .path = path, .scene = s };
     usual_columns(&t);
     FILE *f = fopen(path, "r");
     if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
@@ -260,7 +260,7 @@ int grains_of_table(struct grains *out, const struct scene *s, const char *dir, 
 {
     char *path = scene_path(dir, name);
     if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
-    read_table(out, s, path, why);
+    grains_read_table(out, s, path, why);
     free(path);
     return why->status;
 }

@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-static int read_side(jnode n, double lo_hi[2])
+static int scene_walls_read_side(jnode n, double lo_hi[2])
 {
     size_t count;
     if (!n.json) return 0;
@@ -21,14 +21,14 @@ int scene_read_box(jnode o, int dim, struct scene_box *b)
     if (json_node_only(o, dim == 2 ? "x y" : "x y z")) return 1;
     for (int i = 0; i < 3; i++) {
         double side[2] = { -INFINITY, INFINITY };
-        if (i < dim && read_side(json_node_key(&o, axis_name[i]), side)) return 1;
+        if (i < dim && scene_walls_read_side(json_node_key(&o, axis_name[i]), side)) return 1;
         b->lo[i] = side[0], b->hi[i] = side[1];
     }
     return 0;
 }
 
 /* Makes a vector of any length a unit vector; false where it is zero. */
-static bool direction(vec3 *n)
+static bool scene_walls_direction(vec3 *n)
 {
     double most =
         fmax(fabs(n->x), fmax(fabs(n->y), fabs(n->z))); // scaled by it so that no square overflows
@@ -43,7 +43,7 @@ int scene_read_direction(jnode n, int dim, vec3 *out)
 {
     if (!n.json) return 0;
     if (json_node_vector(n, dim, out)) return 1;
-    return direction(out) ? 0 : json_node_fault(n, "must not be zero");
+    return scene_walls_direction(out) ? 0 : json_node_fault(n, "must not be zero");
 }
 
 /* ---- what a boundary yields to ---- */
@@ -110,7 +110,7 @@ static int read_load(jnode o, struct scene *s, struct wall *w)
 #define COMMON "name velocity belt kind drives until weld wear"
 
 /* Adds a wall, and its drives. */
-static int add_wall(jnode o, struct scene *s, struct wall w)
+static int scene_walls_add_wall(jnode o, struct scene *s, struct wall w)
 {
     w.first_drive = s->drives.n;
     if (scene_read_drives(json_node_key(&o, "drives"), s, s->walls)) return 1;
@@ -132,14 +132,14 @@ static int add_box(jnode o, struct scene *s, struct wall w, const struct scene_b
         for (int k = 0; k < 2; k++) {
             w.x = v3_axpy(zero, k ? -side[1] : side[0], k ? v3_scale(-1, axis) : axis);
             w.n = k ? v3_axpy(zero, -1, axis) : axis;
-            if (isfinite(side[k]) && add_wall(o, s, w)) return 1;
+            if (isfinite(side[k]) && scene_walls_add_wall(o, s, w)) return 1;
         }
     }
     return 0;
 }
 
 /* Faces that are of another kind, or move along themselves otherwise, than the surface that is to be added */
-static int read_part(jnode o, struct scene *s, const struct wall *w)
+static int scene_walls_read_part(jnode o, struct scene *s, const struct wall *w)
 {
     struct scene_part part = { .wall = s->walls, .kind = w->kind, .belt = w->belt };
     jnode faces = json_node_key(&o, "faces");
@@ -159,7 +159,7 @@ static int read_part(jnode o, struct scene *s, const struct wall *w)
     return 0;
 }
 
-static int read_materials(jnode a, struct scene *s, const struct wall *w)
+static int scene_walls_read_materials(jnode a, struct scene *s, const struct wall *w)
 {
     size_t n = 0;
     if (!a.json) return 0;
@@ -170,7 +170,7 @@ static int read_materials(jnode a, struct scene *s, const struct wall *w)
             a, "a surface with a load has one kind: its parts would move by themselves");
     if (json_node_array(a, &n)) return 1;
     for (size_t i = 0; i < n; i++)
-        if (read_part(json_node_item(&a, i), s, w)) return 1;
+        if (scene_walls_read_part(json_node_item(&a, i), s, w)) return 1;
     return 0;
 }
 
@@ -182,10 +182,10 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
         scene_read_direction(json_node_key(&o, "normal"), s->dim, &w.n) ||
         read_load(json_node_key(&o, "load"), s, &w))
         return 1;
-    return add_wall(o, s, w);
+    return scene_walls_add_wall(o, s, w);
 }
 
-static int read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box, bool *boxed)
+static int scene_walls_read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box, bool *boxed)
 {
     struct scene_box b;
     if (json_node_only(o, "box " COMMON) || scene_read_box(json_node_key(&o, "box"), s->dim, &b) ||
@@ -209,13 +209,13 @@ static int read_wall(jnode o, struct scene *s, struct scene_box *box, bool *boxe
         json_node_number(json_node_key(&o, "wear"), J_NOT_NEGATIVE, &w.wear))
         return 1;
     if (which == 0) return read_plane(o, s, w);
-    if (which == 1) return read_box(o, s, w, box, boxed);
+    if (which == 1) return scene_walls_read_box(o, s, w, box, boxed);
     int e = s->dim == 2 ? scene_read_shape_2d(o, "load materials " COMMON, s, &w)
                         : scene_read_shape_3d(o, "load materials " COMMON, s, &w);
     if (e || read_load(json_node_key(&o, "load"), s, &w) ||
-        read_materials(json_node_key(&o, "materials"), s, &w))
+        scene_walls_read_materials(json_node_key(&o, "materials"), s, &w))
         return 1;
-    return add_wall(o, s, w);
+    return scene_walls_add_wall(o, s, w);
 }
 
 int scene_read_walls(jnode a, struct scene *s, struct scene_box *box, bool *boxed)

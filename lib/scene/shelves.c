@@ -9,7 +9,7 @@ struct cursor {
     double at[3], end[3];
 };
 
-static int larger_first(const void *one, const void *other)
+static int shelves_larger_first(const void *one, const void *other)
 {
     const struct grain *a = *(struct grain *const *)one, *b = *(struct grain *const *)other;
     if (a->r != b->r) return a->r > b->r ? -1 : 1;
@@ -34,7 +34,7 @@ static bool move_on(struct cursor *c, int k)
 }
 
 /* Finds room for a cell at the cursor: in its row, else in a new row, else on a new shelf. */
-static bool place(struct cursor *c, double edge)
+static bool random_start_place(struct cursor *c, double edge)
 {
     for (int k = 0; k < c->dim; k++) {
         if (fits(c, k, edge)) continue;
@@ -46,7 +46,7 @@ static bool place(struct cursor *c, double edge)
 }
 
 /* Grain g into a cell of its own, moved at random as far as it stays in it. */
-static void settle(struct grain *g, const struct cursor *c, double edge, double jitter,
+static void random_start_settle(struct grain *g, const struct cursor *c, double edge, double jitter,
                    gsl_rng *rng)
 {
     double x[3] = { 0 };
@@ -66,7 +66,7 @@ int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_
     struct grain **sorted = malloc(((size_t)out->n + 1) * sizeof(struct grain *));
     if (!sorted) return why_set(why, EX_SOFTWARE, "no memory for a lattice");
     for (int64_t i = 0; i < out->n; i++) sorted[i] = &out->g[i];
-    qsort(sorted, (size_t)out->n, sizeof(struct grain *), larger_first);
+    qsort(sorted, (size_t)out->n, sizeof(struct grain *), shelves_larger_first);
     struct cursor c = { .dim = dim, .box = &b->box };
     struct scene_box open = b->box;
     int64_t went =
@@ -75,12 +75,12 @@ int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_
     for (int k = 0; k < dim; k++) c.at[k] = c.end[k] = b->box.lo[k];
     for (int64_t i = 0; i < out->n && !why->status; i++) {
         double edge = 2 * b->spacing * sorted[i]->r;
-        bool placed = place(&c, edge);
-        if (!placed && went < 0) went = i, c.box = &open, placed = place(&c, edge);
+        bool placed = random_start_place(&c, edge);
+        if (!placed && went < 0) went = i, c.box = &open, placed = random_start_place(&c, edge);
         if (!placed)
             why_set(why, EX_DATAERR, "the box is narrower than a cell of %.4g m", edge);
         else
-            settle(sorted[i], &c, edge, b->jitter, rng);
+            random_start_settle(sorted[i], &c, edge, b->jitter, rng);
         c.at[0] += edge;
     }
     if (went >= 0 && !why->status)

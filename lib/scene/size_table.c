@@ -33,7 +33,7 @@ static double power_below(double a, double lo, double hi, double r)
     return fabs(all * b) < 1e-9 ? x / all : expm1(x * b) / expm1(all * b);
 }
 
-static double normal_below(double z)
+static double size_table_normal_below(double z)
 {
     return 0.5 * erfc(-z * M_SQRT1_2);
 }
@@ -44,7 +44,7 @@ static double bell_below(const struct scene_size *z, double r)
     const double lo = (gauss ? z->min - z->mid : log(z->min / z->mid)) / z->spread,
                  hi = (gauss ? z->max - z->mid : log(z->max / z->mid)) / z->spread,
                  at = (gauss ? r - z->mid : log(r / z->mid)) / z->spread;
-    return (normal_below(at) - normal_below(lo)) / (normal_below(hi) - normal_below(lo));
+    return (size_table_normal_below(at) - size_table_normal_below(lo)) / (size_table_normal_below(hi) - size_table_normal_below(lo));
 }
 
 static double sieve_below(const struct scene_size *z, double r)
@@ -102,7 +102,7 @@ int size_table_asked(struct size_table *t, const struct scene_size *z, int dim, 
     return 0;
 }
 
-static int by_value(const void *one, const void *other)
+static int size_table_by_value(const void *one, const void *other)
 {
     const double a = *(const double *)one, b = *(const double *)other;
     return (a > b) - (a < b);
@@ -113,7 +113,7 @@ int size_table_drawn(struct size_table *t, const double *radius, int64_t n, int 
 {
     if (size_table_alloc(t, n, why)) return why->status;
     for (int64_t i = 0; i < n; i++) t->d[i] = 2 * radius[i];
-    qsort(t->d, (size_t)n, sizeof *t->d, by_value);
+    qsort(t->d, (size_t)n, sizeof *t->d, size_table_by_value);
     for (int64_t i = 0; i < n; i++) {
         t->below[SIZE_BY_NUMBER][i] = 1;
         t->below[SIZE_BY_MASS][i] = pow(t->d[i] / t->d[n - 1], dim);

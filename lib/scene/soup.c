@@ -29,7 +29,7 @@ int soup_fault(struct soup *s, const char *format, ...)
                    trouble);
 }
 
-static int no_memory(struct soup *s)
+static int soup_no_memory(struct soup *s)
 {
     return why_set(s->why, EX_SOFTWARE, "%s: no memory for a mesh", s->name);
 }
@@ -49,25 +49,25 @@ int soup_corner(struct soup *s, vec3 x)
     if (s->corners == s->corner_room) {
         s->corner_room += s->corner_room / 2 + 1024;
         vec3 *more = realloc(s->corner, (size_t)s->corner_room * sizeof *more);
-        if (!more) return no_memory(s);
+        if (!more) return soup_no_memory(s);
         s->corner = more;
     }
     s->corner[s->corners++] = v3(x.x + 0.0, x.y + 0.0, x.z + 0.0); // no -0
     return 0;
 }
 
-static int make_room(struct soup *s, int64_t triangles)
+static int soup_make_room(struct soup *s, int64_t triangles)
 {
     if (s->triangles + triangles > SOUP_TRIANGLES_MOST)
         return soup_fault(s, "more than %d triangles", SOUP_TRIANGLES_MOST);
     if (s->triangles + triangles <= s->triangle_room) return 0;
     s->triangle_room += s->triangle_room / 2 + (int32_t)triangles + 1024;
     int32_t(*more)[3] = realloc(s->triangle, (size_t)s->triangle_room * sizeof *more);
-    if (!more) return no_memory(s);
+    if (!more) return soup_no_memory(s);
     s->triangle = more;
     if (!s->grouped) return 0;
     int32_t *of = realloc(s->part_of, (size_t)s->triangle_room * sizeof *of);
-    if (!of) return no_memory(s);
+    if (!of) return soup_no_memory(s);
     s->part_of = of;
     return 0;
 }
@@ -87,9 +87,9 @@ static int find_part(struct soup *s)
     if (s->parts == SOUP_PARTS_MOST)
         return soup_fault(s, "more than %d groups of polygons", SOUP_PARTS_MOST);
     char **more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
-    if (!more) return no_memory(s);
+    if (!more) return soup_no_memory(s);
     s->part = more;
-    if (!(s->part[s->parts] = strdup(both))) return no_memory(s);
+    if (!(s->part[s->parts] = strdup(both))) return soup_no_memory(s);
     s->now = s->parts++;
     return 0;
 }
@@ -111,7 +111,7 @@ int soup_label(struct soup *s, int which, const char *name, int n)
     return 0;
 }
 
-static bool same_place(vec3 a, vec3 b)
+static bool soup_same_place(vec3 a, vec3 b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
 }
@@ -128,11 +128,11 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
             return soup_fault(s, "a polygon has a corner that does not exist (%lld of %d)",
                               (long long)corner[k] + 1, s->corners);
         vec3 at = s->corner[corner[k]];
-        if (kept && same_place(at, x[kept - 1])) continue;
+        if (kept && soup_same_place(at, x[kept - 1])) continue;
         x[kept] = at, number[kept++] = (int32_t)corner[k];
     }
-    while (kept > 1 && same_place(x[kept - 1], x[0])) kept--;
-    if (make_room(s, n - 2) || (s->grouped && find_part(s))) return s->why->status;
+    while (kept > 1 && soup_same_place(x[kept - 1], x[0])) kept--;
+    if (soup_make_room(s, n - 2) || (s->grouped && find_part(s))) return s->why->status;
     int32_t(*t)[3] = s->triangle + s->triangles;
     const char *trouble = NULL;
     if (kept <= 3)
@@ -149,7 +149,7 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
 
 /* ---- a mesh of it ---- */
 
-static int by_place(const void *one, const void *other, void *of)
+static int soup_by_place(const void *one, const void *other, void *of)
 {
     const vec3 *x = of;
     int32_t i = *(const int32_t *)one, j = *(const int32_t *)other;
@@ -173,11 +173,11 @@ static int join_corners(struct soup *s)
     int32_t *order = count_up(s->corners), *first = count_up(s->corners);
     if (!order || !first) {
         free(order), free(first);
-        return no_memory(s);
+        return soup_no_memory(s);
     }
-    qsort_r(order, (size_t)s->corners, sizeof *order, by_place, s->corner);
+    qsort_r(order, (size_t)s->corners, sizeof *order, soup_by_place, s->corner);
     for (int32_t i = 1; i < s->corners; i++)
-        if (same_place(s->corner[order[i]], s->corner[order[i - 1]]))
+        if (soup_same_place(s->corner[order[i]], s->corner[order[i - 1]]))
             first[order[i]] = first[order[i - 1]];
     for (int32_t i = 0; i < s->triangles; i++)
         for (int k = 0; k < 3; k++) s->triangle[i][k] = first[s->triangle[i][k]];
@@ -215,7 +215,7 @@ static int by_corners(const void *one, const void *other, void *of)
 static int mark_repeated(struct soup *s)
 {
     int32_t *order = count_up(s->triangles), last = 0;
-    if (!order) return no_memory(s);
+    if (!order) return soup_no_memory(s);
     qsort_r(order, (size_t)s->triangles, sizeof *order, by_corners, s->triangle);
     for (int32_t i = 1; i < s->triangles; i++) {
         bool same = !compare_corners(s->triangle[order[i]], s->triangle[order[last]]);
@@ -281,12 +281,12 @@ static int judge_numbers(struct soup *s, double scale)
     return 0;
 }
 
-static int add_to(struct mesh *to, struct soup *s, double scale)
+static int soup_add_to(struct mesh *to, struct soup *s, double scale)
 {
     int32_t *number = malloc(((size_t)s->corners + 1) * sizeof *number), first = to->vertices;
     vec3 *vertex;
     int32_t(*element)[3];
-    if (!number) return no_memory(s);
+    if (!number) return soup_no_memory(s);
     if (to->elements > SOUP_TRIANGLES_MOST - s->triangles)
         soup_fault(s, "more than %d triangles, with those of other files", SOUP_TRIANGLES_MOST);
     else if (!mesh_grow(to, number_corners(s, number), s->triangles, &vertex, &element, s->why)) {
@@ -307,5 +307,5 @@ int soup_mesh(struct mesh *to, struct soup *s, double scale, int32_t *left_out)
     leave_out(s, scale);
     *left_out = all - s->triangles;
     if (!s->triangles) return soup_fault(s, all ? "no triangle with an area" : "no triangles");
-    return judge_numbers(s, scale) || add_to(to, s, scale) ? s->why->status : 0;
+    return judge_numbers(s, scale) || soup_add_to(to, s, scale) ? s->why->status : 0;
 }

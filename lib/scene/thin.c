@@ -17,7 +17,7 @@ static int by_cell(const void *one, const void *other)
 }
 
 /* The first of c[n], which are sorted, that is not before `wanted` */
-static int64_t find(const struct celled *c, int64_t n, const struct celled *wanted)
+static int64_t hull_find(const struct celled *c, int64_t n, const struct celled *wanted)
 {
     int64_t lo = 0;
     for (int64_t hi = n; lo < hi;) {
@@ -37,7 +37,7 @@ static int32_t find_near(const struct celled *c, int64_t n, struct celled at, co
     for (int row = 0; row < 9; row++) {
         const int64_t i = at.cell[0] + row / 3 - 1, j = at.cell[1] + row % 3 - 1, k = at.cell[2];
         const struct celled lo = { { i, j, k - 1 }, -1 }, hi = { { i, j, k + 2 }, -1 };
-        for (int64_t m = find(c, n, &lo); m < n && by_cell(&c[m], &hi) < 0; m++)
+        for (int64_t m = hull_find(c, n, &lo); m < n && by_cell(&c[m], &hi) < 0; m++)
             if (v3_norm(v3_sub(x[c[m].point], x[at.point])) <= apart) return c[m].point;
     }
     return -1;

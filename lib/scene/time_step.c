@@ -71,7 +71,7 @@ static double smallest(const struct scene *s, const struct packing *p)
 }
 
 /* a^dim */
-static double power(double a, int dim)
+static double time_step_power(double a, int dim)
 {
     return dim == 1 ? a : dim == 2 ? a * a : a * a * a;
 }
@@ -81,7 +81,7 @@ static double lightest(const struct packing *p)
 {
     double most = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) most = dmax(most, power(2 * p->radius[i], p->dim - 1) / p->mass[i]);
+        if (p->mass[i] > 0) most = dmax(most, time_step_power(2 * p->radius[i], p->dim - 1) / p->mass[i]);
     return most;
 }
 
@@ -110,7 +110,7 @@ static double norm_of(double L[3][3])
     return sqrt(sum);
 }
 
-static double strain_of(const struct cell *c)
+static double time_step_strain_of(const struct cell *c)
 {
     vec3 inverse[3];
     double L[3][3], most;
@@ -200,16 +200,16 @@ static double lowest_surface(const struct packing *p, vec3 up)
 }
 
 /* Boundaries, and the surfaces of meshes, below bodies that fall */
-struct ground {
+struct time_step_ground {
     const struct packing *p;
     vec3 up;
     double low;              /* m: where surfaces end below */
     struct surface *surface; /* [walls] of meshes; NULL where memory is short: these are not seen */
 };
 
-static struct ground ground_of(const struct packing *p, vec3 up)
+static struct time_step_ground ground_of(const struct packing *p, vec3 up)
 {
-    struct ground g = { p, up, lowest_surface(p, up), NULL };
+    struct time_step_ground g = { p, up, lowest_surface(p, up), NULL };
     struct why why = { 0 };
     g.surface = calloc((size_t)p->walls + 1, sizeof *g.surface);
     for (int32_t k = 0; g.surface && k < p->walls; k++) {
@@ -221,7 +221,7 @@ static struct ground ground_of(const struct packing *p, vec3 up)
     return g;
 }
 
-static void ground_free(struct ground *g)
+static void ground_free(struct time_step_ground *g)
 {
     for (int32_t k = 0; g->surface && k < g->p->walls; k++) surface_free(&g->surface[k]);
     free(g->surface);
@@ -230,7 +230,7 @@ static void ground_free(struct ground *g)
 enum { HALVINGS = 40 }; /* of the way down, to where a surface is */
 
 /* m: how high x is above the rectangle, disc or mesh that is within `most` (m) below it; INFINITY: it is not */
-static double above_surface(const struct ground *g, int32_t k, vec3 x, double most)
+static double above_surface(const struct time_step_ground *g, int32_t k, vec3 x, double most)
 {
     const struct packing *p = g->p;
     const struct wall *w = &p->wall[k];
@@ -252,7 +252,7 @@ static double above_surface(const struct ground *g, int32_t k, vec3 x, double mo
 }
 
 /* m: how high x is above what is below it; INFINITY: nothing is */
-static double above_ground(const struct ground *g, vec3 x)
+static double above_ground(const struct time_step_ground *g, vec3 x)
 {
     double least = above_planes(g->p, x, g->up), most = v3_dot(x, g->up) - g->low;
     most = isfinite(g->low) ? dmin(least, dmax(0, most) * (1 + 1e-9)) : least;
@@ -262,7 +262,7 @@ static double above_ground(const struct ground *g, vec3 x)
 }
 
 /* Two unit vectors across a third; in the plane the second is z */
-static void across(int dim, vec3 n, vec3 side[2])
+static void time_step_across(int dim, vec3 n, vec3 side[2])
 {
     vec3 z = v3(0, 0, 1);
     side[0] = dim == 2 || fabs(n.z) < 0.5 ? v3_cross(n, z) : v3_cross(n, v3(1, 0, 0));
@@ -271,7 +271,7 @@ static void across(int dim, vec3 n, vec3 side[2])
 }
 
 /* m: from where to where the bodies reach in a direction */
-static void extent(const struct packing *p, vec3 n, double range[2])
+static void time_step_extent(const struct packing *p, vec3 n, double range[2])
 {
     range[0] = INFINITY, range[1] = -INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
@@ -334,14 +334,14 @@ struct stack {
     double volume;      /* m^3, in the plane m^2 */
 };
 
-static double volume_of(const struct packing *p, int64_t i)
+static double time_step_volume_of(const struct packing *p, int64_t i)
 {
     const struct shape *s = packing_shape(p, i);
     double unit = s ? s->volume : p->dim == 2 ? M_PI : 4 * M_PI / 3;
-    return unit * power(p->radius[i], p->dim);
+    return unit * time_step_power(p->radius[i], p->dim);
 }
 
-static void column_add(struct stack *c, const struct ground *g, int64_t i, bool rests)
+static void column_add(struct stack *c, const struct time_step_ground *g, int64_t i, bool rests)
 {
     const struct packing *p = g->p;
     double z = v3_dot(p->x[i], g->up), r = p->radius[i], h;
@@ -355,7 +355,7 @@ static void column_add(struct stack *c, const struct ground *g, int64_t i, bool 
     }
     c->top = dmax(c->top, z + r), h = above_ground(g, p->x[i]);
     c->bottom = dmin(c->bottom, isfinite(h) ? z - h : dmin(z - r, g->low));
-    c->volume += volume_of(p, i);
+    c->volume += time_step_volume_of(p, i);
 }
 
 /* m: how far the highest bodies fall until they rest on those below them, or on walls */
@@ -363,13 +363,13 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
 {
     struct stack column[COLUMNS * COLUMNS];
     double large = packing_whole(p).large, from[2] = { 0 }, width[2] = { 1, 1 }, most = 0;
-    struct ground ground = ground_of(p, up);
+    struct time_step_ground ground = ground_of(p, up);
     int n[2] = { 1, 1 };
     vec3 side[2];
-    across(p->dim, up, side);
+    time_step_across(p->dim, up, side);
     for (int a = 0; a < p->dim - 1; a++) {
         double range[2];
-        extent(p, side[a], range);
+        time_step_extent(p, side[a], range);
         from[a] = range[0];
         n[a] = (int)dmax(1, dmin(COLUMNS, (range[1] - range[0]) / (WIDE * large)));
         width[a] = (range[1] - range[0]) / n[a];
@@ -404,10 +404,10 @@ static double fall_of_pour(const struct scene_pour *pour, const struct packing *
         x = v3((lo[0] + hi[0]) / 2, (lo[1] + hi[1]) / 2, p->dim == 2 ? 0 : (lo[2] + hi[2]) / 2);
         reach = v3_sub(v3(hi[0], hi[1], p->dim == 2 ? 0 : hi[2]), x);
     }
-    struct ground ground = ground_of(p, up);
+    struct time_step_ground ground = ground_of(p, up);
     double h = above_ground(&ground, x);
     ground_free(&ground);
-    extent(p, up, range);
+    time_step_extent(p, up, range);
     low = isfinite(h) ? h : dmax(0, p->n ? v3_dot(x, up) - range[0] : 0);
     return low + fabs(up.x * reach.x) + fabs(up.y * reach.y) + fabs(up.z * reach.z);
 }
@@ -442,9 +442,9 @@ static double pressed_area(const struct packing *p, vec3 axis)
 {
     vec3 side[2];
     double area = 1, range[2];
-    across(p->dim, axis, side);
+    time_step_across(p->dim, axis, side);
     for (int a = 0; a < p->dim - 1; a++) {
-        extent(p, side[a], range);
+        time_step_extent(p, side[a], range);
         area *= range[1] - range[0];
     }
     return area;
@@ -538,7 +538,7 @@ double time_step_wall_mass(const struct packing *p, const struct wall *w)
 {
     double mass = 0, face = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) mass += p->mass[i], face += power(2 * p->radius[i], p->dim - 1);
+        if (p->mass[i] > 0) mass += p->mass[i], face += time_step_power(2 * p->radius[i], p->dim - 1);
     return face > 0 ? mass / face * pressed_area(p, w->load.axis) : 0;
 }
 
@@ -580,7 +580,7 @@ void time_step_of(struct time_step *t, const struct scene *s, const struct packi
     t->x[LIMIT_GRAVITY] = v3_norm(p->g);
     t->x[LIMIT_PRESSURE] = pressure_of(p) * lightest(p);
     of_loads(t, p);
-    t->x[LIMIT_STRAIN] = strain_of(&p->cell);
+    t->x[LIMIT_STRAIN] = time_step_strain_of(&p->cell);
     t->x[LIMIT_SPEED] = start_speed(s, p);
     t->x[LIMIT_FALL] = fall_speed(s, p, t->x[LIMIT_SPEED]);
     of_walls(t, p);

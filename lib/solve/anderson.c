@@ -132,7 +132,7 @@ static void measure_chunks(void *arg, int64_t first, int64_t end)
 }
 
 /* The terms of one slot, component by component, as mixing's measure() has just added them */
-static void take_terms(const struct anderson *a, int64_t slot, double *term)
+static void anderson_take_terms(const struct anderson *a, int64_t slot, double *term)
 {
     const struct problem *p = a->s->p;
     const double *df = a->m.df[a->m.next];
@@ -163,7 +163,7 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
         return;
     }
     backend_widest()->mixing->measure(p, &a->m, 0, p->bundles, &here);
-    for (int64_t i = 0; i < p->slots; i++) take_terms(a, i, term + size * i);
+    for (int64_t i = 0; i < p->slots; i++) anderson_take_terms(a, i, term + size * i);
     const struct summands summands = { CHUNK_BUNDLES, mixing_width(p), n, term };
     p->exchange->sum(p->exchange, p, &summands, out[0]);
     for (int k = 0; k < BUNDLE; k++) {
@@ -175,7 +175,7 @@ static void measure_shared(const struct anderson *a, struct mixing_sums *t)
 }
 
 /* Where each process adds up its own */
-static void add_shared(const struct anderson *a, struct mixing_sums *t)
+static void anderson_add_shared(const struct anderson *a, struct mixing_sums *t)
 {
     double x[1 + 2 * MIXING_DEPTH] = { bundle_sum(t->f2) };
     for (int j = 0; j < depth(a); j++)
@@ -186,7 +186,7 @@ static void add_shared(const struct anderson *a, struct mixing_sums *t)
 }
 
 /* After the sweeps: f, the differences and their products; returns |f|^2. */
-static double measure(struct anderson *a)
+static double anderson_measure(struct anderson *a)
 {
     const struct problem *p = a->s->p;
     struct mixing_sums t = { 0 };
@@ -200,7 +200,7 @@ static double measure(struct anderson *a)
     } else {
         team_share(a->s->o->threads, n, 1, measure_chunks, a);
         for (int64_t k = 0; k < n; k++) mixing_sums_add(&t, &a->sums[k]);
-        if (p->exchange) add_shared(a, &t);
+        if (p->exchange) anderson_add_shared(a, &t);
     }
     if (a->begun) {
         a->count = a->count < depth(a) ? a->count + 1 : depth(a);
@@ -235,7 +235,7 @@ static void solve_gamma(const struct anderson *a, double gamma[MIXING_DEPTH])
 }
 
 /* How the iterate is changed */
-struct jump {
+struct anderson_jump {
     struct anderson *a;
     double leap;
     const double *gamma;
@@ -243,13 +243,13 @@ struct jump {
 
 static void jump(void *arg, int me, int threads)
 {
-    const struct jump *j = arg;
+    const struct anderson_jump *j = arg;
     backend_widest()->mixing->react(j->a->s->p, me, threads, &j->a->m, j->leap, j->gamma);
 }
 
-static void react(struct anderson *a, double leap, const double gamma[MIXING_DEPTH])
+static void anderson_react(struct anderson *a, double leap, const double gamma[MIXING_DEPTH])
 {
-    struct jump j = { a, leap, gamma };
+    struct anderson_jump j = { a, leap, gamma };
     a->s->renewed = false;
     if (a->s->p->device) {
         device_react(a->s->p, &a->m, leap, gamma);
@@ -270,13 +270,13 @@ static void begin_mixed(struct anderson *a)
 {
     double gamma[MIXING_DEPTH] = { 0 };
     if (a->count) solve_gamma(a, gamma);
-    react(a, 0, gamma);
+    anderson_react(a, 0, gamma);
 }
 
 static void begin_leap(struct anderson *a)
 {
     const double gamma[MIXING_DEPTH] = { 0 };
-    react(a, a->reach, gamma);
+    anderson_react(a, a->reach, gamma);
 }
 
 /* Back to the g of the turn before; the differences are forgotten. */
@@ -285,16 +285,16 @@ static void begin_taken_back(struct anderson *a)
     double gamma[MIXING_DEPTH] = { 0 };
     gamma[(a->m.next + depth(a) - 1) % depth(a)] = 1; // x = g - dg
     forget_differences(a);
-    react(a, 0, gamma);
+    anderson_react(a, 0, gamma);
 }
 
 /* ---- a turn of each phase: sweeps, and what comes next; returns as nlgs_sweep() ---- */
 
-static int mix(struct anderson *a), leap(struct anderson *a), alone(struct anderson *a);
+static int anderson_mix(struct anderson *a), leap(struct anderson *a), anderson_alone(struct anderson *a);
 
 static void start_mixing(struct anderson *a)
 {
-    a->phase = mix, a->begin = begin_plain, a->turns = 0;
+    a->phase = anderson_mix, a->begin = begin_plain, a->turns = 0;
     a->epoch_f2 = a->before = a->least_f2 = INFINITY;
 }
 
@@ -302,18 +302,18 @@ static void start_mixing(struct anderson *a)
 static void stop_mixing(struct anderson *a)
 {
     if (a->least_f2 <= a->run_f2 / 2) a->run = RUN_FIRST, a->run_f2 = a->least_f2;
-    a->phase = a->leap_next && !a->s->jammed ? leap : alone, a->begin = begin_plain,
+    a->phase = a->leap_next && !a->s->jammed ? leap : anderson_alone, a->begin = begin_plain,
     a->before = INFINITY;
     a->left = a->run, a->reach = LEAP_FIRST;
     a->leap_next = !a->leap_next;
     a->run = a->run < RUN_MAX ? 2 * a->run : RUN_MAX;
 }
 
-static int mix(struct anderson *a)
+static int anderson_mix(struct anderson *a)
 {
     int over = sweeps(a, PERIOD);
     if (over) return over;
-    double now = measure(a);
+    double now = anderson_measure(a);
     bool well = now <= MIX_GROWTH * a->before, pays = a->turns % EPOCH || now <= a->epoch_f2 / 2;
     if (a->turns++ % EPOCH == 0) a->epoch_f2 = now;
     a->least_f2 = fmin(a->least_f2, now);
@@ -329,7 +329,7 @@ static int leap(struct anderson *a)
     if (over) return over;
     remember_start(a);
     if ((over = sweeps(a, 1))) return over;
-    double now = measure(a);
+    double now = anderson_measure(a);
     bool well = now <= LEAP_GROWTH * a->before;
     if (!well) a->reach = fmax(a->reach / 4, 2);
     if (well && a->before < INFINITY) a->reach = fmin(2 * a->reach, LEAP_MOST);
@@ -339,7 +339,7 @@ static int leap(struct anderson *a)
     return 0;
 }
 
-static int alone(struct anderson *a)
+static int anderson_alone(struct anderson *a)
 {
     int over = sweeps(a, PERIOD);
     a->left -= PERIOD;
@@ -416,7 +416,7 @@ void anderson_restore_best(struct anderson *a)
     start_mixing(a);
 }
 
-static int run(struct solve *s)
+static int anderson_run(struct solve *s)
 {
     struct anderson *a = anderson_new(s);
     if (!a) return -1;
@@ -427,4 +427,4 @@ static int run(struct solve *s)
 }
 
 const struct solver solver_anderson = { "anderson", "sweeps accelerated by Anderson's mixing", 0,
-                                        run };
+                                        anderson_run };

@@ -147,7 +147,7 @@ static bool find_correction(struct arc *p)
 }
 
 /* The largest length of this direction in any contact */
-static double longest(const struct arc *p, int which)
+static double arc_longest(const struct arc *p, int which)
 {
     double max2 = 0;
     for (int64_t c = 0; c < p->m->newton->a.W.n; c++) {
@@ -178,7 +178,7 @@ static double orthogonalise(struct arc *p, int which)
 
 /* Corrects, and goes on by h along the tangent and the bend. It adds
    `corrected` to s, and s'' is `turn`. */
-static void step(struct arc *p, double corrected, double h, double turn)
+static void arc_step(struct arc *p, double corrected, double h, double turn)
 {
     double from = p->s + corrected;
     p->last[0] = from, p->last[1] = 1, p->last[2] = turn, p->h = h;
@@ -239,7 +239,7 @@ static void choose_reach(struct arc *p, double most)
     p->ceiling *= 1.2;
 }
 
-static bool begin(struct arc *p, struct central *m)
+static bool arc_begin(struct arc *p, struct central *m)
 {
     int64_t n = m->newton->a.W.n;
     *p = (struct arc){ .m = m, .g0 = central_mean_gap(m), .s = 1, .reach = 1, .ceiling = INFINITY };
@@ -257,7 +257,7 @@ bool arc_follow(struct central *m, double natural, int steps)
 {
     struct solve *s = m->solve;
     struct arc p;
-    if (!begin(&p, m)) return false;
+    if (!arc_begin(&p, m)) return false;
     int sign = 0, backwards = 0;
     bool there = false;
     for (int k = 0; k < steps && backwards <= BACKWARDS; k++) {
@@ -276,7 +276,7 @@ bool arc_follow(struct central *m, double natural, int steps)
         bool down = system_sign(m->newton->system) == sign;
         backwards += !down;
         double corrected = orthogonalise(&p, CORRECTION), turn = orthogonalise(&p, BEND),
-               most = longest(&p, CORRECTION);
+               most = arc_longest(&p, CORRECTION);
         if (p.s + corrected < FALL * p.s || corrected > p.s) corrected = 0;
         if (was_too_long(&p, most)) {
             if (!retreat(&p, most)) break;
@@ -287,7 +287,7 @@ bool arc_follow(struct central *m, double natural, int steps)
         if (p.before > 0)
             correct(&p, corrected);
         else
-            step(&p, corrected, stride(&p, p.s + corrected, longest(&p, TANGENT), down), turn);
+            arc_step(&p, corrected, stride(&p, p.s + corrected, arc_longest(&p, TANGENT), down), turn);
     }
     for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);

@@ -277,7 +277,7 @@ static int sweep_and_choose(struct strategy *a)
     return 0;
 }
 
-static int run(struct solve *s)
+static int auto_run(struct solve *s)
 {
     if (s->p->kind.extra) return solver_anderson.run(s); // W is none that could be factorised
     if (even_concerns(s->p)) {
@@ -299,5 +299,5 @@ static int run(struct solve *s)
 }
 
 const struct solver solver_auto = {
-    "auto", "sweeps, and factorisations of some or all contacts where they pay", 0, run
+    "auto", "sweeps, and factorisations of some or all contacts where they pay", 0, auto_run
 };

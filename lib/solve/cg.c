@@ -36,7 +36,7 @@ enum {
 #define FALL       1e-4  /* at first: a fall of |w|^2 after which the bounds are renewed */
 #define FALL_LEAST 1e-10 /* the smallest such fraction */
 
-enum hold { OPEN = 1, BORDER = 2 }; /* r_n = 0; r_t on the border of its disc */
+enum cg_hold { OPEN = 1, BORDER = 2 }; /* r_n = 0; r_t on the border of its disc */
 
 struct cg {
     struct solve *s;
@@ -84,7 +84,7 @@ static int cg_init(struct cg *a, struct solve *s)
 }
 
 /* Wp = s W s p, plus the curvature of the discs' borders; returns p.W p */
-static double apply(struct cg *a)
+static double cg_apply(struct cg *a)
 {
     const struct problem *p = a->s->p;
     double sum = 0;
@@ -120,7 +120,7 @@ static void keep_admissible(const struct cg *a, int64_t i, double x[3])
  * decrease of the energy, -(u + u').(r' - r)/2. Returns whether the status of a contact has
  * changed.
  */
-static bool advance(struct cg *a, const double *p, double step, double *fall)
+static bool cg_advance(struct cg *a, const double *p, double step, double *fall)
 {
     struct problem *prob = a->s->p;
     bool changed = false;
@@ -193,7 +193,7 @@ static double renew_bounds(struct cg *a)
     double fall, wWp;
     for (int64_t i = 0; i < p->slots; i++)
         a->bound[i] = slot_bundle(p, i)->mu[slot_lane(i)] * a->r[3 * i];
-    advance(a, a->p, 0, &fall);
+    cg_advance(a, a->p, 0, &fall);
     a->energy = 0, a->conjugate = false;
     for (int k = 0; k < PAST; k++) a->past[k] = 0;
     return find_descent(a, &wWp);
@@ -211,23 +211,23 @@ static bool judge_if_due(struct cg *a, bool due)
 }
 
 /* One step; returns 1 when the solve is over, -1 when memory is short. *w2: |w|^2 after it */
-static int step(struct cg *a, double *w2)
+static int cg_step(struct cg *a, double *w2)
 {
     double slope = 0, curve = 1, fall, wWp, length = a->spectral, worst = a->past[0];
     for (int k = 1; k < PAST; k++) worst = fmax(worst, a->past[k]);
-    if (a->conjugate) curve = apply(a);
+    if (a->conjugate) curve = cg_apply(a);
     for (int64_t i = 0; i < 3 * a->s->p->slots; i++) slope += a->p[i] * a->w[i];
     if (a->conjugate && curve > 0) length = slope / curve;
     if (!(length > 0)) length = 1;
-    bool changed = advance(a, a->p, length, &fall);
+    bool changed = cg_advance(a, a->p, length, &fall);
     for (int k = 0; !(a->energy - fall <= worst) && k < 30; k++) {
         // the projection made it worse: back, and less far along -u
         double none;
         for (int64_t i = 0; i < 3 * a->s->p->slots; i++) a->way_back[i] = a->r_before[i] - a->r[i];
-        advance(a, a->way_back, 1, &none);
+        cg_advance(a, a->way_back, 1, &none);
         length /= 4;
         for (int64_t i = 0; i < 3 * a->s->p->slots; i++) a->p[i] = -a->u[i];
-        advance(a, a->p, length, &fall), changed = true;
+        cg_advance(a, a->p, length, &fall), changed = true;
     }
     a->energy -= fall, a->past[a->s->rep->sweeps % PAST] = a->energy;
     *w2 = find_descent(a, &wWp);
@@ -239,7 +239,7 @@ static int step(struct cg *a, double *w2)
     return judge_if_due(a, false);
 }
 
-static int run(struct solve *s)
+static int cg_run(struct solve *s)
 {
     struct cg a;
     s->believes = false;
@@ -253,7 +253,7 @@ static int run(struct solve *s)
             fall = fmax(fall / 10, FALL_LEAST); // solve more exactly between bounds
         last = start;
         choose_direction(&a, 0);
-        for (; k < INNER && now > fall * start && !over; k++) over = step(&a, &now);
+        for (; k < INNER && now > fall * start && !over; k++) over = cg_step(&a, &now);
         if (over || k) continue;
         renew_bounds(&a), judge_if_due(&a, true); // no direction leads on
         over = 1;
@@ -262,4 +262,4 @@ static int run(struct solve *s)
     return over < 0 ? -1 : 0;
 }
 
-const struct solver solver_cg = { "cg", "conjugate gradients, with nothing assembled", 0, run };
+const struct solver solver_cg = { "cg", "conjugate gradients, with nothing assembled", 0, cg_run };

@@ -30,7 +30,7 @@ static double norm(const double *x, int32_t n)
 }
 
 /* |W| of the scaled problem, by the power method */
-static double largest(const struct scaled *a, double *x, double *v)
+static double auto_largest(const struct scaled *a, double *x, double *v)
 {
     double lambda = 1;
     for (int32_t i = 0; i < a->size; i++) x[i] = 1 / (1.0 + i); // like nothing that is symmetric
@@ -46,7 +46,7 @@ static double largest(const struct scaled *a, double *x, double *v)
 }
 
 /* z = P(y - v^/lambda) */
-static void advance(const struct scaled *a, double lambda, const double *y, const double *v,
+static void auto_advance(const struct scaled *a, double lambda, const double *y, const double *v,
                     double *z)
 {
     const int d = a->W.d;
@@ -63,13 +63,13 @@ static void advance(const struct scaled *a, double lambda, const double *y, cons
 static void step_all(const struct scaled *a, double eps, double *x, double *w)
 {
     const int32_t n = a->size;
-    double *y = w, *v = w + n + 4, *z = w + 2 * (n + 4), lambda = largest(a, y, v), t = 1;
+    double *y = w, *v = w + n + 4, *z = w + 2 * (n + 4), lambda = auto_largest(a, y, v), t = 1;
     int64_t steps = WORK / ((int64_t)n * n);
     memcpy(y, x, (size_t)n * sizeof *y);
     for (int64_t k = 0; k < steps; k++) {
         double uphill = 0;
         scaled_velocity(a, y, v);
-        advance(a, lambda, y, v, z);
+        auto_advance(a, lambda, y, v, z);
         for (int32_t i = 0; i < n; i++) uphill += (y[i] - z[i]) * (z[i] - x[i]);
         if (uphill > 0) t = 1; // the momentum leads astray
         double next = 0.5 + sqrt(0.25 + t * t), ahead = (t - 1) / next;

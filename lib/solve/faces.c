@@ -171,7 +171,7 @@ static void add_face(struct faces *f, int d, struct face g, const int *pivot)
 }
 
 /* Contacts with the same neighbours, as one face or one each. Returns the rest of the room. */
-static double *add_faces(struct faces *f, const struct delassus *W, int32_t *contact, int count,
+static double *faces_add_faces(struct faces *f, const struct delassus *W, int32_t *contact, int count,
                          double *room)
 {
     int pivot[3 * FACE_CONTACTS_MAX] = { 0 }, d = W->d;
@@ -205,7 +205,7 @@ static bool find_faces(struct faces *f, const struct delassus *W)
                 continue;
             }
             for (size_t k = i; k < j; k++) f->contact[k] = m[k].contact;
-            free_room = add_faces(f, W, f->contact + i, (int)(j - i), free_room);
+            free_room = faces_add_faces(f, W, f->contact + i, (int)(j - i), free_room);
         }
         if (!pass && !(f->room = malloc(room * sizeof *f->room))) break;
     }

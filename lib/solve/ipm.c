@@ -45,7 +45,7 @@ struct ipm {
 };
 
 /* The longest step that keeps x and z of all contacts in K */
-static double longest(const struct central *m)
+static double ipm_longest(const struct central *m)
 {
     double step = INFINITY;
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
@@ -89,7 +89,7 @@ static double lengthen(struct ipm *m, double step, double target)
             recentre(s, fmin(1, INTERIOR * step + LENGTHEN), target);
         }
         double before = step;
-        step = central_direction(&m->c, true) ? longest(&m->c) : 0;
+        step = central_direction(&m->c, true) ? ipm_longest(&m->c) : 0;
         if (step >= before + LENGTHENED) continue;
         if (step >= before) break;
         for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].last);
@@ -106,7 +106,7 @@ static double predict_and_correct(struct ipm *m, double t)
     for (int64_t c = 0; c < n; c++)
         for (int k = 0; k < 3; k++) m->c.side[c].c[k] = -m->c.side[c].l[k];
     if (!central_direction(&m->c, false)) return 0;
-    double a = fmin(1, longest(&m->c)), gap = 0;
+    double a = fmin(1, ipm_longest(&m->c)), gap = 0;
     for (int64_t c = 0; c < n; c++) {
         const struct side *s = &m->c.side[c];
         for (int k = 0; k < 3; k++) gap += (s->x[k] + a * s->dx[k]) * (s->z[k] + a * s->dz[k]);
@@ -123,10 +123,10 @@ static double predict_and_correct(struct ipm *m, double t)
         jordan_quotient(s->l, want, s->c);
     }
     if (!central_direction(&m->c, true)) return 0;
-    return fmin(1, INTERIOR * lengthen(m, longest(&m->c), target));
+    return fmin(1, INTERIOR * lengthen(m, ipm_longest(&m->c), target));
 }
 
-static void move(struct central *m, double step)
+static void ipm_move(struct central *m, double step)
 {
     for (int64_t c = 0; c < m->newton->a.W.n; c++) {
         struct side *s = &m->side[c];
@@ -154,7 +154,7 @@ static bool ipm_step(struct ipm *m)
     for (int64_t c = 0; c < n; c++) side_restore(&m->c.side[c], m->kept[c].far);
     m->last_t = at > 0 && step > 0.3 ? at - 1 : at;
     m->stuck = step < 1e-3 ? m->stuck + 1 : 0;
-    if (step > 0) move(&m->c, step);
+    if (step > 0) ipm_move(&m->c, step);
     return step > 0 && m->stuck < STUCK_STEPS;
 }
 
@@ -244,9 +244,9 @@ void ipm_solve(struct newton *w, struct solve *s)
     if (!solve_over(s)) path_then_arc(w, s, GAP_COLD);
 }
 
-static int run(struct solve *s)
+static int ipm_run(struct solve *s)
 {
     return newton_after_sweeps(s, SWEEPS, 1.3, ipm_solve);
 }
 
-const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0, run };
+const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0, ipm_run };

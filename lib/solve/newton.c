@@ -101,7 +101,7 @@ int32_t newton_sweeps_per_step(const struct newton *w, const struct problem *p)
 }
 
 /* z = -Z at x, L and D of the matrix there, and v with its proximal term; returns |Z|. */
-static double residual(struct newton *w, const double *x)
+static double newton_residual(struct newton *w, const double *x)
 {
     struct scaled *a = &w->a;
     int d = a->W.d;
@@ -130,7 +130,7 @@ static bool line_search(struct newton *w, double *at)
     for (int halvings = 0; halvings < 9; halvings++) {
         double step = ldexp(1, -halvings);
         for (int32_t i = 0; i < w->a.size; i++) w->trial[i] = w->x[i] + step * dx[i];
-        *at = residual(w, w->trial);
+        *at = newton_residual(w, w->trial);
         if (!(*at < (1 - 0.01 * step) * before)) continue;
         double *x = w->x;
         w->x = w->trial, w->trial = x;
@@ -149,7 +149,7 @@ static bool newton_step(struct newton *w, struct solve *s, bool carefully)
     struct scaled *a = &w->a;
     size_t size = (size_t)a->size * sizeof *w->x;
     memcpy(w->from, w->x, size);
-    double z = residual(w, w->x), start = z;
+    double z = newton_residual(w, w->x), start = z;
     for (int k = 0; k < (carefully ? INNER : 1); k++) {
         if (!solve_affords(s, w->price)) return false;
         double since = report_seconds(CLOCK_WALL);
@@ -158,9 +158,9 @@ static bool newton_step(struct newton *w, struct solve *s, bool carefully)
         if (!solved) return false;
         if (!carefully) {
             for (int32_t i = 0; i < a->size; i++) w->x[i] += w->z[i];
-            residual(w, w->x);
+            newton_residual(w, w->x);
         } else if (!line_search(w, &z)) {
-            residual(w, w->x);
+            newton_residual(w, w->x);
             break;
         } else if (z < 0.01 * start) {
             break;

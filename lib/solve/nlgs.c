@@ -69,7 +69,7 @@ static double sweep_there(const struct round *r)
 
 /* `unjudged` sweeps and one more, which stores u if `keep`. Counts them in the report; returns the
    largest change of a normal velocity in the last one, m/s. */
-static double sweep(struct solve *s, double omega, int32_t unjudged, bool keep)
+static double nlgs_sweep_once(struct solve *s, double omega, int32_t unjudged, bool keep)
 {
     const struct solve_opt *o = s->o;
     struct round r = { .p = s->p,
@@ -102,7 +102,7 @@ static int judged_sweep(struct solve *s, double omega, int32_t unjudged, bool la
     bool keep =
         sure ||
         w->change <= (problem_bundles(s->p) < FAR_BUNDLES ? CHEAP_FORESIGHT : FORESIGHT) * w->due;
-    double change = w->change = sweep(s, omega, unjudged, keep && s->believes);
+    double change = w->change = nlgs_sweep_once(s, omega, unjudged, keep && s->believes);
     w->just_judged = false;
     if (solve_history(s)) return -1;
     if (!sure && !(keep && change <= w->due)) return 0;
@@ -125,7 +125,7 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w)
  * if each divides it by FORESIGHT. Only by halves, whose two threads then run on without meeting
  * after every sweep; else 0
  */
-static int32_t foresee(const struct solve *s, const struct watch *w, int32_t end)
+static int32_t nlgs_foresee(const struct solve *s, const struct watch *w, int32_t end)
 {
     int32_t n = s->rep->sweeps, next = w->last_judged + CHECK_EVERY;
     if (!problem_halves(s->p) || s->o->history || s->o->every_sweep || n < w->judge_all_until ||
@@ -143,7 +143,7 @@ int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
                        .last_judged = s->rep->sweeps,
                        .judge_all_until = CHECK_FIRST };
     while (s->rep->sweeps < end) {
-        int32_t unjudged = foresee(s, &w, end);
+        int32_t unjudged = nlgs_foresee(s, &w, end);
         int over = judged_sweep(s, omega, unjudged, s->rep->sweeps + unjudged == end - 1, &w);
         if (over) return over < 0 ? -1 : 0;
     }
@@ -157,9 +157,9 @@ int nlgs_fall_back(struct solve *s, const char *reason)
     return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
 }
 
-static int run(struct solve *s)
+static int nlgs_run(struct solve *s)
 {
     return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
 }
 
-const struct solver solver_nlgs = { "nlgs", "Gauss-Seidel: sweeps of a local method", 1, run };
+const struct solver solver_nlgs = { "nlgs", "Gauss-Seidel: sweeps of a local method", 1, nlgs_run };

@@ -15,10 +15,10 @@ static void polish(struct newton *w, struct solve *s)
     newton_polish(w, s, ALPHA, PATIENCE);
 }
 
-static int run(struct solve *s)
+static int prox_run(struct solve *s)
 {
     return newton_after_sweeps(s, SWEEPS, 1, polish);
 }
 
 const struct solver solver_prox = { "prox", "Newton within proximal steps on all contacts at once",
-                                    0, run };
+                                    0, prox_run };

@@ -60,7 +60,7 @@ static bool narrow(struct bracket *b, const struct gain *g)
 }
 
 /* Sets the restitution of the contacts from i to end-1. */
-static void set(const struct packing *p, struct contacts *s, int64_t i, int64_t end, double times)
+static void balance_set(const struct packing *p, struct contacts *s, int64_t i, int64_t end, double times)
 {
     for (; i < end; i++) {
         const double mu = s->c[i].mu;
@@ -70,7 +70,7 @@ static void set(const struct packing *p, struct contacts *s, int64_t i, int64_t 
     }
 }
 
-static int find(struct rebound_search *o, const struct packing *p, const struct contacts *s,
+static int balance_find(struct rebound_search *o, const struct packing *p, const struct contacts *s,
                 struct why *why)
 {
     struct impulses sum;
@@ -88,14 +88,14 @@ int rebound_reduce(struct rebound_search **search, const struct packing *p, stru
     if (!any) return 0;
     struct rebound_search *o = *search = *search ? *search : rebound_new(s->n);
     if (!o) return why_set(why, EX_SOFTWARE, "no memory for the impacts");
-    if (find(o, p, s, why)) return why->status;
+    if (balance_find(o, p, s, why)) return why->status;
     o->rounds++;
     for (int64_t i = 0, next; i < s->n; i = next) {
         struct bracket *b = &o->pair[i];
         next = balance_next_pair(s, i);
         if (!packing_bounds(p, &s->c[i]) || !narrow(b, &o->gain[i])) continue;
         if (o->rounds >= ROUNDS) b->s = b->lo = 0; // the last
-        set(p, s, i, next, b->s);
+        balance_set(p, s, i, next, b->s);
         *again = o->rounds <= ROUNDS;
     }
     return 0;

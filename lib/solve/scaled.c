@@ -17,7 +17,7 @@ int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why
     return e;
 }
 
-static double *copy(const double *x, int64_t n)
+static double *scaled_copy(const double *x, int64_t n)
 {
     double *y = malloc((size_t)(n + 4) * sizeof *y);
     if (y && n) memcpy(y, x, (size_t)n * sizeof *y);
@@ -31,10 +31,10 @@ static int copy_W(struct delassus *W, const struct delassus *V, struct why *why)
     *W = (struct delassus){ .d = V->d, .n = n };
     W->first = calloc((size_t)n + 1, sizeof *W->first);
     W->col = malloc((size_t)(blocks + 1) * sizeof *W->col);
-    W->block = copy(V->block, blocks * d * d), W->diag = copy(V->diag, 9 * n);
-    W->q = copy(V->q, n * d), W->mu = copy(V->mu, n), W->r = copy(V->r, n * d);
+    W->block = scaled_copy(V->block, blocks * d * d), W->diag = scaled_copy(V->diag, 9 * n);
+    W->q = scaled_copy(V->q, n * d), W->mu = scaled_copy(V->mu, n), W->r = scaled_copy(V->r, n * d);
     W->common = V->common;
-    if (W->common) W->J = copy(V->J, n * d * W->common);
+    if (W->common) W->J = scaled_copy(V->J, n * d * W->common);
     if (!W->first || !W->col || !W->block || !W->diag || !W->q || !W->mu || !W->r ||
         (W->common && !W->J))
         return why_set(why, EX_SOFTWARE, "out of memory");
@@ -126,7 +126,7 @@ void scaled_product(const struct scaled *a, const double *x, double *v)
 }
 
 /* |x_c - P(x_c - v^_c)|^2, and in *size |x_c|^2 */
-static double natural2(const struct scaled *a, int64_t c, const double *x, const double *v,
+static double scaled_natural2(const struct scaled *a, int64_t c, const double *x, const double *v,
                        double *size)
 {
     int d = a->W.d;
@@ -142,12 +142,12 @@ static double natural2(const struct scaled *a, int64_t c, const double *x, const
 double scaled_natural_of(const struct scaled *a, int64_t c, const double *x, const double *v)
 {
     double size;
-    return sqrt(natural2(a, c, x, v, &size));
+    return sqrt(scaled_natural2(a, c, x, v, &size));
 }
 
 double scaled_natural(const struct scaled *a, const double *x, const double *v)
 {
     double off = 0, size = 0, one;
-    for (int64_t c = 0; c < a->W.n; c++) off += natural2(a, c, x, v, &one), size += one;
+    for (int64_t c = 0; c < a->W.n; c++) off += scaled_natural2(a, c, x, v, &one), size += one;
     return size > 0 ? sqrt(off / size) : off > 0 ? 1 : 0;
 }

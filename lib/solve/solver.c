@@ -44,7 +44,7 @@ enum {
 #define LATER   10 /* times the reactions that there are: from then on they are looked at again */
 
 /* err_eval(); where W alone is known, and no mass, what reactions without end are is seen by their work. */
-static void judge(struct err *e, struct problem *p, bool believes, enum err_terms which,
+static void solver_judge(struct err *e, struct problem *p, bool believes, enum err_terms which,
                   int threads)
 {
     double work, most;
@@ -59,12 +59,12 @@ static void judge(struct err *e, struct problem *p, bool believes, enum err_term
 static void evaluate(struct solve *s)
 {
     struct err e;
-    judge(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
+    solver_judge(&e, s->p, s->believes, err_terms_of(s->o->criterion), s->o->threads);
     s->value = err_value(&e, s->o->criterion, s->o->eps);
     s->jammed = e.jammed > 0;
 }
 
-static void renew(struct solve *s)
+static void solver_renew(struct solve *s)
 {
     if (s->renewed) return;
     problem_renew(s->p, problem_team(s->p, s->o->threads));
@@ -73,9 +73,9 @@ static void renew(struct solve *s)
 
 double solve_judge(struct solve *s)
 {
-    if (s->rep->sweeps - s->renewed_at >= RENEW_EVERY) renew(s);
+    if (s->rep->sweeps - s->renewed_at >= RENEW_EVERY) solver_renew(s);
     evaluate(s);
-    if (solve_met(s) && !s->renewed) renew(s), evaluate(s);
+    if (solve_met(s) && !s->renewed) solver_renew(s), evaluate(s);
     solve_best_offer(s, &s->best);
     if (s->o->progress) s->o->progress(s->rep->sweeps, s->value);
     return s->value;
@@ -163,14 +163,14 @@ int solve_best_init(struct best *b, const struct problem *p)
 }
 
 /* Slots that are kept */
-struct keeping {
+struct solver_keeping {
     const struct problem *p;
     double *r;
 };
 
 static void keep_some(void *arg, int64_t first, int64_t end)
 {
-    const struct keeping *k = arg;
+    const struct solver_keeping *k = arg;
     const struct problem *p = k->p;
     double *u = k->r + 3 * p->slots, unwanted[3] = { 0 };
     for (int64_t i = first; i < end; i++)
@@ -182,7 +182,7 @@ static void keep_some(void *arg, int64_t first, int64_t end)
 void solve_best_offer(const struct solve *s, struct best *b)
 {
     const struct problem *p = s->p;
-    struct keeping k = { p, best_offer(b, s->value) };
+    struct solver_keeping k = { p, best_offer(b, s->value) };
     if (!k.r) return;
     if (p->device) {
         b->x[0] = s->believes;
@@ -278,7 +278,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     solve_restore_best(&s);
     best_free(&s.best);
     if (failed) return leave_device(p, rep), -1;
-    renew(&s);
+    solver_renew(&s);
     if (!s.believes && p->device)
         device_velocities(p);
     else if (!s.believes)
@@ -290,7 +290,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
         rep->gave_up = all->count(all, rep->gave_up);
     }
     double overlap = rep->err.max_overlap;
-    judge(&rep->err, p, s.believes, ERR_ALL, o->threads);
+    solver_judge(&rep->err, p, s.believes, ERR_ALL, o->threads);
     rep->err.max_overlap = overlap;
     if (leave_device(p, rep)) return -1;
     if (rep->history && rep->sweeps) rep->history[rep->sweeps - 1] = rep->err.paper;

@@ -88,7 +88,7 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
 }
 
 /* What is reported of a step before its solve */
-static int begin(struct step_makers *m,
+static int step_begin(struct step_makers *m,
                  int measure(struct step_makers *m, const struct packing *p,
                              const struct contacts *s, struct report *rep, struct why *why),
                  const struct packing *p, const struct contacts *s, struct report *rep,
@@ -110,7 +110,7 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
                struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
-    if (begin(NULL, step_measure_whole, pack, s, rep, why) ||
+    if (step_begin(NULL, step_measure_whole, pack, s, rep, why) ||
         step_solve_contacts(pack, s, NULL, o, rep, why))
         return why->status;
     if (!impulses_init(&sum, pack, s, false, why) && account_for(rep, pack, o))
@@ -265,7 +265,7 @@ static bool report_is_finite(const struct report *rep)
     return isfinite(sum) && (!rep->balanced || isfinite(balance));
 }
 
-static void foresee(struct step_makers *m, const struct packing *p, const struct impulses *sum,
+static void step_foresee(struct step_makers *m, const struct packing *p, const struct impulses *sum,
                     struct report *rep)
 {
     if (!isfinite(rep->err.paper.eps_glob)) return;
@@ -275,7 +275,7 @@ static void foresee(struct step_makers *m, const struct packing *p, const struct
 }
 
 /* The balances and the motion */
-static int move(struct step_makers *m, struct packing *p, const struct contacts *s,
+static int step_move(struct step_makers *m, struct packing *p, const struct contacts *s,
                 const struct step_opt *o, struct report *rep, struct why *why)
 {
     struct impulses sum = { 0 };
@@ -283,7 +283,7 @@ static int move(struct step_makers *m, struct packing *p, const struct contacts 
     if (impulses_init(&sum, p, s, false, why)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
     if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
-    foresee(m, p, &sum, rep);
+    step_foresee(m, p, &sum, rep);
     if (report_made(rep) && !sum_step(p, s, &sum, why) && !move_by(p, s, &sum, why))
         m->move_apart(m, p, s, rep->balanced ? &did : NULL, why);
     if (rep->balanced) step_report_moved(rep, p, &did);
@@ -324,14 +324,14 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     double cpu = report_seconds(CLOCK_CPU);
     if (m->detect(m, p, s, o, why)) return why->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!m->helps && begin(m, m->measure, p, s, rep, why)) return why->status;
+    if (!m->helps && step_begin(m, m->measure, p, s, rep, why)) return why->status;
     rep->passed = 0, rep->endless = (struct endless){ 0 };
     if (!m->helps && (!p->step || m->substeps->made) &&
         m->watch(m, p, watch_before(m, p), rep, why))
         return why->status;
     if (m->solve(m, p, s, o, rep, why) || m->helps) return why->status;
     if (!rep->converged) m->find_unsolved(m, p, s, rep);
-    if (move(m, p, s, o, rep, why)) return why->status;
+    if (step_move(m, p, s, o, rep, why)) return why->status;
     return m->watch(m, p, watch_after(m, p), rep, why);
 }
 

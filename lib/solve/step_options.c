@@ -13,7 +13,7 @@ static const char *const newton_name[NEWTON_COUNT] = { "plain", "linesearch" };
 
 /* ---- what an option is when it is not given ---- */
 
-struct usual {
+struct step_options_usual {
     enum criterion packing, fclib; /* the criterion of packings, and of FCLIB problems */
     double eps[CRITERION_COUNT];   /* of packings, in each criterion's own units */
     double fclib_eps;              /* of FCLIB problems, whatever the criterion */
@@ -30,7 +30,7 @@ struct usual {
 };
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
-static const struct usual usual = {
+static const struct step_options_usual usual = {
     .packing = CRITERION_VELOCITY, // it sees every contact, however small its reaction
     .fclib = CRITERION_NATURAL,
     .eps[CRITERION_GLOB] = 1e-10,   // a sum of m/s, m/s, N and W: the paper's
@@ -53,7 +53,7 @@ static const struct usual usual = {
 };
 
 /* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
-static const struct usual paper = {
+static const struct step_options_usual paper = {
     .packing = CRITERION_GLOB,
     .fclib = CRITERION_GLOB,
     .eps = { 1e-10, 1e-10, 1e-10, 1e-10 },
@@ -76,7 +76,7 @@ struct options options = { .threads = 1, .substeps = SUBSTEPS_MOST };
 const char *options_usual(const void *to)
 {
     static char text[100];
-    const struct usual *u = &usual;
+    const struct step_options_usual *u = &usual;
     const size_t room = sizeof text;
     if (to == &options.eps)
         snprintf(text, room, "%g; %g for FCLIB", u->eps[u->packing], u->fclib_eps);
@@ -227,7 +227,7 @@ static int order_usual(const struct options *o, enum order otherwise)
 
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign)
 {
-    const struct usual *u = o->paper ? &paper : &usual;
+    const struct step_options_usual *u = o->paper ? &paper : &usual;
     const struct solver *solver = global(o);
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));

@@ -38,7 +38,7 @@ static int64_t count_large(const double *map, int64_t n, double large)
 
 /* Chooses the contacts with a large map and as many of their neighbours, or more of these up to
    `least` in all. False where they would be too many. */
-static bool choose(const struct scaled *a, const double *map, double largest, int64_t least,
+static bool subset_choose(const struct scaled *a, const double *map, double largest, int64_t least,
                    bool anyhow, struct chosen_contacts *p)
 {
     const struct delassus *W = &a->W;
@@ -70,7 +70,7 @@ struct inner {
 
 /* Some sweeps and the first attempt of the interior point method. Where these fail a larger subset
    is more promising than further attempts. */
-static int run(struct solve *s)
+static int subset_run(struct solve *s)
 {
     const struct inner *inner = (const struct inner *)s->o->global;
     struct newton w;
@@ -114,7 +114,7 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
     scaled_get(a, s->p, p->x);
     scaled_velocity(a, p->x, p->v);
     double largest = fill_maps(a, p->x, p->v, p->map);
-    if (!choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
+    if (!subset_choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
     const struct chosen_contacts chosen =
         p->chosen; /* clang-analyzer takes all of *p as const else */
     if (delassus_subset(&p->V, &a->W, &chosen, p->x, p->v, &why)) return -1;
@@ -125,9 +125,9 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
 /* Solves V, starting from its r; its reactions go into x of all contacts, its counts into the
    report. Returns 1; 0 where neither a Newton step was made nor the problem solved; -1 when memory
    is short. */
-static int solve(struct subset *p, struct solve *s, double budget)
+static int subset_solve_part(struct subset *p, struct solve *s, double budget)
 {
-    const struct inner inner = { { "subset", "", 0, run }, budget };
+    const struct inner inner = { { "subset", "", 0, subset_run }, budget };
     struct delassus *V = &p->V;
     struct problem q;
     struct why why = { 0 };
@@ -155,7 +155,7 @@ int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool a
 {
     struct subset p;
     int e = subset_init(&p, a, s, contacts, anyhow, budget);
-    if (e > 0) e = solve(&p, s, budget);
+    if (e > 0) e = subset_solve_part(&p, s, budget);
     if (e > 0) scaled_put(a, s, p.x);
     int64_t n = p.chosen.n;
     subset_free(&p);

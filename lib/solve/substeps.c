@@ -81,14 +81,14 @@ void substeps_recall(struct substeps *s, struct packing *p)
 /* ---- contacts ---- */
 
 /* The reaction r of contact c, in the basis of another contact of the same two bodies */
-static void turn(double to[3], const struct contact *c, const double r[3], const struct contact *d)
+static void substeps_turn(double to[3], const struct contact *c, const double r[3], const struct contact *d)
 {
     const vec3 in_space = contact_in_space(c, r);
     to[0] = v3_dot(in_space, d->n), to[1] = v3_dot(in_space, d->t1);
     to[2] = v3_dot(in_space, contact_t2(d));
 }
 
-static void copy_one(struct contacts *to, const struct contacts *from, int64_t i)
+static void substeps_copy_one(struct contacts *to, const struct contacts *from, int64_t i)
 {
     const int64_t k = to->n++;
     to->c[k] = from->c[i];
@@ -103,15 +103,15 @@ static void add_one(struct contacts *to, const struct contacts *from, int64_t i)
     const int64_t k = to->n - 1;
     double r[3];
     if (!from->found) return;
-    turn(r, &from->c[i], from->found[i].r, &to->c[k]);
+    substeps_turn(r, &from->c[i], from->found[i].r, &to->c[k]);
     for (int j = 0; j < 3; j++) to->found[k].r[j] += r[j];
     if (!to->moment || !from->moment) return;
-    turn(r, &from->c[i], from->moment[i], &to->c[k]);
+    substeps_turn(r, &from->c[i], from->moment[i], &to->c[k]);
     for (int j = 0; j < 3; j++) to->moment[k][j] += r[j];
 }
 
 /* now = the contacts of both, with their sums; had is freed. */
-static int join(struct contacts *had, struct contacts *now, struct why *why)
+static int substeps_join(struct contacts *had, struct contacts *now, struct why *why)
 {
     struct contacts all = { 0 };
     int64_t i = 0;
@@ -126,11 +126,11 @@ static int join(struct contacts *had, struct contacts *now, struct why *why)
     }
     all.n = 0;
     for (int64_t k = 0; k < now->n; k++) {
-        while (i < had->n && contact_compare(&had->c[i], &now->c[k]) < 0) copy_one(&all, had, i++);
-        copy_one(&all, now, k);
+        while (i < had->n && contact_compare(&had->c[i], &now->c[k]) < 0) substeps_copy_one(&all, had, i++);
+        substeps_copy_one(&all, now, k);
         if (i < had->n && contact_compare(&had->c[i], &now->c[k]) == 0) add_one(&all, had, i++);
     }
-    while (i < had->n) copy_one(&all, had, i++);
+    while (i < had->n) substeps_copy_one(&all, had, i++);
     contacts_free(had), contacts_free(now);
     *now = all;
     return 0;
@@ -195,7 +195,7 @@ int substeps_add(struct substeps *s, const struct packing *p, struct contacts *c
     r->substeps = s->made;
     if (substeps_alone(s)) return 0;
     s->ends = s->ends || !report_made(r);
-    if (!first && join(&s->sum, contacts, why)) return why->status;
+    if (!first && substeps_join(&s->sum, contacts, why)) return why->status;
     if (first)
         s->report = *r;
     else

@@ -155,7 +155,7 @@ static void sort_rows(const struct face *f, const struct reduced *q, const doubl
             out[i * columns + j] = q->scale[q->order[i]] * in[q->order[i] * columns + j];
 }
 
-static double largest(const double *x, int n)
+static double system_largest(const double *x, int n)
 {
     double max = 0;
     for (int i = 0; i < n; i++) max = fmax(max, fabs(x[i]));
@@ -169,13 +169,13 @@ static void order_rows(struct system *s, const struct face *f, const struct redu
     int d = s->a->W.d, left = f->rows - f->rank;
     for (int i = 0; i < f->rows; i++) {
         int64_t at = 9 * (int64_t)f->contact[i / d] + 3 * (i % d);
-        double size = largest(s->L + at, d) + largest(s->D + at, d);
+        double size = system_largest(s->L + at, d) + system_largest(s->D + at, d);
         q->scale[i] = size > 0 ? 1 / size : 1;
         int k = i;
         for (; k > 0; k--) {
             int o = q->order[k - 1];
-            if (q->scale[o] * largest(DN + o * left, left) >=
-                q->scale[i] * largest(DN + i * left, left))
+            if (q->scale[o] * system_largest(DN + o * left, left) >=
+                q->scale[i] * system_largest(DN + i * left, left))
                 break;
             q->order[k] = o, s->sign = -s->sign;
         }
@@ -210,7 +210,7 @@ static bool normalise(struct system *s, const struct face *f, const struct reduc
 }
 
 /* L' and D' [rank][rank] of one face; false where it is singular */
-static bool reduce(struct system *s, const struct face *f, const struct reduced *q,
+static bool system_reduce(struct system *s, const struct face *f, const struct reduced *q,
                    const double **l, const double **d)
 {
     int left = f->rows - f->rank, rows = f->rows, rank = f->rank;
@@ -246,14 +246,14 @@ static bool reduce(struct system *s, const struct face *f, const struct reduced 
 }
 
 /* entries = L' S + D'; false where a face shows that this is singular */
-static bool assemble(struct system *s)
+static bool system_assemble(struct system *s)
 {
     const struct faces *F = &s->faces;
     s->sign = 1;
     for (int32_t c = 0; c < F->n; c++) {
         const struct face *f = F->face + c;
         const double *l, *d;
-        if (!reduce(s, f, s->reduced + c, &l, &d)) return false;
+        if (!system_reduce(s, f, s->reduced + c, &l, &d)) return false;
         int32_t first = F->first[f->at], length = F->first[f->at + 1] - first;
         for (int i = 0; i < f->rank; i++) {
             double *a = s->entries + first + (int64_t)i * length;
@@ -272,12 +272,12 @@ static bool assemble(struct system *s)
 }
 
 /* Copies of the numbers of a face's rows, from x[n d] and into it */
-static void load(const struct system *s, const struct face *f, const double *x, double *out)
+static void system_load(const struct system *s, const struct face *f, const double *x, double *out)
 {
     int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) out[i] = x[d * (int64_t)f->contact[i / d] + i % d];
 }
-static void store(const struct system *s, const struct face *f, const double *in, double *x)
+static void system_store(const struct system *s, const struct face *f, const double *in, double *x)
 {
     int d = s->a->W.d;
     for (int i = 0; i < f->rows; i++) x[d * (int64_t)f->contact[i / d] + i % d] = in[i];
@@ -294,7 +294,7 @@ static void apply_Q(const struct face *f, const struct reduced *q, const double 
 }
 
 /* out[rows] = A[rows][columns] z */
-static void multiply(const double *A, int rows, int columns, const double *z, double *out)
+static void system_multiply(const double *A, int rows, int columns, const double *z, double *out)
 {
     for (int i = 0; i < rows; i++) {
         out[i] = 0;
@@ -309,11 +309,11 @@ static void recover(struct system *s, const struct face *f, const struct reduced
     int rows = f->rows, rank = f->rank, left = rows - rank;
     double *e = s->l, *v = s->d, *xf = s->t;
     // e = b - L T y - D M w, and R n = the first rows of Q' e
-    load(s, f, b, e);
-    multiply(f->T, rows, rank, s->y + f->at, xf);
+    system_load(s, f, b, e);
+    system_multiply(f->T, rows, rank, s->y + f->at, xf);
     multiply_blocks(s, f, s->L, xf, 1, v);
     for (int i = 0; i < rows; i++) e[i] -= v[i];
-    multiply(f->M, rows, rank, s->w + f->at, xf);
+    system_multiply(f->M, rows, rank, s->w + f->at, xf);
     multiply_blocks(s, f, s->D, xf, 1, v);
     for (int i = 0; i < rows; i++) e[i] -= v[i];
     apply_Q(f, q, e, v);
@@ -323,7 +323,7 @@ static void recover(struct system *s, const struct face *f, const struct reduced
     gsl_blas_dtrsv(CblasUpper, CblasNoTrans, CblasNonUnit, &R.matrix, &n.vector);
     for (int i = 0; i < rows; i++)
         for (int j = 0; j < left; j++) xf[i] += f->N[i * left + (int)q->columns[j]] * v[j];
-    store(s, f, xf, x);
+    system_store(s, f, xf, x);
 }
 
 /* x = A^-1 b, to the accuracy of the factors */
@@ -334,10 +334,10 @@ static bool substitute_blocks(struct system *s, const double *b, double *x)
     for (int32_t c = 0; c < F->n; c++) {
         const struct face *f = F->face + c;
         int left = f->rows - f->rank;
-        load(s, f, b, left ? s->t : s->w + f->at);
+        system_load(s, f, b, left ? s->t : s->w + f->at);
         if (!left) continue;
         apply_Q(f, s->reduced + c, s->t, s->l);
-        multiply(s->reduced[c].inverse, f->rank, f->rank, s->l + left, s->w + f->at);
+        system_multiply(s->reduced[c].inverse, f->rank, f->rank, s->l + left, s->w + f->at);
     }
     if (!lu_substitute(s->lu, s->w)) return false;
     for (int32_t i = 0; reduced && i < F->size; i++) {
@@ -350,7 +350,7 @@ static bool substitute_blocks(struct system *s, const double *b, double *x)
         if (f->rank < f->rows)
             recover(s, f, s->reduced + c, b, x);
         else
-            store(s, f, s->w + f->at, x);
+            system_store(s, f, s->w + f->at, x);
     }
     return true;
 }
@@ -408,7 +408,7 @@ static bool substitute(struct system *s, const double *b, double *x)
 }
 
 /* r = b - (L W + D) x; returns the largest |r| over the largest |b|. */
-static double residual(struct system *s, const double *x)
+static double system_residual(struct system *s, const double *x)
 {
     int d = s->a->W.d == 3 ? 3 : 2;
     double worst = 0, size = 0;
@@ -433,12 +433,12 @@ bool system_solve_again(struct system *s, double *x)
     int32_t size = s->a->size;
     memcpy(s->b, x, (size_t)size * sizeof *x);
     if (!substitute(s, s->b, x)) return false;
-    double e = residual(s, x);
+    double e = system_residual(s, x);
     for (int k = 0; k < 3 && e > 1e-10; k++) {
         if (!substitute(s, s->r, s->x)) return false;
         for (int32_t i = 0; i < size; i++) x[i] += s->x[i];
         double before = e;
-        e = residual(s, x);
+        e = system_residual(s, x);
         if (e < before / 4) continue;
         if (e < before) break;
         for (int32_t i = 0; i < size; i++) x[i] -= s->x[i];
@@ -451,7 +451,7 @@ bool system_solve_again(struct system *s, double *x)
 bool system_solve(struct system *s, const double *L, const double *D, double *x)
 {
     s->L = L, s->D = D;
-    return assemble(s) && lu_factorise(s->lu, s->entries) && factorise_common(s) &&
+    return system_assemble(s) && lu_factorise(s->lu, s->entries) && factorise_common(s) &&
            system_solve_again(s, x);
 }
 
