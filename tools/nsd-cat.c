@@ -45,38 +45,38 @@ int tool_main(int argc, char **argv)
     struct writer *out = NULL; // opened with the first frame
     struct frame f = { 0 };
     struct range range;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
     int64_t copied = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_COPY;
-    while (!(last ? reader_last(in, &f, &more, &why) : reader_find(in, &range, &more, &why)) &&
+    while (!(last ? reader_last(in, &f, &more, &failure) : reader_find(in, &range, &more, &failure)) &&
            more) {
         bool whole = !last && reader_whole(in);
-        if (!last && !whole && reader_take(in, &f, &why)) break;
-        if (!out && (writer_open(&out, output, kind, &why) ||
-                     (cli_given(&vtk) && writer_vtk(out, vtk ? &vtk_parts : NULL, &why))))
+        if (!last && !whole && reader_take(in, &f, &failure)) break;
+        if (!out && (writer_open(&out, output, kind, &failure) ||
+                     (cli_given(&vtk) && writer_vtk(out, vtk ? &vtk_parts : NULL, &failure))))
             break;
         if (whole && writer_passes(out)) {
-            if (writer_pass(out, in, &why)) break;
+            if (writer_pass(out, in, &failure)) break;
         } else {
-            if (whole && reader_take(in, &f, &why)) break;
-            if (writer_frame(out, &f, &why) == EX_DATAERR)
-                die(EX_DATAERR, "%s: %s", reader_where(in), why.text);
-            if (why.status) break;
+            if (whole && reader_take(in, &f, &failure)) break;
+            if (writer_frame(out, &f, &failure) == EX_DATAERR)
+                die(EX_DATAERR, "%s: %s", reader_where(in), failure.text);
+            if (failure.status) break;
         }
         copied++;
         progress("%lld frames", (long long)copied);
         if (last) break;
     }
-    if (why.status ||
-        (!copied && why_set(&why, EX_DATAERR, "%s: no such frame", reader_where(in))) ||
-        writer_close(out, &why))
-        die_why(&why);
+    if (failure.status ||
+        (!copied && failure_set(&failure, EX_DATAERR, "%s: no such frame", reader_where(in))) ||
+        writer_close(out, &failure))
+        die_why(&failure);
     frame_free(&f);
     reader_close(in);
     return 0;

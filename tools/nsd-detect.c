@@ -39,12 +39,12 @@ const struct cli_tool tool = {
 /* The contact problem, which the writer then adds in the FCLIB format. */
 static void add_problem(struct frame *f)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     f->export = calloc(1, sizeof *f->export);
     if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
     if (problem_prepare(f->export, &f->packing, &f->contacts,
-                        &(struct prepare_opt){ .rho_factor = 1 }, &why))
-        die_why(&why);
+                        &(struct prepare_opt){ .rho_factor = 1 }, &failure))
+        die_why(&failure);
     if (f->export->kind.rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
     f->export_global = form == FORM_GLOBAL;
 }
@@ -53,26 +53,26 @@ static void add_problem(struct frame *f)
 static void flow(struct packing *p)
 {
     struct flow scene;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool changed;
     p->events.n = 0;
-    outside_forget(&p->outside);
-    if (flow_read(&scene, p, &why) || flow_step(&scene, p, NULL, &changed, &why)) die_why(&why);
+    external_force_forget(&p->outside);
+    if (flow_read(&scene, p, &failure) || flow_step(&scene, p, NULL, &changed, &failure)) die_why(&failure);
     flow_free(&scene);
 }
 
 static void detect(struct frame *f, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
     options_overlap(&f->packing, false);
     flow(&f->packing);
     struct packing *p = &f->packing;
-    if (outside_begin(&p->outside, p->mass, p->n, p->walls, &why)) die_why(&why);
+    if (external_force_begin(&p->outside, p->mass, p->n, p->walls, &failure)) die_why(&failure);
     packing_wrap(&f->packing, NULL);
-    if (touching_bond(&f->packing, &why)) die_why(&why);
-    if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &why)) die_why(&why);
+    if (touching_bond(&f->packing, &failure)) die_why(&failure);
+    if (detect_contacts(&f->contacts, &f->packing, options.gap, NULL, &failure)) die_why(&failure);
     f->detected = true, f->reported = f->moved = false;
     f->stale = true;
     if (cli_given(&form)) add_problem(f);

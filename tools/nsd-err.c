@@ -18,22 +18,22 @@ const struct cli_tool tool = {
 };
 
 /* The problem that the reactions of a packing solve, with the reactions in it. */
-static int prepare_own(struct problem *p, struct frame *f, struct why *why)
+static int prepare_own(struct problem *p, struct frame *f, struct failure *failure)
 {
-    if (f->moved && move_back(&f->packing, &f->contacts, why)) return why->status;
+    if (f->moved && move_back(&f->packing, &f->contacts, failure)) return failure->status;
     if (prepare_packing(p, &f->packing, &f->contacts, true,
-                        &(struct prepare_opt){ .rho_factor = 1 }, why))
-        return why->status;
+                        &(struct prepare_opt){ .rho_factor = 1 }, failure))
+        return failure->status;
     f->report.err.max_overlap = contacts_max_overlap(&f->contacts);
     return 0;
 }
 
 /* The same of an FCLIB problem, whose velocities are the ones in the document. */
-static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
+static int prepare_foreign(struct problem *p, struct frame *f, struct failure *failure)
 {
     struct delassus *W = &f->problem.W;
-    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, why))
-        return why->status;
+    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, failure))
+        return failure->status;
     for (int64_t i = 0; i < p->slots; i++) {
         double r[3], u[3];
         if (p->contact[i] < 0) continue;
@@ -44,7 +44,7 @@ static int prepare_foreign(struct problem *p, struct frame *f, struct why *why)
     return 0;
 }
 
-static void print(struct frame *f, struct why *why)
+static void print(struct frame *f, struct failure *failure)
 {
     if (f->packed && f->moved && contacts_summed(&f->contacts)) {
         json_line(json_pack("{s:I, s:b}", "step", (json_int_t)f->packing.step, "substeps", 1));
@@ -53,7 +53,7 @@ static void print(struct frame *f, struct why *why)
     struct problem p = { 0 };
     f->report.err.max_overlap = 0;
     int64_t step = f->packing.step; // the frame's own, not that of the step before, which is judged
-    if ((f->foreign ? prepare_foreign : prepare_own)(&p, f, why)) return;
+    if ((f->foreign ? prepare_foreign : prepare_own)(&p, f, failure)) return;
     double overlap = f->report.err.max_overlap;
     struct err err;
     err_eval(&err, &p, true, ERR_ALL, 1);
@@ -62,7 +62,7 @@ static void print(struct frame *f, struct why *why)
     int e = self_stress(&p, &ratio);
     problem_free(&p);
     if (e) {
-        why_set(why, EX_SOFTWARE, "out of memory");
+        failure_set(failure, EX_SOFTWARE, "out of memory");
         return;
     }
     json_t *line = json_object(), *terms = json_err(&err);
@@ -78,20 +78,20 @@ int tool_main(int argc, char **argv)
 {
     struct reader *in;
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
-    while (!reader_next(in, NULL, &f, &more, &why) && more) {
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
+    while (!reader_next(in, NULL, &f, &more, &failure) && more) {
         const char *where = reader_where(in);
         if (f.foreign && !f.u) die(EX_DATAERR, "%s: no /solution: nsd-solve comes before", where);
         if (f.packed && !f.detected)
             die(EX_DATAERR, "%s: no group /contacts (nsd-step keeps them with --contacts)", where);
         if (f.packed && !f.contacts.found && f.contacts.n)
             die(EX_DATAERR, "%s: the contacts are not solved: nsd-solve comes before", where);
-        print(&f, &why);
-        if (why.status) break;
+        print(&f, &failure);
+        if (failure.status) break;
     }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     frame_free(&f);
     reader_close(in);
     finish_stdout();

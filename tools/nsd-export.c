@@ -17,7 +17,7 @@
 
 static int to, part = PART_GRAINS;
 static const char *output, *steps, *only;
-static struct chosen chosen; /* of the frame at hand, by --only */
+static struct selection chosen; /* of the frame at hand, by --only */
 static bool last;
 static int64_t detail = 2;
 
@@ -72,19 +72,19 @@ struct sheaf {
 
 static void sheaf_open(struct sheaf *s, const char *name)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *s = (struct sheaf){ .out = stdout };
-    if (name && !(s->out = output_stream(&s->file, name, &why))) die_why(&why);
+    if (name && !(s->out = output_stream(&s->file, name, &failure))) die_why(&failure);
 }
 
 static void sheaf_close(struct sheaf *s)
 {
-    struct why why = { 0 };
-    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &failure)) die_why(&failure);
     if (s->out == stdout)
         finish_stdout();
-    else if (output_stream_close(&s->file, s->out, &why))
-        die_why(&why);
+    else if (output_stream_close(&s->file, s->out, &failure))
+        die_why(&failure);
     s->out = NULL;
 }
 
@@ -100,7 +100,7 @@ static void show_rows(int64_t done, int64_t of)
 static void sheaf_add(struct sheaf *s, const struct format *format, enum part what,
                       const struct frame *f)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct export_frame m = { &f->packing, f->detected ? &f->contacts : NULL,
                               (int)detail, &s->kept,
                               &chosen,     show_rows };
@@ -122,11 +122,11 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
     if (!s->moments) s->solved = solved, s->sums = f->packing.sums.n > 0, s->format = format;
     struct some_bodies some = { 0 };
     if (chosen.bodies && !format->parts) {
-        if (some_bodies_init(&some, m.packing, &chosen, &why)) die_why(&why);
+        if (some_bodies_init(&some, m.packing, &chosen, &failure)) die_why(&failure);
         m.packing = &some.packing, m.contacts = NULL; // those have numbers of all bodies
     }
-    if (format->write(s->out, &m, what, !s->moments, &why))
-        die(why.status, "step %lld: %s", (long long)f->packing.step, why.text);
+    if (format->write(s->out, &m, what, !s->moments, &failure))
+        die(failure.status, "step %lld: %s", (long long)f->packing.step, failure.text);
     some_bodies_free(&some);
     s->moments++;
 }
@@ -199,19 +199,19 @@ static bool has_part(const struct frame *f, enum part what)
 static void directory_add(const struct format *format, enum part what, const struct frame *f,
                           int64_t k)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     size_t room = strlen(output) + 64;
     char *path = memory_of(room), name[64];
     struct pvd *list = &directory.list[what];
     directory_make(output);
     if (format->collected && !list->out) {
         snprintf(path, room, "%s/%s.pvd", output, part_name[what]);
-        if (pvd_begin(list, path, &why)) die_why(&why);
+        if (pvd_begin(list, path, &failure)) die_why(&failure);
     }
     snprintf(name, sizeof name, "%s-%05lld.%s", part_name[what], (long long)k, format->ending);
     snprintf(path, room, "%s/%s", output, name);
     write_file(path, format, what, f);
-    if (format->collected && pvd_add(list, name, f->packing.t, &why)) die_why(&why);
+    if (format->collected && pvd_add(list, name, f->packing.t, &failure)) die_why(&failure);
     free(path);
 }
 
@@ -226,9 +226,9 @@ static bool shown; /* whether any frame had the part that was asked for */
 /* What --only names, which the part has: grains are of bodies, boundaries of walls, contacts of either. */
 static void choose(const struct packing *p, enum target target)
 {
-    struct why why = { 0 };
-    if (chosen_init(&chosen, p, "--only", only, &why))
-        die(why.status, "step %lld: %s", (long long)p->step, why.text);
+    struct failure failure = { 0 };
+    if (selection_init(&chosen, p, "--only", only, &failure))
+        die(failure.status, "step %lld: %s", (long long)p->step, failure.text);
     if (!only || (target == TARGET_DIRECTORY && !cli_given(&part))) return;
     if (part == PART_BOUNDARY ? chosen.walls : part == PART_CONTACTS || chosen.bodies) return;
     die(EX_DATAERR, "--only: '%s' names %s; --part %s has no such names", only,
@@ -266,7 +266,7 @@ static void add_frame(const struct format *format, enum target target, const str
     tool_wants_packing(f, where);
     choose(&f->packing, target);
     export(format, target, f, k);
-    chosen_free(&chosen);
+    selection_free(&chosen);
 }
 
 static enum target target_of(const struct format **format)
@@ -289,28 +289,28 @@ static enum target target_of(const struct format **format)
 static void run(struct reader *in, const struct format *format, enum target target)
 {
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct range range;
     bool more;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (target == TARGET_FILE) sheaf_open(&single, output);
     int64_t k = 0;
-    if (last && !reader_last(in, &f, &more, &why) && more)
+    if (last && !reader_last(in, &f, &more, &failure) && more)
         add_frame(format, target, &f, reader_where(in), k++);
-    while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more) {
+    while (!last && !reader_next(in, steps ? &range : NULL, &f, &more, &failure) && more) {
         add_frame(format, target, &f, reader_where(in), k++);
         exported = k;
         progress("%lld frames", (long long)k);
     }
     progress_end();
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     if (!shown)
         die(EX_DATAERR, "%s: no %s in any frame", reader_where(in),
             part == PART_CONTACTS ? "group /contacts" : part_name[part]);
     for (int what = 0; what < PART_COUNT; what++)
-        if (pvd_end(&directory.list[what], &why)) die_why(&why);
+        if (pvd_end(&directory.list[what], &failure)) die_why(&failure);
     if (target == TARGET_FILE) sheaf_close(&single);
     frame_free(&f);
 }
@@ -318,10 +318,10 @@ static void run(struct reader *in, const struct format *format, enum target targ
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const struct format *format;
     enum target target = target_of(&format);
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     run(in, format, target);
     reader_close(in);

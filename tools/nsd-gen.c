@@ -54,21 +54,21 @@ static void read_scene(struct scene *s, const char *path, char **dir)
 {
     bool standard = !strcmp(path, "-");
     const char *name = standard ? "standard input" : path;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     size_t n;
     FILE *f = standard ? stdin : fopen(path, "r");
     if (!f) die(EX_NOINPUT, "%s: %s", name, strerror(errno));
-    char *text = scene_file_slurp(f, name, &n, &why);
-    if (!text) die_why(&why);
+    char *text = scene_file_slurp(f, name, &n, &failure);
+    if (!text) die_why(&failure);
     if (!standard) {
         fclose(f);
         char *copy = strdup(path);
         *dir = copy ? strdup(dirname(copy)) : NULL;
         free(copy);
     }
-    scene_file_parse(s, text, n, name, *dir, &why);
+    scene_file_parse(s, text, n, name, *dir, &failure);
     free(text);
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
 }
 
 /* "500", "1e6" and also "-5" are numbers, in range or not; all else is the name of a file. */
@@ -99,7 +99,7 @@ static json_t *pairs_json(const struct packing *p)
 static void scene_around(struct scene *s, struct packing *p, const struct import_said *said,
                          const char *path)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     json_t *kinds = json_object();
     for (int32_t k = 0; k < p->kinds && (p->kinds > 1 || said->laws); k++)
         json_object_set_new(kinds, p->kind_name[k], json_object());
@@ -110,20 +110,20 @@ static void scene_around(struct scene *s, struct packing *p, const struct import
     if (said->laws) json_object_set_new(scene, "pairs", pairs_json(p));
     char *text = scene ? json_dumps(scene, JSON_COMPACT) : NULL;
     if (!text) die(EX_DATAERR, "%s: a name that is no UTF-8", path);
-    if (scene_parse(s, text, strlen(text), NULL, &why)) die_why(&why);
+    if (scene_parse(s, text, strlen(text), NULL, &failure)) die_why(&failure);
     free(text), json_decref(scene);
     s->bodies[0].document = p, s->bodies[0].unsaid = !said->masses;
 }
 
 static void read_from(struct scene *s, const char *path)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing *p = calloc(1, sizeof *p);
     const struct import_wish wish = { .dim = (int)dim, .frame = -1 };
     struct import_said said;
     if (!p) die(EX_SOFTWARE, "no memory for a packing");
     progress("reading %s", path);
-    if (import_file(p, path, &wish, &said, &why)) die_why(&why);
+    if (import_file(p, path, &wish, &said, &failure)) die_why(&failure);
     progress_end();
     scene_around(s, p, &said, path);
 }
@@ -131,30 +131,30 @@ static void read_from(struct scene *s, const char *path)
 /* As a reason, for the name is out of a file */
 static void say_left_out(const struct scene_mesh *m)
 {
-    struct why why = { 0 };
-    why_set(&why, EX_DATAERR,
+    struct failure failure = { 0 };
+    failure_set(&failure, EX_DATAERR,
             "%s: left out: %d triangles that have no area, or the corners of another", m->file,
             m->left_out);
-    if (m->left_out) warn("%s", why.text);
+    if (m->left_out) warn("%s", failure.text);
 }
 
 static void say_fit(const struct scene_fit *f)
 {
-    struct why why = { 0 };
-    why_set(
-        &why, EX_DATAERR,
+    struct failure failure = { 0 };
+    failure_set(
+        &failure, EX_DATAERR,
         "shape \"%s\": %d balls: volume %+.2g, distance %.2g of the radius around it, moments %.2g "
         "of their sum",
         f->shape, f->balls, f->volume, f->distance, f->moments);
-    warn("%s", why.text);
+    warn("%s", failure.text);
 }
 
 /* As a reason, for the name is out of a scene */
 static void say_one_lost(const char *file, const char *what)
 {
-    struct why why = { 0 };
-    why_set(&why, EX_DATAERR, "warning: %s: %s", file, what);
-    warn("%s", why.text);
+    struct failure failure = { 0 };
+    failure_set(&failure, EX_DATAERR, "warning: %s: %s", file, what);
+    warn("%s", failure.text);
 }
 
 static void say_lost(const struct scene_lost *lost)
@@ -212,7 +212,7 @@ static json_t *masses_json(const struct packing *p)
     json_t *list = json_array();
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        double lever = room_has(w) && w->load.mass > 0 ? wall_lever(p, w, p->t) : 0;
+        double lever = servo_box_has(w) && w->load.mass > 0 ? wall_lever(p, w, p->t) : 0;
         double has = lever != 0 ? w->load.mass / (lever * lever) : w->load.mass;
         double mass = w->load.way == LOAD_GLIDES || lever != 0 ? time_step_wall_mass(p, w) : 0;
         if (mass > 0) add_mass(list, "wall", k, has, mass, "one layer of the grains on it");
@@ -309,10 +309,10 @@ static void add_sizes(json_t *list, const struct scene *s, int64_t g, const doub
 {
     const struct scene_bodies *b = &s->bodies[g];
     struct size_table asked, drawn = { 0 };
-    struct why why = { 0 };
-    if (size_table_asked(&asked, &b->size, s->dim, &why) ||
-        size_table_drawn(&drawn, radius, n, s->dim, &why))
-        die_why(&why);
+    struct failure failure = { 0 };
+    if (size_table_asked(&asked, &b->size, s->dim, &failure) ||
+        size_table_drawn(&drawn, radius, n, s->dim, &failure))
+        die_why(&failure);
     static const char *const of[SIZE_SHARES] = { "number", "mass" };
     warn("bodies[%lld]: %lld %s, mean diameter%s %.4g m, drawn %.4g", (long long)g, (long long)n,
          b->form.shape ? "shapes" : "grains", b->form.shape ? " of the balls around them" : "",
@@ -380,20 +380,20 @@ int tool_main(int argc, char **argv)
     struct scene scene;
     struct frame frame = { .packed = true };
     struct writer *out = NULL;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     char *dir = NULL;
     if (from && argc) die_usage("--from takes the place of %s", argv[0]);
     if (!from && (argc != 1 || !*argv[0])) die_usage("one operand: a number of balls, or a scene");
     if (from && dim != 3)
         die_usage("--from has balls; discs are a scene's: \"dim\": 2, \"import\"");
-    if (!check && writer_open(&out, NULL, WRITER_STREAM, &why)) die_why(&why);
+    if (!check && writer_open(&out, NULL, WRITER_STREAM, &failure)) die_why(&failure);
     double n;
     if (from)
         read_from(&scene, from);
     else if (is_number(argv[0], &n)) {
         if (!(n >= 0 && n <= INT32_MAX && n == floor(n)))
             die_usage("%s: not a number of balls (0 to %d)", argv[0], INT32_MAX);
-        if (scene_paper(&scene, (int)dim, (int64_t)n, &why)) die_why(&why);
+        if (scene_paper(&scene, (int)dim, (int64_t)n, &failure)) die_why(&failure);
     } else {
         read_scene(&scene, argv[0], &dir);
     }
@@ -401,14 +401,14 @@ int tool_main(int argc, char **argv)
     for (int32_t k = 0; k < scene.fits; k++) say_fit(&scene.fit[k]);
     if (check && !(scene.built = calloc((size_t)scene.groups + 1, sizeof *scene.built)))
         die(EX_SOFTWARE, "no memory for the sizes of grains");
-    if (scene_build(&frame.packing, &scene, dir, &why)) die_why(&why);
+    if (scene_build(&frame.packing, &scene, dir, &failure)) die_why(&failure);
     const struct scene_lost lost = scene_lost(&frame.packing, &scene);
     if (lost.file) say_lost(&lost);
     if (check)
         tell(&scene, &frame.packing);
-    else if (frame_note(&frame, cli_history(), &why) || writer_frame(out, &frame, &why) ||
-             writer_close(out, &why))
-        die_why(&why);
+    else if (frame_note(&frame, cli_history(), &failure) || writer_frame(out, &frame, &failure) ||
+             writer_close(out, &failure))
+        die_why(&failure);
     free(dir), free(scene.built);
     scene_free(&scene);
     frame_free(&frame);

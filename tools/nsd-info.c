@@ -15,7 +15,7 @@
 
 static bool last, particles, contacts, walls, history, events, scene;
 static const char *steps, *only;
-static struct chosen chosen; /* of the frame at hand, by --only */
+static struct selection chosen; /* of the frame at hand, by --only */
 static bool shown;           /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
@@ -125,7 +125,7 @@ static void show_document(const struct frame *f, int64_t frames)
 }
 
 /* How many bodies pours have brought, or removals have taken, so far, and their mass */
-static void show_passages(json_t *j, const char *name, int32_t n, const struct passage *passed)
+static void show_passages(json_t *j, const char *name, int32_t n, const struct flow_count *passed)
 {
     json_t *list = json_array();
     for (int32_t k = 0; k < n; k++)
@@ -147,9 +147,9 @@ static json_t *stress(const struct frame *f)
 {
     static const struct asked all = { .axis = -1 };
     struct snapshot s;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     vec3 row[3];
-    snapshot_init(&s, &f->packing, &f->contacts, f->moved, &all, &why);
+    snapshot_init(&s, &f->packing, &f->contacts, f->moved, &all, &failure);
     struct tensor T = stress_contacts(&s, &s.whole);
     tensor_scale(&T, 1 / s.whole.volume);
     for (int k = 0; k < 3; k++) row[k] = v3(T.x[k][0], T.x[k][1], T.x[k][2]);
@@ -193,7 +193,7 @@ static void show_moment(const struct frame *f)
 static void show_particles(const struct packing *p)
 {
     for (int64_t i = 0; i < p->n; i++) {
-        if (!chosen_body(&chosen, p, i)) continue;
+        if (!selection_body(&chosen, p, i)) continue;
         const double q[4] = { p->q[i].w, p->q[i].x, p->q[i].y, p->q[i].z };
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
@@ -238,7 +238,7 @@ static json_t *load(const struct packing *p, const struct wall *w)
 {
     const struct load *l = &w->load;
     json_t *j = json_object();
-    bool turns = l->way == LOAD_TURNS, room = room_has(w);
+    bool turns = l->way == LOAD_TURNS, room = servo_box_has(w);
     if (room) json_object_set_new(j, "center", json_vec(l->point));
     if (room) json_object_set_new(j, "lever", json_number(wall_lever(p, w, p->t)));
     json_object_set_new(j, turns ? "about" : "along", json_vec(l->axis));
@@ -281,7 +281,7 @@ static void show_walls(const struct packing *p)
     for (int32_t i = 0; i < p->walls; i++) {
         const struct wall *w = &p->wall[i];
         const char *name = names_of_wall(&p->names, i);
-        if (!chosen_wall(&chosen, p, i)) continue;
+        if (!selection_wall(&chosen, p, i)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
@@ -325,14 +325,14 @@ static void show_contacts(const struct frame *f)
     static const char *const status[] = { "free", "stick", "slide", "jammed", "summed" };
     const struct packing *p = &f->packing;
     struct wall_faces faces;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     shown = true;
-    if (face_of_init(&faces, p, p->names.rows > 0, &why)) die_why(&why);
+    if (face_of_init(&faces, p, p->names.rows > 0, &failure)) die_why(&failure);
     for (int64_t i = 0; i < f->contacts.n; i++) {
         const struct contact *c = &f->contacts.c[i];
         const char *name =
             c->a < 0 ? names_of_face(&p->names, -1 - c->a, face_of_contact(&faces, p, c, 0)) : NULL;
-        if (only && !chosen_contact(&chosen, p, &faces, c)) continue;
+        if (only && !selection_contact(&chosen, p, &faces, c)) continue;
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(f->packing.step));
         json_object_set_new(j, "body", json_pack("[i,i]", c->a, c->b));
@@ -394,9 +394,9 @@ static void show_sweeps(const struct frame *f)
 
 static void show(const struct frame *f)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (only && !f->packed) die(EX_DATAERR, "--only: a contact problem has no names");
-    if (only && chosen_init(&chosen, &f->packing, "--only", only, &why)) die_why(&why);
+    if (only && selection_init(&chosen, &f->packing, "--only", only, &failure)) die_why(&failure);
     if (particles && f->packed) show_particles(&f->packing);
     if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
@@ -404,7 +404,7 @@ static void show(const struct frame *f)
     if (contacts && f->detected) show_contacts(f);
     if (history && f->report.history) show_sweeps(f);
     if (!particles && !walls && !contacts && !history && !events) show_moment(f);
-    chosen_free(&chosen);
+    selection_free(&chosen);
 }
 
 /* ---- --scene ---- */
@@ -455,8 +455,8 @@ static void set_room(json_t *room, const struct packing *p)
 {
     json_t *travel = json_array();
     for (int32_t w = 0; w < p->walls; w++)
-        if (room_has(&p->wall[w])) json_array_append_new(travel, json_real(p->wall[w].load.travel));
-    if (room) json_object_set_new(room, "growth", json_real(room_growth(p)));
+        if (servo_box_has(&p->wall[w])) json_array_append_new(travel, json_real(p->wall[w].load.travel));
+    if (room) json_object_set_new(room, "growth", json_real(servo_box_growth(p)));
     if (room) json_object_set(room, "travel", travel);
     json_decref(travel);
 }
@@ -469,7 +469,7 @@ static void set_cell(json_t *cell)
 }
 
 /* Pours and removals go on, too: what they have done by now, and the beginning that was the scene's. */
-static void set_passages(json_t *list, const char *key, const struct passage *done, int32_t n,
+static void set_passages(json_t *list, const char *key, const struct flow_count *done, int32_t n,
                          double began)
 {
     for (int32_t k = 0; k < n && (size_t)k < json_array_size(list); k++) {
@@ -523,7 +523,7 @@ int tool_main(int argc, char **argv)
     struct reader *in;
     struct frame f = { 0 };
     struct range range;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more, part = particles || walls || contacts || history || events;
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
@@ -532,25 +532,25 @@ int tool_main(int argc, char **argv)
         die_usage("--only: needs -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (scene) last = true;
     if (last) {
-        if (reader_last(in, &f, &more, &why)) die_why(&why);
+        if (reader_last(in, &f, &more, &failure)) die_why(&failure);
         if (scene && (!more || !f.packed)) die(EX_DATAERR, "%s: no bodies", reader_where(in));
         if (scene)
             show_scene(&f.packing, argv[0]);
         else if (more)
             show(&f);
     }
-    while (!last && !why.status && !reader_document(in, &frames, &why) && frames >= 0)
+    while (!last && !failure.status && !reader_document(in, &frames, &failure) && frames >= 0)
         for (int64_t k = 0; k < frames; k++) {
             bool wanted = reader_has(in, k, &range), first = k == 0 && !part;
             if (!wanted && !first) continue;
-            if (reader_frame(in, k, &f, &why)) break;
+            if (reader_frame(in, k, &f, &failure)) break;
             if (first) show_document(&f, frames);
             if (wanted) show(&f);
         }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (contacts && !shown) die(EX_DATAERR, "%s: no group /contacts", reader_where(in));
     if (history && !shown)
         die(EX_DATAERR, "%s: no history: nsd-solve --history keeps it", reader_where(in));

@@ -17,15 +17,15 @@ const struct cli_tool tool = {
 
 static void move(struct frame *f, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     tool_wants_solution(f, where);
     struct impulses sum = { 0 };
-    if (f->packing.sums.n && !impulses_init(&sum, &f->packing, &f->contacts, false, &why))
-        sum_step(&f->packing, &f->contacts, &sum, &why);
+    if (f->packing.sums.n && !impulses_init(&sum, &f->packing, &f->contacts, false, &failure))
+        sum_step(&f->packing, &f->contacts, &sum, &failure);
     impulses_free(&sum);
     struct projected did = { 0 };
     f->report.balance.peculiar_change = -energy_peculiar(&f->packing, NULL);
-    if (why.status || move_step(&f->packing, &f->contacts, &did, &why)) die_why(&why);
+    if (failure.status || move_step(&f->packing, &f->contacts, &did, &failure)) die_why(&failure);
     did.peculiar = energy_peculiar(&f->packing, NULL);
     if (f->reported) step_report_moved(&f->report, &f->packing, &did);
     f->detected = false, f->stale = true;

@@ -81,16 +81,16 @@ static void show(int32_t sweeps, double value)
 /* The reactions to start from: those of the last step; with --warm those that the document has already */
 static void start_from(struct frame *f, const struct step_opt *o)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct memory *m = &f->packing.memory;
     memory_set(m, o->warm);
     if (!o->warm || (cli_given(&options.warm) && f->contacts.found)) return;
-    if (memory_give(m, &f->contacts, packing_rolls(&f->packing), &why)) die_why(&why);
+    if (memory_give(m, &f->contacts, packing_rolls(&f->packing), &failure)) die_why(&failure);
 }
 
 static void solve(struct frame *f, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (!f->foreign) tool_wants_contacts(f, where);
     struct step_opt o = options_step(f->foreign ? 1 : f->packing.dt, f->foreign);
     o.solve.progress = show;
@@ -100,13 +100,13 @@ static void solve(struct frame *f, const char *where)
         options_theta(&f->packing, true);
         options_overlap(&f->packing, true);
         start_from(f, &o);
-        if (step_solve(&f->packing, &f->contacts, &o, &f->report, &why)) die_why(&why);
+        if (step_solve(&f->packing, &f->contacts, &o, &f->report, &failure)) die_why(&failure);
     } else {
         struct delassus *W = &f->problem.W;
         free(f->u);
         f->u = calloc((size_t)(W->d * W->n) + 1, sizeof *f->u);
         if (!f->u) die(EX_SOFTWARE, "%s: no memory", where);
-        if (step_solve_delassus(W, f->u, &o, &f->report, &why)) die_why(&why);
+        if (step_solve_delassus(W, f->u, &o, &f->report, &failure)) die_why(&failure);
     }
     f->reported = true;
     f->forces |= forces;

@@ -89,8 +89,8 @@ static void choose(const struct measure *m)
 
 static void choose_named(const char *text)
 {
-    struct why why = { 0 };
-    if (measured_choose(chosen, text, &why)) die_usage("%s", why.text);
+    struct failure failure = { 0 };
+    if (measured_choose(chosen, text, &failure)) die_usage("%s", failure.text);
 }
 
 static void choose_all(void)
@@ -108,8 +108,8 @@ static void choose_all(void)
 
 static void parse_one(const char *name, const char *text)
 {
-    struct why why = { 0 };
-    if (text && asked_set(&asked, name, text, &why)) die_usage("%s", why.text);
+    struct failure failure = { 0 };
+    if (text && asked_set(&asked, name, text, &failure)) die_usage("%s", failure.text);
 }
 
 static void parse(void)
@@ -199,32 +199,32 @@ static void write_vti(const struct packing *p)
     else
         snprintf(name, sizeof name, "%s", fields_to);
     struct output file;
-    struct why why = { 0 };
-    FILE *out = output_stream(&file, name, &why);
+    struct failure failure = { 0 };
+    FILE *out = output_stream(&file, name, &failure);
     if (out) vti_write(out, &coarse.fields, p->step, p->t);
-    if (!out || output_stream_close(&file, out, &why)) die_why(&why);
+    if (!out || output_stream_close(&file, out, &failure)) die_why(&failure);
 }
 
-static void add_fields(const struct snapshot *s, struct why *why)
+static void add_fields(const struct snapshot *s, struct failure *failure)
 {
     bool document = ends(fields_to, ".h5");
     // the grid of the first frame is that of all
-    if (!coarse.frames && fields_init(&coarse.fields, s, width, spacing, why)) return;
-    if (fields_set(&coarse.fields, s, why)) return;
+    if (!coarse.frames && fields_init(&coarse.fields, s, width, spacing, failure)) return;
+    if (fields_set(&coarse.fields, s, failure)) return;
     if (!document) {
         write_vti(s->p);
     } else {
         if (!coarse.frames &&
-            fields_file_open(&coarse.file, fields_to, &coarse.fields, cli_history(), why))
+            fields_file_open(&coarse.file, fields_to, &coarse.fields, cli_history(), failure))
             return;
-        if (fields_file_add(coarse.file, &coarse.fields, s->p->step, s->p->t, why)) return;
+        if (fields_file_add(coarse.file, &coarse.fields, s->p->step, s->p->t, failure)) return;
     }
     coarse.frames++;
 }
 
 /* ---- frames ---- */
 
-static struct kept first, before;
+static struct frame_memory first, before;
 
 /* Steps that have not converged: their reactions are no solution, nor is the motion that these make. */
 static struct {
@@ -254,19 +254,19 @@ static void say_missed(int64_t frames)
              missed.steps, missed.first, (long long)frames, (long long)missed.frames);
 }
 
-static void show(const struct frame *f, const char *where, int64_t k, struct why *why)
+static void show(const struct frame *f, const char *where, int64_t k, struct failure *failure)
 {
     struct snapshot s;
     struct table t[MOST_MEASURES];
     tool_wants_packing(f, where);
     if (asked.boxed && f->packing.dim == 3 && !isfinite(asked.lo[2]))
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
-    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, why);
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, failure);
     if (k) s.first = &first, s.before = &before;
     s.unconverged = count_missed(f);
     if (fields_to && s.only.bodies)
         die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
-    if (measured_run(t, chosen, &s, why)) {
+    if (measured_run(t, chosen, &s, failure)) {
         measured_free(t), snapshot_free(&s);
         return;
     }
@@ -278,40 +278,40 @@ static void show(const struct frame *f, const char *where, int64_t k, struct why
     }
     measured_free(t);
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
-    if (fields_to) add_fields(&s, why);
-    if (measured_remember(chosen) && !why->status) measured_keep(chosen, &s, &first, &before, why);
+    if (fields_to) add_fields(&s, failure);
+    if (measured_remember(chosen) && !failure->status) measured_keep(chosen, &s, &first, &before, failure);
     snapshot_free(&s);
 }
 
 static void run(struct reader *in)
 {
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct range range;
     bool more;
     int64_t k = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (tsv) head_tsv();
-    if (last && !reader_last(in, &f, &more, &why) && more) show(&f, reader_where(in), k++, &why);
-    while (!last && !why.status && !reader_next(in, steps ? &range : NULL, &f, &more, &why) &&
+    if (last && !reader_last(in, &f, &more, &failure) && more) show(&f, reader_where(in), k++, &failure);
+    while (!last && !failure.status && !reader_next(in, steps ? &range : NULL, &f, &more, &failure) &&
            more) {
-        show(&f, reader_where(in), k++, &why);
+        show(&f, reader_where(in), k++, &failure);
         progress("%lld frames", (long long)k);
     }
     progress_end();
-    if (coarse.file && !why.status) fields_file_close(coarse.file, &why);
-    if (why.status) die_why(&why);
+    if (coarse.file && !failure.status) fields_file_close(coarse.file, &failure);
+    if (failure.status) die_why(&failure);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     say_missed(k);
     frame_free(&f);
-    kept_free(&first), kept_free(&before), fields_free(&coarse.fields);
+    frame_memory_free(&first), frame_memory_free(&before), fields_free(&coarse.fields);
 }
 
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (list) {
         show_list();
         finish_stdout();
@@ -322,7 +322,7 @@ int tool_main(int argc, char **argv)
     if (fields_to && !ends(fields_to, ".h5") && !ends(fields_to, ".vti"))
         die_usage("--fields: '%s' does not end in .h5 or .vti", fields_to);
     if (fields_to && ends(fields_to, ".vti")) number_in(fields_to);
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (fields_to && reader_reads(argc, argv, fields_to))
         die_usage("%s: is also the input", fields_to);
     run(in);

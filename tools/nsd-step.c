@@ -306,8 +306,8 @@ struct run {
     bool other_bodies;       /* than in the step before */
     bool fails;              /* the run ends with the step that was made */
     char end[200];           /* why the next step was not made, or "" */
-    struct acts acts;        /* what a program in the loop has answered */
-    struct why ended; /* why that program has ended the run; status 0: it said so, or has not */
+    struct control acts;        /* what a program in the loop has answered */
+    struct failure ended; /* why that program has ended the run; status 0: it said so, or has not */
     bool told_to_stop;
     struct step_opt o;
     double saved;    /* s of real time: when the state was saved last */
@@ -351,28 +351,28 @@ static bool save_due(const struct run *r)
 /* The frame with the forces that last, borrowed: those of a document. What a program answers is kept as it said it. */
 static struct frame with_forces(struct run *r)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct frame f = r->f;
     if (loop_asks() || !steps) return f;
-    if (r->acts.id && acts_arrays(&r->acts, &r->f.packing, &why)) die_why(&why);
-    f.packing.outside.lasts = acts_lend(&r->acts, f.packing.walls);
+    if (r->acts.id && control_arrays(&r->acts, &r->f.packing, &failure)) die_why(&failure);
+    f.packing.outside.lasts = control_lend(&r->acts, f.packing.walls);
     return f;
 }
 
 /* The state as a document of its own, which takes the place of the one before in one stroke */
 static void save_state(struct run *r)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct writer *out;
     struct frame f = with_forces(r);
     f.detected = f.detected || options.warm; // a warm step begins with these
     bool background = r->background;
-    if (background_close(r->background, &why)) die_why(&why); // libhdf5 has one user at a time
+    if (background_close(r->background, &failure)) die_why(&failure); // libhdf5 has one user at a time
     r->background = NULL;
-    if (writer_open(&out, r->save_path, WRITER_COPY, &why) || writer_frame(out, &f, &why) ||
-        writer_close(out, &why))
-        die_why(&why);
-    if (background) background_open(&r->background, r->out, &(struct why){ 0 });
+    if (writer_open(&out, r->save_path, WRITER_COPY, &failure) || writer_frame(out, &f, &failure) ||
+        writer_close(out, &failure))
+        die_why(&failure);
+    if (background) background_open(&r->background, r->out, &(struct failure){ 0 });
     r->saved = seconds_now();
 }
 
@@ -387,8 +387,8 @@ static void save_end(struct run *r)
 /* Bodies come and go, as the step begins. */
 static void flow(struct run *r)
 {
-    struct why why = { 0 };
-    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &failure)) die_why(&failure);
 }
 
 /* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings
@@ -411,11 +411,11 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 /* dt of the step to come */
 static void adapt(struct run *r)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing *p = &r->f.packing;
     double had = p->dt;
     if (!(tol > 0)) return;
-    if (adapt_step(p, tol, &r->ahead, &why)) die_why(&why);
+    if (adapt_step(p, tol, &r->ahead, &failure)) die_why(&failure);
     if (p->dt == had) return;
     if (p->halved == ADAPT_MOST && !total.shortest++)
         warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
@@ -449,17 +449,17 @@ static bool is_bare(const struct run *r, int64_t k, bool last)
 /* Makes one step, the k-th; false where it cannot be made, and the bodies have not moved. */
 static bool advance(struct run *r, int64_t k, bool saves)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
     adapt(r);
     flow(r);
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
-    if (acts_begin(&r->acts, &f->packing, &why)) die_why(&why);
+    if (control_begin(&r->acts, &f->packing, &failure)) die_why(&failure);
     r->o.bare = !saves && is_bare(r, k, last);
-    const struct changes changes = { r->other_bodies, loop_asks() || acts_any(&r->acts) };
-    if (processes_step(f, &r->memory, changes, &r->o, &why)) die_why(&why);
+    const struct changes changes = { r->other_bodies, loop_asks() || control_any(&r->acts) };
+    if (processes_step(f, &r->memory, changes, &r->o, &failure)) die_why(&failure);
     f->reported = f->moved = true;
     count(rep);
     const bool good = report_made(rep);
@@ -474,11 +474,11 @@ static bool advance(struct run *r, int64_t k, bool saves)
 
 static void write_frame(struct run *r)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const struct frame f = with_forces(r);
-    if ((r->background ? background_frame(r->background, &f, &why)
-                       : writer_frame(r->out, &f, &why)))
-        die_why(&why);
+    if ((r->background ? background_frame(r->background, &f, &failure)
+                       : writer_frame(r->out, &f, &failure)))
+        die_why(&failure);
     r->f.packing.events.n = r->f.packing.outside.length = 0; // they are written
 }
 
@@ -519,18 +519,18 @@ static void warn_small(const struct frame *f, enum order order)
 
 static void begin(struct run *r)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct frame *f = &r->f;
     r->o = options_step(f->packing.dt, false);
     warn_small(f, r->o.order);
-    if (flow_read(&r->flow, &f->packing, &why)) die_why(&why);
+    if (flow_read(&r->flow, &f->packing, &failure)) die_why(&failure);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
     if (f->packing.outside.length && !loop_asks())
         warn("a program (--with) acted on the run so far, and nothing acts on it now: --with or "
              "--replay");
-    if (acts_take(&r->acts, &f->packing, &why)) die_why(&why);
-    outside_forget(&f->packing.outside);
+    if (control_take(&r->acts, &f->packing, &failure)) die_why(&failure);
+    external_force_forget(&f->packing.outside);
     report_free(&f->report);
     f->report.options = options_json(&r->o);
     f->detected = contacts || forces;
@@ -543,12 +543,12 @@ static int64_t run(struct run *r)
 {
     int64_t made = 0;
     bool good = true;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     begin(r);
     // where there is no other thread, this one writes; and with others, who have the bodies
     // and beside a program in the loop, which may want documents
     if (options.threads > 1 && steps && !r->f.distributed && !loop_asks())
-        background_open(&r->background, r->out, &(struct why){ 0 });
+        background_open(&r->background, r->out, &(struct failure){ 0 });
     bool ends = !steps;
     while (!ends) {
         if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
@@ -573,9 +573,9 @@ static int64_t run(struct run *r)
     if (!steps && !in_place) write_frame(r);
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
-    acts_free(&r->acts);
+    control_free(&r->acts);
     flow_free(&r->flow);
-    if (background_close(r->background, &why)) die_why(&why);
+    if (background_close(r->background, &failure)) die_why(&failure);
     return made;
 }
 
@@ -590,7 +590,7 @@ static void count_steps(const struct packing *p)
     steps = n > 0 ? (int64_t)n : 0; // but for rounding
     while (steps && packing_time(p, p->step + steps - 1) >= reached) steps--;
     while (packing_time(p, p->step + steps) < reached &&
-           !packing_check_clock(p, &(struct why){ 0 }))
+           !packing_check_clock(p, &(struct failure){ 0 }))
         steps++;
     expected = steps;
     if (steps && tol > 0) steps = INT64_MAX; // is_then() sees
@@ -633,7 +633,7 @@ static void take_tolerance(const struct packing *p)
 /* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
 static void set_dt(struct packing *p, double asked, const char *path)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     take_tolerance(p);
     if (path && tol > 0 && !p->adapts)
         die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
@@ -646,37 +646,37 @@ static void set_dt(struct packing *p, double asked, const char *path)
     memory_scale(&p->memory, asked / p->dt);
     p->halved = 0;
     packing_set_dt(p, asked);
-    if (packing_check_clock(p, &why)) die_why(&why);
+    if (packing_check_clock(p, &failure)) die_why(&failure);
 }
 
 /* The frames of the file go into the one that takes its place, the last one stays in f. */
 static void copy_all(struct reader *in, struct writer *out, struct frame *f)
 {
     struct frame next = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
     int64_t frames = 0;
-    while (!reader_next(in, NULL, &next, &more, &why) && more) {
+    while (!reader_next(in, NULL, &next, &more, &failure) && more) {
         tool_wants_packing(&next, reader_where(in));
         const char *lost = reader_loses(in);
         if (lost)
             die(EX_DATAERR,
                 "%s: %s is not known, and depends on time: use -o FILE to continue without it",
                 reader_where(in), lost);
-        if (!frames++ && frame_note(&next, cli_history(), &why)) break;
-        if (writer_frame(out, &next, &why)) die(why.status, "%s: %s", reader_where(in), why.text);
+        if (!frames++ && frame_note(&next, cli_history(), &failure)) break;
+        if (writer_frame(out, &next, &failure)) die(failure.status, "%s: %s", reader_where(in), failure.text);
         frame_free(f);
         *f = next, next = (struct frame){ 0 };
         progress("%lld frames copied", (long long)frames);
     }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (!frames) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
 }
 
 static void start_in_place(struct run *r, struct reader *in, const char *path, double asked)
 {
-    struct why why = { 0 };
-    if (writer_open(&r->out, path, WRITER_IN_PLACE, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (writer_open(&r->out, path, WRITER_IN_PLACE, &failure)) die_why(&failure);
     copy_all(in, r->out, &r->f);
     double theta = r->f.packing.theta;
     set_dt(&r->f.packing, asked, path);
@@ -684,21 +684,21 @@ static void start_in_place(struct run *r, struct reader *in, const char *path, d
     options_overlap(&r->f.packing, false);
     if (theta != r->f.packing.theta)
         die_usage("--theta: %s has %g, and a trajectory has one", path, theta);
-    if (writer_take_place(r->out, &why)) die_why(&why);
+    if (writer_take_place(r->out, &failure)) die_why(&failure);
 }
 
 static void start(struct run *r, struct reader *in, double asked)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
-    if (reader_last(in, &r->f, &more, &why)) die_why(&why);
+    if (reader_last(in, &r->f, &more, &failure)) die_why(&failure);
     if (!more) die(EX_DATAERR, "%s: no frame to start from", reader_where(in));
     tool_wants_packing(&r->f, reader_where(in));
     set_dt(&r->f.packing, asked, NULL);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
-    if (writer_open(&r->out, output, WRITER_TRAJECTORY, &why)) die_why(&why);
-    if (frame_note(&r->f, cli_history(), &why)) die_why(&why);
+    if (writer_open(&r->out, output, WRITER_TRAJECTORY, &failure)) die_why(&failure);
+    if (frame_note(&r->f, cli_history(), &failure)) die_why(&failure);
 }
 
 /* Memory of a step is kept for the next, and not given back and asked for page by page each time. */
@@ -713,7 +713,7 @@ int tool_main(int argc, char **argv)
 {
     struct reader *in;
     struct run r = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool file = argc == 1 && strcmp(argv[0], "-") != 0;
     options_check();
     loop_check();
@@ -731,7 +731,7 @@ int tool_main(int argc, char **argv)
     if (processes_started() && !output && !in_place)
         die_usage("under mpirun the output goes to a file: -o FILE, or -i");
     progress_lines(lines);
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
     // a program in the loop needs all bodies, and their contacts, in one place
     struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
@@ -747,12 +747,12 @@ int tool_main(int argc, char **argv)
             die_usage(
                 "--sums: %s keeps none, and a trajectory has them from its first frame: -o FILE",
                 argv[0]);
-        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t, &why))
-            die_why(&why);
+        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t, &failure))
+            die_why(&failure);
     }
     count_steps(&r.f.packing);
     loop_choose_boundaries(&r.f.packing);
-    if (steps && !in_place && writer_begin(r.out, &r.f, &why)) die_why(&why);
+    if (steps && !in_place && writer_begin(r.out, &r.f, &failure)) die_why(&failure);
     options_log_open(argc, argv, output);
     save_begin(&r, in_place ? argv[0] : output);
     if (r.save_path && reader_reads(argc, argv, r.save_path))
@@ -761,7 +761,7 @@ int tool_main(int argc, char **argv)
     take_signals();
     const int64_t wanted = steps;
     const int64_t made = run(&r);
-    if (writer_close(r.out, &why)) die_why(&why);
+    if (writer_close(r.out, &failure)) die_why(&failure);
     save_end(&r);
     options_log_close();
     if (loop_asks()) loop_close(&r.ended);

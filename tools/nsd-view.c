@@ -242,8 +242,8 @@ static double *shown; /* [bodies] of the frame at hand, where the colour is not 
 static void add_images(struct view *v, struct frame *f)
 {
     int64_t *of;
-    struct why why = { 0 };
-    if (images_append(&f->packing, &of, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (images_append(&f->packing, &of, &failure)) die_why(&failure);
     if (of && colour_meaning[colour].given) {
         double *more = malloc((size_t)(f->packing.n + 1) * sizeof *more);
         if (!more) die(EX_SOFTWARE, "no memory for %lld bodies", (long long)f->packing.n);
@@ -276,7 +276,7 @@ static bool wants_solid(void)
 /* The solid boundaries of a frame */
 static void set_solid(struct view *v, const struct frame *f, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     double x[2] = { NAN, NAN };
     if (!wants_solid()) return;
     if (f->packing.dim == 2)
@@ -286,7 +286,7 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
         die_usage("--surface-range: '%s' is not LO,HI, the first below the second", surface_range);
     solid_free(&solid);
     const struct solid_opt opt = { solid_names, (enum solid_by)surface, x[0], x[1], &v->paint };
-    if (solid_init(&solid, &f->packing, &opt, &why)) die(why.status, "%s: %s", where, why.text);
+    if (solid_init(&solid, &f->packing, &opt, &failure)) die(failure.status, "%s: %s", where, failure.text);
     v->solid = over.solid = &solid;
 }
 
@@ -294,12 +294,12 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
 /* The bodies of the frame that --only names */
 static void set_only(struct view *v, const struct frame *f, const char *where)
 {
-    static struct chosen chosen;
-    struct why why = { 0 };
-    chosen_free(&chosen);
+    static struct selection chosen;
+    struct failure failure = { 0 };
+    selection_free(&chosen);
     if (!only) return;
-    if (chosen_init(&chosen, &f->packing, "--only", only, &why))
-        die(why.status, "%s: %s", where, why.text);
+    if (selection_init(&chosen, &f->packing, "--only", only, &failure))
+        die(failure.status, "%s: %s", where, failure.text);
     if (!chosen.bodies)
         die(EX_DATAERR, "%s: --only: '%s' names walls, not bodies; --solid draws walls", where,
             only);
@@ -317,8 +317,8 @@ static void set_values(struct view *v, struct frame *f, const char *where)
 
 static void read_values(struct view *v)
 {
-    struct why why = { 0 };
-    if (table && values_read(&values, table, wanted, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (table && values_read(&values, table, wanted, &failure)) die_why(&failure);
     v->paint.name = values.name;
 }
 
@@ -337,26 +337,26 @@ static const struct contacts *contacts_of(const struct frame *f, const char *whe
 static void draw(const struct view *v, const struct frame *f, const char *path, const char *where)
 {
     struct picture p;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const struct contacts *s = contacts_of(f, where);
     if (svg) {
-        if (svg_draw(&over, v, &f->packing, s, path, &why)) die_why(&why);
+        if (svg_draw(&over, v, &f->packing, s, path, &failure)) die_why(&failure);
         return;
     }
-    if (overlay_draw(&over, v, &f->packing, s, &p, &why) || picture_write(&p, path, &why))
-        die_why(&why);
+    if (overlay_draw(&over, v, &f->packing, s, &p, &failure) || picture_write(&p, path, &failure))
+        die_why(&failure);
     picture_free(&p);
 }
 
 /* Makes what is shown include this frame. */
 static void extend(struct view *v, struct frame *f, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     set_values(v, f, where);
     if (v->boxed && f->packing.dim == 3 && v->region.lo.z == v->region.hi.z)
         die_usage("--box: needs Z0,Z1 too, for balls");
     if (f->packing.dim == 2 && v->up.z != 0) die_usage("--up: discs lie in the plane of x and y");
-    if (view_extend(v, &f->packing, &why)) die(why.status, "%s: %s", where, why.text);
+    if (view_extend(v, &f->packing, &failure)) die(failure.status, "%s: %s", where, failure.text);
 }
 
 enum { SMALL = 240 }; /* pixels: lower pictures have no room for words */
@@ -376,16 +376,16 @@ static void fit(struct view *v, const struct frame *f)
 static void find(struct reader *in, struct frame *found)
 {
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more = false, any = false;
     const struct range one = { step, step, 1 };
-    if (step < 0 && reader_last(in, found, &any, &why)) die_why(&why);
-    while (step >= 0 && !reader_next(in, &one, &f, &more, &why) && more)
+    if (step < 0 && reader_last(in, found, &any, &failure)) die_why(&failure);
+    while (step >= 0 && !reader_next(in, &one, &f, &more, &failure) && more)
         if (f.packed) {
             frame_free(found);
             *found = f, f = (struct frame){ 0 }, any = true;
         }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (!any) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     frame_free(&f);
 }
@@ -402,7 +402,7 @@ static struct {
 
 static void series_open(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     size_t room = strlen(output) + 40;
     bool film = film_name(output);
     series_out.room = room;
@@ -410,7 +410,7 @@ static void series_open(void)
     if (!series_out.pattern || !series_out.path) die(EX_SOFTWARE, "no memory");
     strcpy(series_out.pattern, output);
     if (film && film_possible()) {
-        if (film_open(&series_out.film, output, (int)rate, &why)) die_why(&why);
+        if (film_open(&series_out.film, output, (int)rate, &failure)) die_why(&failure);
         return;
     }
     if (film) { // the pictures, and how to join them
@@ -426,12 +426,12 @@ static void series_open(void)
 static void series_add(const struct view *v, const struct frame *f, int64_t k, int files,
                        char *const *file, const char *where)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (series_out.film) {
         struct picture p;
-        if (overlay_draw(&over, v, &f->packing, contacts_of(f, where), &p, &why) ||
-            film_add(series_out.film, &p, &why))
-            die_why(&why);
+        if (overlay_draw(&over, v, &f->packing, contacts_of(f, where), &p, &failure) ||
+            film_add(series_out.film, &p, &failure))
+            die_why(&failure);
         picture_free(&p);
         return;
     }
@@ -445,8 +445,8 @@ static void series_add(const struct view *v, const struct frame *f, int64_t k, i
 
 static void series_close(void)
 {
-    struct why why = { 0 };
-    if (series_out.film && film_close(series_out.film, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (series_out.film && film_close(series_out.film, &failure)) die_why(&failure);
     free(series_out.pattern), free(series_out.path);
 }
 
@@ -454,18 +454,18 @@ static void series_close(void)
 static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int64_t frames, before = 0, drawn = 0;
     series_open();
-    while (!reader_document(in, &frames, &why) && frames >= 0) {
+    while (!reader_document(in, &frames, &failure) && frames >= 0) {
         int64_t first = (every - before % every) % every; // frames count on through documents
         bool fitted = v->started;
         for (int64_t k = first; !fitted && k < frames; k += every) {
-            if (reader_frame(in, k, &f, &why)) die_why(&why);
+            if (reader_frame(in, k, &f, &failure)) die_why(&failure);
             extend(v, &f, reader_where(in));
         }
         for (int64_t k = first; k < frames; k += every, drawn++) {
-            if (reader_frame(in, k, &f, &why)) die_why(&why);
+            if (reader_frame(in, k, &f, &failure)) die_why(&failure);
             set_values(v, &f, reader_where(in));
             view_follow(v, &f.packing);
             if (!fitted) fit(v, &f);
@@ -475,7 +475,7 @@ static void series(struct reader *in, int files, char *const *file, struct view 
         }
         before += frames;
     }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (!drawn) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     progress_end();
     series_close();
@@ -496,7 +496,7 @@ int tool_main(int argc, char **argv)
 {
     struct reader *in;
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct view v = view_of_options();
     if (every && step >= 0) die_usage("--step and --every exclude each other");
     if (every && !output) die_usage("--every needs --output 'name%%05d.png'");
@@ -505,7 +505,7 @@ int tool_main(int argc, char **argv)
     if (!output && isatty(STDOUT_FILENO))
         die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
     read_values(&v);
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     if (every) {
         if (!film_name(output)) conversion(output);

@@ -53,8 +53,8 @@ static char *title_of(const struct packing *p)
 
 static void add(struct page *p, const char *name, const char *unit, double value)
 {
-    struct why why = { 0 };
-    if (page_value(p, name, unit, value, &why)) die_why(&why);
+    struct failure failure = { 0 };
+    if (page_value(p, name, unit, value, &failure)) die_why(&failure);
 }
 
 static void add_energy(struct page *page, const struct packing *p)
@@ -124,9 +124,9 @@ static json_t *stat_line(FILE *lines, int64_t step)
 
 static void add_frame(struct page *page, const struct frame *f, FILE *lines, const char *where)
 {
-    struct why why = { 0 };
-    if (page_frame(page, &f->packing, f->detected ? &f->contacts : NULL, &why))
-        die(why.status, "%s: %s", where, why.text);
+    struct failure failure = { 0 };
+    if (page_frame(page, &f->packing, f->detected ? &f->contacts : NULL, &failure))
+        die(failure.status, "%s: %s", where, failure.text);
     add_energy(page, &f->packing);
     add_contacts(page, f);
     json_t *j = stat_line(lines, f->packing.step);
@@ -136,26 +136,26 @@ static void add_frame(struct page *page, const struct frame *f, FILE *lines, con
 static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
 {
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct range range = { 0, INT64_MAX, 1 };
     bool more = false;
     if (steps && !range_parse(&range, steps)) die_usage("--steps: '%s' is not A:B:K", steps);
-    for (int64_t k = 0; !reader_next(in, steps ? &range : NULL, &f, &more, &why) && more; k++) {
+    for (int64_t k = 0; !reader_next(in, steps ? &range : NULL, &f, &more, &failure) && more; k++) {
         if (k % every) continue;
         tool_wants_packing(&f, reader_where(in));
         if (!page->out) {
             char *name = title ? strdup(title) : title_of(&f.packing);
             if (page_begin(page, out, output ? output : "standard output", name ? name : "nsd",
-                           &why))
-                die_why(&why);
+                           &failure))
+                die_why(&failure);
             free(name);
         }
         add_frame(page, &f, lines, reader_where(in));
         progress("%lld frames", (long long)page->frames);
     }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     if (!page->out) die(EX_DATAERR, "%s: no such frame", reader_where(in));
-    if (page_end(page, &why)) die_why(&why);
+    if (page_end(page, &failure)) die_why(&failure);
     progress_end();
     frame_free(&f);
 }
@@ -164,15 +164,15 @@ int tool_main(int argc, char **argv)
 {
     struct reader *in;
     struct page page = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct output file;
     FILE *out = stdout, *lines = stat ? fopen(stat, "r") : NULL;
     if (stat && !lines) die(EX_NOINPUT, "%s: cannot be opened", stat);
-    if (reader_open(&in, argc, argv, &why)) die_why(&why);
+    if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    if (output && !(out = output_stream(&file, output, &why))) die_why(&why);
+    if (output && !(out = output_stream(&file, output, &failure))) die_why(&failure);
     run(in, &page, out, lines);
-    if (output && output_stream_close(&file, out, &why)) die_why(&why);
+    if (output && output_stream_close(&file, out, &failure)) die_why(&failure);
     if (!output) finish_stdout();
     page_free(&page);
     if (lines) fclose(lines);

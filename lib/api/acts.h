@@ -10,55 +10,55 @@
 
 #include "bodies/packing.h"
 
-enum acts_lasting { ACTS_ONCE, ACTS_LASTING, ACTS_TERMS };
+enum control_lasting { CONTROL_ONCE, CONTROL_LASTING, CONTROL_TERMS };
 
 /* All zero to begin with */
-struct acts {
+struct control {
     int64_t n;                                    /* bodies that the arrays are of */
     int32_t *id;                                  /* [n] which; NULL: there are no arrays */
-    vec3 *force[ACTS_TERMS], *torque[ACTS_TERMS]; /* [n] N, N m */
-    bool pushes[ACTS_TERMS], twists[ACTS_TERMS];  /* there may be forces, torques other than 0 */
-    double *push[ACTS_TERMS];                     /* [walls] N, N m; NULL: none */
+    vec3 *force[CONTROL_TERMS], *torque[CONTROL_TERMS]; /* [n] N, N m */
+    bool pushes[CONTROL_TERMS], twists[CONTROL_TERMS];  /* there may be forces, torques other than 0 */
+    double *push[CONTROL_TERMS];                     /* [walls] N, N m; NULL: none */
 };
 
-void acts_free(struct acts *acts);
+void control_free(struct control *acts);
 /* to = a deep copy; to need not be initialised. */
-int acts_copy(struct acts *to, const struct acts *from, int32_t walls, struct why *why);
+int control_copy(struct control *to, const struct control *from, int32_t walls, struct failure *failure);
 /* The arrays exist, and are those of the packing's bodies, by their ids; new ones are zero. */
-int acts_arrays(struct acts *acts, const struct packing *p, struct why *why);
+int control_arrays(struct control *acts, const struct packing *p, struct failure *failure);
 /* A step of p begins: the sums are what acts on it from outside. EX_DATAERR: one is not finite. */
-int acts_begin(struct acts *acts, struct packing *p, struct why *why);
+int control_begin(struct control *acts, struct packing *p, struct failure *failure);
 /* It has been made: what acts in one step does so no more. */
-void acts_end(struct acts *acts, int32_t walls);
+void control_end(struct control *acts, int32_t walls);
 /* What lasts is that of a document in p, which gives it away. Returns 0 or EX_SOFTWARE. */
-int acts_take(struct acts *acts, struct packing *p, struct why *why);
+int control_take(struct control *acts, struct packing *p, struct failure *failure);
 /* What of it documents of p keep, borrowed from acts, whose arrays are those of p's bodies */
-struct lasting acts_lend(const struct acts *acts, int32_t walls);
+struct lasting control_lend(const struct control *acts, int32_t walls);
 /* Nothing acts any more. */
-void acts_clear(struct acts *acts, int32_t walls);
+void control_clear(struct control *acts, int32_t walls);
 
 /* May anything act? */
-bool acts_any(const struct acts *acts);
+bool control_any(const struct control *acts);
 
 /* The row of the body with this id; -1: there is none */
-int64_t acts_row(const struct packing *p, int32_t id);
+int64_t control_row(const struct packing *p, int32_t id);
 
 /* What acts on a body */
 struct wrench {
     vec3 force, torque; /* N, N m */
 };
 /* In place of what acts on the body of this id for so long */
-int acts_force(struct acts *acts, const struct packing *p, int32_t id, struct wrench w,
-               enum acts_lasting term, struct why *why);
+int control_force(struct control *acts, const struct packing *p, int32_t id, struct wrench w,
+               enum control_lasting term, struct failure *failure);
 /* N along the axis of its load, N m about it, added to that. EX_DATAERR: the boundary has none. */
-int acts_push(struct acts *acts, const struct packing *p, int64_t wall, double force,
-              enum acts_lasting term, struct why *why);
+int control_push(struct control *acts, const struct packing *p, int64_t wall, double force,
+              enum control_lasting term, struct failure *failure);
 /* m/s: its prescribed velocity from now on; from its present position on. EX_DATAERR: it turns. */
-int acts_velocity(struct packing *p, int64_t wall, vec3 v, struct why *why);
+int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *failure);
 /* m/s, rad/s: the velocity, or the angular velocity, of the body in row i */
-int acts_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct why *why);
-int acts_gravity(struct packing *p, vec3 g, struct why *why);
+int control_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct failure *failure);
+int control_gravity(struct packing *p, vec3 g, struct failure *failure);
 /* Between two kinds of material, by their names */
-int acts_friction(struct packing *p, const char *a, const char *b, double mu, struct why *why);
+int control_friction(struct packing *p, const char *a, const char *b, double mu, struct failure *failure);
 
 #endif

@@ -20,20 +20,20 @@
 struct frame;
 
 /* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
-json_t *answer_parse(const char *line, size_t length, struct why *why);
+json_t *reply_parse(const char *line, size_t length, struct failure *failure);
 /* Has it the keys of an answer, with values of their types? Whether the bodies, boundaries and kinds exist that it names is
    seen when it is applied. Returns 0 or EX_DATAERR. */
-int answer_check(const json_t *answer, struct why *why);
+int reply_check(const json_t *answer, struct failure *failure);
 /* Applies it as the packing's next step is to begin. *stop: the run is to end before the step, and nothing else is applied.
    Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
-int answer_apply(const json_t *answer, struct acts *acts, struct packing *p, bool *stop,
-                 struct why *why);
+int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
+                 struct failure *failure);
 
 /*
  * The answer that makes of p what the frame is: its velocities, angular velocities, gravity, friction and velocities of
  * boundaries where they differ, and its forces that last. To be freed; NULL: the frame differs in something else, or is of
  * another moment (EX_DATAERR), or no memory
  */
-json_t *answer_of_frame(const struct frame *frame, const struct packing *p, struct why *why);
+json_t *reply_of_frame(const struct frame *frame, const struct packing *p, struct failure *failure);
 
 #endif

@@ -27,11 +27,11 @@ static void act_set(struct packing *p, int64_t i, const struct nsd_bodies *b, in
 }
 
 /* Cells have an image of each body, which packing_resize() knows nothing of. */
-static int add_images(struct packing *p, int64_t n, struct why *why)
+static int add_images(struct packing *p, int64_t n, struct failure *failure)
 {
     if (!p->image) return 0;
     int32_t(*image)[3] = calloc((size_t)n + 1, sizeof *image);
-    if (!image) return why_set(why, EX_SOFTWARE, "no memory for the images");
+    if (!image) return failure_set(failure, EX_SOFTWARE, "no memory for the images");
     memcpy(image, p->image, (size_t)p->n * sizeof *image);
     free(p->image);
     p->image = image;
@@ -54,38 +54,38 @@ static int64_t next_id(const struct nsd_run *r)
     return of_pours > r->next_id ? of_pours : r->next_id;
 }
 
-static int act_check(const struct nsd_run *r, const struct nsd_bodies *b, struct why *why)
+static int act_check(const struct nsd_run *r, const struct nsd_bodies *b, struct failure *failure)
 {
     if (!b || b->size < sizeof *b)
-        return why_set(why, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
+        return failure_set(failure, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
     if (b->n < 0 || b->n > INT32_MAX - next_id(r))
-        return why_set(why, NSD_DATA, "bodies: %lld of them, and there are numbers for %lld",
+        return failure_set(failure, NSD_DATA, "bodies: %lld of them, and there are numbers for %lld",
                        (long long)b->n, (long long)(INT32_MAX - next_id(r)));
     if (b->n && (!b->position || !b->radius))
-        return why_set(why, NSD_USAGE, "bodies: they have no position or no radius");
+        return failure_set(failure, NSD_USAGE, "bodies: they have no position or no radius");
     if (b->n && !b->mass && !(b->density > 0 && isfinite(b->density)))
-        return why_set(why, NSD_DATA, "bodies: neither a mass nor a density above 0");
+        return failure_set(failure, NSD_DATA, "bodies: neither a mass nor a density above 0");
     return 0;
 }
 
-int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct why *why)
+int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct failure *failure)
 {
     struct packing p;
     struct contacts s;
     const int64_t had = r->f.packing.n, first = next_id(r);
-    if (act_check(r, b, why) || packing_copy(&p, &r->f.packing, why)) return why->status;
+    if (act_check(r, b, failure) || packing_copy(&p, &r->f.packing, failure)) return failure->status;
     if (contacts_copy(&s, &r->f.contacts)) {
         packing_free(&p);
-        return why_set(why, NSD_SOFTWARE, "no memory for the contacts");
+        return failure_set(failure, NSD_SOFTWARE, "no memory for the contacts");
     }
-    if (!add_images(&p, had + b->n, why) && !packing_resize(&p, had + b->n, why)) {
+    if (!add_images(&p, had + b->n, failure) && !packing_resize(&p, had + b->n, failure)) {
         for (int64_t k = 0; k < b->n; k++) {
             p.id[had + k] = (int32_t)(first + k);
             act_set(&p, had + k, b, k);
         }
-        packing_check(&p, why);
+        packing_check(&p, failure);
     }
-    if (why->status) return packing_free(&p), contacts_free(&s), why->status;
+    if (failure->status) return packing_free(&p), contacts_free(&s), failure->status;
     for (int64_t k = 0; k < b->n && id; k++) id[k] = p.id[had + k];
     r->next_id = (int32_t)(first + b->n);
     const int64_t of_pours = r->next_id - poured(&p); // pours go on after the new ones
@@ -96,20 +96,20 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct w
 
 int nsd_add(struct nsd_run *r, const struct nsd_bodies *bodies, int32_t *id)
 {
-    struct why *why = run_why(r);
-    return why ? run_add(r, bodies, id, why) : NSD_USAGE;
+    struct failure *failure = run_why(r);
+    return failure ? run_add(r, bodies, id, failure) : NSD_USAGE;
 }
 
 /* row[i]: where body i goes, -1: it is among those that are removed */
 static int act_find_rows(const struct packing *p, int64_t n, const int32_t *id, int32_t *row,
-                     struct why *why)
+                     struct failure *failure)
 {
     int32_t kept = 0;
     for (int64_t i = 0; i < p->n; i++) row[i] = 0;
     for (int64_t k = 0; k < n; k++) {
-        int64_t i = acts_row(p, id[k]);
-        if (i < 0) return why_set(why, NSD_DATA, "there is no body %d", id[k]);
-        if (row[i] < 0) return why_set(why, NSD_DATA, "body %d occurs twice", id[k]);
+        int64_t i = control_row(p, id[k]);
+        if (i < 0) return failure_set(failure, NSD_DATA, "there is no body %d", id[k]);
+        if (row[i] < 0) return failure_set(failure, NSD_DATA, "body %d occurs twice", id[k]);
         row[i] = -1;
     }
     for (int64_t i = 0; i < p->n; i++)
@@ -119,27 +119,27 @@ static int act_find_rows(const struct packing *p, int64_t n, const int32_t *id, 
 
 int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
 {
-    struct why *why = run_why(r);
+    struct failure *failure = run_why(r);
     struct packing p;
     struct contacts s = { 0 };
-    if (!why) return NSD_USAGE;
-    if (n < 0 || (n && !id)) return why_set(why, NSD_USAGE, "there are no numbers of bodies");
+    if (!failure) return NSD_USAGE;
+    if (n < 0 || (n && !id)) return failure_set(failure, NSD_USAGE, "there are no numbers of bodies");
     if (!n) return 0;
     if (n > r->f.packing.n)
-        return why_set(why, NSD_DATA, "%lld bodies cannot be removed: there are %lld", (long long)n,
+        return failure_set(failure, NSD_DATA, "%lld bodies cannot be removed: there are %lld", (long long)n,
                        (long long)r->f.packing.n);
     int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
-    if (!row) return why_set(why, NSD_SOFTWARE, "no memory to remove bodies");
-    if (!act_find_rows(&r->f.packing, n, id, row, why) && !packing_copy(&p, &r->f.packing, why)) {
+    if (!row) return failure_set(failure, NSD_SOFTWARE, "no memory to remove bodies");
+    if (!act_find_rows(&r->f.packing, n, id, row, failure) && !packing_copy(&p, &r->f.packing, failure)) {
         if (contacts_copy(&s, &r->f.contacts))
-            why_set(why, NSD_SOFTWARE, "no memory for the contacts");
+            failure_set(failure, NSD_SOFTWARE, "no memory for the contacts");
         else
-            flow_drop(&p, &s, row, why);
-        if (why->status)
+            flow_drop(&p, &s, row, failure);
+        if (failure->status)
             packing_free(&p), contacts_free(&s);
         else
             run_replace(r, &p, &s);
     }
     free(row);
-    return why->status;
+    return failure->status;
 }

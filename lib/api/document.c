@@ -28,49 +28,49 @@ static int to_file(const void *bytes, size_t size)
 }
 
 /* In messages it is no file. */
-static void name_memory(struct why *why, const char *path)
+static void name_memory(struct failure *failure, const char *path)
 {
-    char text[sizeof why->text];
+    char text[sizeof failure->text];
     size_t n = strlen(path);
-    char *at = strstr(why->text, path);
+    char *at = strstr(failure->text, path);
     if (!at) return;
-    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - why->text), why->text, at + n);
-    snprintf(why->text, sizeof why->text, "%s", text);
+    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - failure->text), failure->text, at + n);
+    snprintf(failure->text, sizeof failure->text, "%s", text);
 }
 
-static int read_last(struct frame *f, char *path, struct why *why)
+static int read_last(struct frame *f, char *path, struct failure *failure)
 {
     struct reader *in;
     bool more = false;
-    if (!reader_open(&in, 1, &path, why)) {
+    if (!reader_open(&in, 1, &path, failure)) {
         reader_copies(in);
-        if (!reader_last(in, f, &more, why) && !more)
-            why_set(why, EX_DATAERR, "%.200s: no frame to start from", path);
-        if (!why->status && !f->packed)
-            why_set(why, EX_DATAERR, "%.200s: an FCLIB problem has no bodies", path);
+        if (!reader_last(in, f, &more, failure) && !more)
+            failure_set(failure, EX_DATAERR, "%.200s: no frame to start from", path);
+        if (!failure->status && !f->packed)
+            failure_set(failure, EX_DATAERR, "%.200s: an FCLIB problem has no bodies", path);
     }
     reader_close(in);
-    return why->status;
+    return failure->status;
 }
 
-int document_read_file(struct frame *f, const char *path, struct why *why)
+int document_read_file(struct frame *f, const char *path, struct failure *failure)
 {
     char *copy = strdup(path);
-    if (!copy) return why_set(why, EX_SOFTWARE, "no memory for a path");
-    read_last(f, copy, why);
+    if (!copy) return failure_set(failure, EX_SOFTWARE, "no memory for a path");
+    read_last(f, copy, failure);
     free(copy);
-    return why->status;
+    return failure->status;
 }
 
-int document_read(struct frame *f, const void *bytes, size_t size, struct why *why)
+int document_read(struct frame *f, const void *bytes, size_t size, struct failure *failure)
 {
     char path[40];
     int fd = to_file(bytes, size);
-    if (fd < 0) return why_set(why, EX_SOFTWARE, "no memory for a document");
+    if (fd < 0) return failure_set(failure, EX_SOFTWARE, "no memory for a document");
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (read_last(f, path, why)) name_memory(why, path);
+    if (read_last(f, path, failure)) name_memory(failure, path);
     close(fd);
-    return why->status;
+    return failure->status;
 }
 
 /* All of a file, to be freed */
@@ -89,17 +89,17 @@ static char *bytes_of(int fd, size_t *size)
     return bytes;
 }
 
-char *document_write(const struct frame *f, size_t *size, struct why *why)
+char *document_write(const struct frame *f, size_t *size, struct failure *failure)
 {
     struct writer *out = NULL;
     char path[40], *bytes = NULL;
     int fd = memfd_create("document", MFD_CLOEXEC);
-    if (fd < 0) return why_set(why, EX_SOFTWARE, "no memory for a document"), NULL;
+    if (fd < 0) return failure_set(failure, EX_SOFTWARE, "no memory for a document"), NULL;
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (writer_open(&out, path, WRITER_STREAM, why) || writer_frame(out, f, why))
+    if (writer_open(&out, path, WRITER_STREAM, failure) || writer_frame(out, f, failure))
         writer_drop(out);
-    else if (!writer_close(out, why) && !(bytes = bytes_of(fd, size)))
-        why_set(why, EX_SOFTWARE, "no memory for a document");
+    else if (!writer_close(out, failure) && !(bytes = bytes_of(fd, size)))
+        failure_set(failure, EX_SOFTWARE, "no memory for a document");
     close(fd);
     return bytes;
 }

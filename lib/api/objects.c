@@ -17,42 +17,42 @@ struct nsd_document {
 };
 
 /* What the functions of nsd.h that have a document begin with; NULL with the reason: it is none that may be used. */
-static struct why *document_why(const struct nsd_document *d, bool open)
+static struct failure *document_why(const struct nsd_document *d, bool open)
 {
-    struct why *why = run_why_of_thread();
+    struct failure *failure = run_why_of_thread();
     if (!d)
-        why_set(why, NSD_USAGE, "there is no document: it was closed, or never opened");
+        failure_set(failure, NSD_USAGE, "there is no document: it was closed, or never opened");
     else if (!process_owns(d->maker))
-        why_set(
-            why, NSD_USAGE,
+        failure_set(
+            failure, NSD_USAGE,
             "%.200s: process %lld reads it, of which this one is a copy by fork(): open it here",
             d->path, (long long)d->maker);
     else if (open && !d->there)
-        why_set(why, NSD_USAGE, "%.200s: nsd_next() comes first, or has found the end", d->path);
-    return why->status ? NULL : why;
+        failure_set(failure, NSD_USAGE, "%.200s: nsd_next() comes first, or has found the end", d->path);
+    return failure->status ? NULL : failure;
 }
 
-static int objects_no_memory(struct why *why)
+static int objects_no_memory(struct failure *failure)
 {
-    return why_set(why, NSD_SOFTWARE, "no memory for a document");
+    return failure_set(failure, NSD_SOFTWARE, "no memory for a document");
 }
 
 int nsd_open(struct nsd_document **document, const char *path)
 {
-    struct why *why = run_why_of_thread();
-    if (!document) return why_set(why, NSD_USAGE, "there is no place for the document");
+    struct failure *failure = run_why_of_thread();
+    if (!document) return failure_set(failure, NSD_USAGE, "there is no place for the document");
     *document = NULL;
     if (!path || !*path || !strcmp(path, "-"))
-        return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
+        return failure_set(failure, NSD_USAGE, "a document has a path; standard input is the program's");
     struct nsd_document *d = calloc(1, sizeof *d);
-    if (!d || !(d->path = strdup(path))) return free(d), objects_no_memory(why);
+    if (!d || !(d->path = strdup(path))) return free(d), objects_no_memory(failure);
     d->maker = process_begin();
     process_lock();
-    source_open(&d->source, 1, &d->path, why);
+    source_open(&d->source, 1, &d->path, failure);
     process_unlock();
-    if (why->status) nsd_shut(&d);
+    if (failure->status) nsd_shut(&d);
     *document = d;
-    return why->status;
+    return failure->status;
 }
 
 void nsd_shut(struct nsd_document **document)
@@ -71,12 +71,12 @@ void nsd_shut(struct nsd_document **document)
 
 int nsd_next(struct nsd_document *d, int *more)
 {
-    struct why *why = document_why(d, false);
+    struct failure *failure = document_why(d, false);
     struct source_document found;
-    if (!why) return NSD_USAGE;
-    if (!more) return why_set(why, NSD_USAGE, "there is no place for whether there is one");
+    if (!failure) return NSD_USAGE;
+    if (!more) return failure_set(failure, NSD_USAGE, "there is no place for whether there is one");
     d->there = false;
-    if (source_next(d->source, &found, &d->there, why)) return why->status;
+    if (source_next(d->source, &found, &d->there, failure)) return failure->status;
     *more = d->there;
     return 0;
 }
@@ -84,12 +84,12 @@ int nsd_next(struct nsd_document *d, int *more)
 /* ---- what there is ---- */
 
 /* Replaces the text by another one, or by JSON, which is freed. */
-static int put_json(struct nsd_document *d, json_t *j, const char **json, struct why *why)
+static int put_json(struct nsd_document *d, json_t *j, const char **json, struct failure *failure)
 {
-    char *text = j && !why->status ? json_dumps(j, JSON_COMPACT) : NULL;
+    char *text = j && !failure->status ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
-    if (why->status) return why->status;
-    if (!text) return objects_no_memory(why);
+    if (failure->status) return failure->status;
+    if (!text) return objects_no_memory(failure);
     free(d->text);
     *json = d->text = text;
     return 0;
@@ -106,15 +106,15 @@ static json_t *type_of(const struct object *o)
 
 int nsd_objects(struct nsd_document *d, const char **json)
 {
-    struct why *why = document_why(d, true);
+    struct failure *failure = document_why(d, true);
     const struct object *o;
     const uint64_t *shape;
     const char *path;
-    if (!why) return NSD_USAGE;
-    if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
+    if (!failure) return NSD_USAGE;
+    if (!json) return failure_set(failure, NSD_USAGE, "there is no place for JSON");
     json_t *all = json_object();
-    if (!all) objects_no_memory(why);
-    for (int64_t k = 0; !why->status && (o = source_object(d->source, k, &path, &shape)); k++) {
+    if (!all) objects_no_memory(failure);
+    for (int64_t k = 0; !failure->status && (o = source_object(d->source, k, &path, &shape)); k++) {
         json_t *sizes = json_array(), *known = json_string(path);
         bool good = sizes;
         for (uint32_t i = 0; good && i < o->rank && o->rank <= OBJECT_RANK; i++)
@@ -125,10 +125,10 @@ int nsd_objects(struct nsd_document *d, const char **json)
         else if (!good ||
                  json_object_set_new(all, path,
                                      json_pack("{s:o, s:o}", "type", type_of(o), "shape", sizes)))
-            objects_no_memory(why);
+            objects_no_memory(failure);
         json_decref(known);
     }
-    return put_json(d, all, json, why);
+    return put_json(d, all, json, failure);
 }
 
 /* Number k of an attribute; null: it is not finite */
@@ -167,40 +167,40 @@ static json_t *objects_values_of(const struct listed *l)
 
 int nsd_attributes(struct nsd_document *d, const char *path, const char **json)
 {
-    struct why *why = document_why(d, true);
+    struct failure *failure = document_why(d, true);
     uint64_t size = 0, at = 0;
     struct listed l;
-    if (!why) return NSD_USAGE;
-    if (!path || !json) return why_set(why, NSD_USAGE, "an object has a path, and JSON a place");
+    if (!failure) return NSD_USAGE;
+    if (!path || !json) return failure_set(failure, NSD_USAGE, "an object has a path, and JSON a place");
     if (*path && !source_has(d->source, path))
-        return why_set(why, NSD_USAGE, "%.200s: there is no object '%.100s'",
+        return failure_set(failure, NSD_USAGE, "%.200s: there is no object '%.100s'",
                        source_where(d->source), path);
-    unsigned char *bytes = source_attributes(d->source, path, &size, why);
+    unsigned char *bytes = source_attributes(d->source, path, &size, failure);
     json_t *all = bytes ? json_object() : NULL;
-    if (bytes && !all) objects_no_memory(why);
-    while (all && !why->status && object_unpack(bytes, size, &at, &l)) {
+    if (bytes && !all) objects_no_memory(failure);
+    while (all && !failure->status && object_unpack(bytes, size, &at, &l)) {
         json_t *known = json_string(l.path);
-        if (known && json_object_set_new(all, l.path, objects_values_of(&l))) objects_no_memory(why);
+        if (known && json_object_set_new(all, l.path, objects_values_of(&l))) objects_no_memory(failure);
         json_decref(known);
     }
     free(bytes);
-    return put_json(d, all, json, why);
+    return put_json(d, all, json, failure);
 }
 
 /* ---- numbers and texts ---- */
 
 /* The dataset of that path; NULL with the reason */
 static const struct object *objects_find(const struct nsd_document *d, const char *path,
-                                 const uint64_t **shape, struct why *why)
+                                 const uint64_t **shape, struct failure *failure)
 {
     const struct object *o;
     const char *is;
     for (int64_t k = 0; (o = source_object(d->source, k, &is, shape)); k++)
         if (!o->attribute && !strcmp(is, path)) break;
     if (!o || o->kind == OBJECT_GROUP)
-        why_set(why, NSD_USAGE, "%.200s: there is no dataset '%.100s'", source_where(d->source),
+        failure_set(failure, NSD_USAGE, "%.200s: there is no dataset '%.100s'", source_where(d->source),
                 path);
-    return why->status ? NULL : o;
+    return failure->status ? NULL : o;
 }
 
 /* How numbers of a dataset are handed out, without a loss: 'd', 'l' (int64_t), 'i', 'b' */
@@ -218,14 +218,14 @@ static char type_for(const struct object *o, enum column_type *type)
 int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
              struct nsd_array *out)
 {
-    struct why *why = document_why(d, true);
+    struct failure *failure = document_why(d, true);
     const uint64_t *shape = NULL;
     enum column_type type;
-    if (!why) return NSD_USAGE;
+    if (!failure) return NSD_USAGE;
     if (!out || out->size < sizeof *out)
-        return why_set(why, NSD_USAGE, "an array's size is not that of struct nsd_array");
-    const struct object *o = path ? objects_find(d, path, &shape, why) : NULL;
-    if (!o) return path ? why->status : why_set(why, NSD_USAGE, "a dataset has a path");
+        return failure_set(failure, NSD_USAGE, "an array's size is not that of struct nsd_array");
+    const struct object *o = path ? objects_find(d, path, &shape, failure) : NULL;
+    if (!o) return path ? failure->status : failure_set(failure, NSD_USAGE, "a dataset has a path");
     const int64_t rows = o->rank && o->rank <= OBJECT_RANK ? (int64_t)shape[0] : 1;
     int64_t width = 1, bytes;
     bool large = rows < 0;
@@ -233,20 +233,20 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
         large |= __builtin_mul_overflow(width, (int64_t)shape[k], &width) || width < 0;
     const char letter = type_for(o, &type);
     if (o->kind != OBJECT_NUMBERS || o->rank > OBJECT_RANK || large)
-        return why_set(why, NSD_DATA, "%.200s: %.100s: no numbers that can be read",
+        return failure_set(failure, NSD_DATA, "%.200s: %.100s: no numbers that can be read",
                        source_where(d->source), path);
     if (first < 0 || n < 0 || n > rows || first > rows - n)
-        return why_set(why, NSD_DATA, "%.200s: %.100s: it has %lld rows, not %lld from %lld",
+        return failure_set(failure, NSD_DATA, "%.200s: %.100s: it has %lld rows, not %lld from %lld",
                        source_where(d->source), path, (long long)rows, (long long)n,
                        (long long)first);
-    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32) return objects_no_memory(why);
-    if (source_frame(d->source, why)) return why->status;
+    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32) return objects_no_memory(failure);
+    if (source_frame(d->source, failure)) return failure->status;
     void *data = calloc((size_t)bytes + 1, column_size(type));
-    if (!data) return objects_no_memory(why);
+    if (!data) return objects_no_memory(failure);
     const struct slab slab = { type, first, n, width };
     int e = 0;
-    if (bytes && o->rank) e = source_rows(d->source, path, slab, data, why);
-    if (bytes && !o->rank) e = source_read(d->source, path, type, 1, data, why);
+    if (bytes && o->rank) e = source_rows(d->source, path, slab, data, failure);
+    if (bytes && !o->rank) e = source_read(d->source, path, type, 1, data, failure);
     if (e) return free(data), e;
     free(d->data);
     d->data = data;
@@ -263,17 +263,17 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
 
 int nsd_text(struct nsd_document *d, const char *path, const char **text)
 {
-    struct why *why = document_why(d, true);
+    struct failure *failure = document_why(d, true);
     const uint64_t *shape = NULL;
-    if (!why) return NSD_USAGE;
-    if (!path || !text) return why_set(why, NSD_USAGE, "a dataset has a path, and a text a place");
-    const struct object *o = objects_find(d, path, &shape, why);
-    if (!o || source_frame(d->source, why)) return why->status;
+    if (!failure) return NSD_USAGE;
+    if (!path || !text) return failure_set(failure, NSD_USAGE, "a dataset has a path, and a text a place");
+    const struct object *o = objects_find(d, path, &shape, failure);
+    if (!o || source_frame(d->source, failure)) return failure->status;
     char *found =
-        o->rank ? source_lines(d->source, path, why) : source_text(d->source, path, NULL, why);
-    if (!found && !why->status)
-        why_set(why, NSD_DATA, "%.200s: %.100s: no text", source_where(d->source), path);
-    if (why->status) return free(found), why->status;
+        o->rank ? source_lines(d->source, path, failure) : source_text(d->source, path, NULL, failure);
+    if (!found && !failure->status)
+        failure_set(failure, NSD_DATA, "%.200s: %.100s: no text", source_where(d->source), path);
+    if (failure->status) return free(found), failure->status;
     free(d->text);
     *text = d->text = found;
     return 0;

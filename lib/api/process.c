@@ -57,7 +57,7 @@ static void process_watch_forks(void)
 pid_t process_begin(void)
 {
     static pthread_once_t watched = PTHREAD_ONCE_INIT;
-    guest_set();
+    embedded_set();
     pthread_once(&watched, process_watch_forks);
     return getpid();
 }

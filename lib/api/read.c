@@ -126,7 +126,7 @@ static void cell_repeated(const struct nsd_run *r, void *out)
 
 #define BODY(member)    OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
 #define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
-#define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct acts, designator), NULL
+#define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct control, designator), NULL
 
 static const struct read_row table[] = {
     { "position", "m", BODY3(x) },
@@ -138,10 +138,10 @@ static const struct read_row table[] = {
     { "inertia", "kg m2", BODY(inertia) },
     { "id", "1", OF_BODIES, 'i', 1, offsetof(struct packing, id), NULL },
     { "kind", "1", OF_BODIES, 'i', 1, offsetof(struct packing, kind), NULL },
-    { "force", "N", ACT(force[ACTS_LASTING]) },
-    { "torque", "N m", ACT(torque[ACTS_LASTING]) },
-    { "force_once", "N", ACT(force[ACTS_ONCE]) },
-    { "torque_once", "N m", ACT(torque[ACTS_ONCE]) },
+    { "force", "N", ACT(force[CONTROL_LASTING]) },
+    { "torque", "N m", ACT(torque[CONTROL_LASTING]) },
+    { "force_once", "N", ACT(force[CONTROL_ONCE]) },
+    { "torque_once", "N m", ACT(torque[CONTROL_ONCE]) },
     { "contact_body", "1", OF_CONTACTS, 'i', 2, 0, contact_bodies },
     { "contact_point", "m", OF_CONTACTS, 'd', 3, 0, contact_points },
     { "contact_normal", "1", OF_CONTACTS, 'd', 3, 0, contact_normals },
@@ -170,28 +170,28 @@ const char *nsd_array_name(int k)
 }
 
 /* The array, made anew in place of what it was */
-static void *read_make(struct nsd_run *r, int k, int64_t n, struct why *why)
+static void *read_make(struct nsd_run *r, int k, int64_t n, struct failure *failure)
 {
     const struct read_row *t = &table[k];
     void *data = calloc((size_t)n * (size_t)t->width + 1, read_size_of(t->type));
-    if (!data) return why_set(why, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
+    if (!data) return failure_set(failure, NSD_SOFTWARE, "%s: no memory", t->name), NULL;
     if (n) t->make(r, data);
     free(r->made[k - FIRST_MADE]);
     return r->made[k - FIRST_MADE] = data;
 }
 
-static void *data_of(struct nsd_run *r, int k, int64_t n, struct why *why)
+static void *data_of(struct nsd_run *r, int k, int64_t n, struct failure *failure)
 {
     const struct read_row *t = &table[k];
     const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->acts;
     void *data;
-    if (t->make) return read_make(r, k, n, why);
+    if (t->make) return read_make(r, k, n, failure);
     if (t->rows == OF_ACTS) {
-        const bool torque = t->at >= offsetof(struct acts, torque);
-        const int term = (int)((t->at - (torque ? offsetof(struct acts, torque)
-                                                : offsetof(struct acts, force))) /
+        const bool torque = t->at >= offsetof(struct control, torque);
+        const int term = (int)((t->at - (torque ? offsetof(struct control, torque)
+                                                : offsetof(struct control, force))) /
                                sizeof(vec3 *));
-        if (acts_arrays(&r->acts, &r->f.packing, why)) return NULL;
+        if (control_arrays(&r->acts, &r->f.packing, failure)) return NULL;
         (torque ? r->acts.twists : r->acts.pushes)[term] = true; // what is written there acts
     }
     memcpy(&data, owner + t->at, sizeof data);
@@ -200,20 +200,20 @@ static void *data_of(struct nsd_run *r, int k, int64_t n, struct why *why)
 
 int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
 {
-    struct why *why = run_why(r);
+    struct failure *failure = run_why(r);
     int k = 0;
-    if (!why) return NSD_USAGE;
+    if (!failure) return NSD_USAGE;
     if (!out || out->size < sizeof *out)
-        return why_set(why, NSD_USAGE, "an array's size is not that of struct nsd_array");
+        return failure_set(failure, NSD_USAGE, "an array's size is not that of struct nsd_array");
     while (k < ROWS && (!name || strcmp(table[k].name, name) != 0)) k++;
-    if (k == ROWS) return why_set(why, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
+    if (k == ROWS) return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
     const struct read_row *t = &table[k];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
                 : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
                                            : r->f.packing.n;
-    void *data = data_of(r, k, n, why);
-    if (!data) return why->status;
+    void *data = data_of(r, k, n, failure);
+    if (!data) return failure->status;
     const int64_t size = (int64_t)read_size_of(t->type);
     *out = (struct nsd_array){ .size = out->size,
                                .data = data,
@@ -263,34 +263,34 @@ static double read_number(const struct nsd_run *r, const char *name, bool *known
 
 int nsd_number(struct nsd_run *r, const char *name, double *x)
 {
-    struct why *why = run_why(r);
+    struct failure *failure = run_why(r);
     bool known = false;
-    if (!why) return NSD_USAGE;
-    if (!name || !x) return why_set(why, NSD_USAGE, "a number has a name and a place");
+    if (!failure) return NSD_USAGE;
+    if (!name || !x) return failure_set(failure, NSD_USAGE, "a number has a name and a place");
     double found = read_number(r, name, &known);
-    if (!known) return why_set(why, NSD_USAGE, "there is no number '%.60s'", name);
+    if (!known) return failure_set(failure, NSD_USAGE, "there is no number '%.60s'", name);
     *x = found;
     return 0;
 }
 
 /* ---- JSON ---- */
 
-static int read_no_memory(struct why *why)
+static int read_no_memory(struct failure *failure)
 {
-    return why_set(why, NSD_SOFTWARE, "no memory for JSON, or a name in it is not UTF-8");
+    return failure_set(failure, NSD_SOFTWARE, "no memory for JSON, or a name in it is not UTF-8");
 }
 
 int nsd_report(struct nsd_run *r, const char **json)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
-    if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
-    if (!r->f.reported) return why_set(why, NSD_USAGE, "no step was made, and nothing was solved");
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (!json) return failure_set(failure, NSD_USAGE, "there is no place for JSON");
+    if (!r->f.reported) return failure_set(failure, NSD_USAGE, "no step was made, and nothing was solved");
     json_t *j = json_report(&r->f.report);
     json_object_set_new(j, "account", json_account(&r->f.account, &r->f.packing.names));
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
-    if (!text) return read_no_memory(why);
+    if (!text) return read_no_memory(failure);
     free(r->text);
     *json = r->text = text;
     return 0;
@@ -298,12 +298,12 @@ int nsd_report(struct nsd_run *r, const char **json)
 
 int nsd_failure(struct nsd_run *r, const char **text)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
-    if (!text) return why_set(why, NSD_USAGE, "there is no place for the text");
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (!text) return failure_set(failure, NSD_USAGE, "there is no place for the text");
     const size_t room = 200 * ACCOUNT_ROWS;
     char *all = calloc(room, 1);
-    if (!all) return why_set(why, NSD_SOFTWARE, "no memory for a text");
+    if (!all) return failure_set(failure, NSD_SOFTWARE, "no memory for a text");
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
         const enum account_row row = (enum account_row)k;
         if (!account_row_fails(&r->account, row)) continue;
@@ -370,13 +370,13 @@ static json_t *names_of(const struct packing *p)
 
 int nsd_names(struct nsd_run *r, const char **json)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
-    if (!json) return why_set(why, NSD_USAGE, "there is no place for JSON");
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (!json) return failure_set(failure, NSD_USAGE, "there is no place for JSON");
     json_t *j = names_of(&r->f.packing);
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
     json_decref(j);
-    if (!text) return read_no_memory(why);
+    if (!text) return read_no_memory(failure);
     free(r->text);
     *json = r->text = text;
     return 0;
@@ -384,40 +384,40 @@ int nsd_names(struct nsd_run *r, const char **json)
 
 int nsd_measure(struct nsd_run *r, const char *names, const char **json)
 {
-    struct why *why = run_why(r);
+    struct failure *failure = run_why(r);
     const struct measure *chosen[MOST_MEASURES + 1];
     struct table t[MOST_MEASURES];
     struct snapshot s;
     struct text written;
     char *text = NULL;
     size_t size = 0;
-    if (!why) return NSD_USAGE;
-    if (!names || !json) return why_set(why, NSD_USAGE, "a measure has a name, and JSON a place");
+    if (!failure) return NSD_USAGE;
+    if (!names || !json) return failure_set(failure, NSD_USAGE, "a measure has a name, and JSON a place");
     const struct frame *f = &r->f;
-    if (measured_choose(chosen, names, why)) {
-        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
-        return why->status;
+    if (measured_choose(chosen, names, failure)) {
+        memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
+        return failure->status;
     }
     if (r->asked.boxed && f->packing.dim == 3 && !isfinite(r->asked.lo[2]))
-        return why_set(why, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
-    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, why);
+        return failure_set(failure, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
+    snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, failure);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;
     s.unconverged = missed - r->measured;
-    if (!measured_run(t, chosen, &s, why)) {
+    if (!measured_run(t, chosen, &s, failure)) {
         FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);
-        if (!(text = text_close(&written, out, &size))) read_no_memory(why);
+        if (!(text = text_close(&written, out, &size))) read_no_memory(failure);
     }
-    if (why->status && !strncmp(why->text, "--", 2))
-        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
+    if (failure->status && !strncmp(failure->text, "--", 2))
+        memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
     measured_free(t);
     // what measures of ways look back to: the first moment that was measured, and the last
-    if (!why->status && measured_remember(chosen) &&
-        !measured_keep(chosen, &s, &r->first, &r->before, why))
+    if (!failure->status && measured_remember(chosen) &&
+        !measured_keep(chosen, &s, &r->first, &r->before, failure))
         r->remembers = true;
     snapshot_free(&s);
-    if (why->status) return free(text), why->status;
+    if (failure->status) return free(text), failure->status;
     r->measured = missed;
     free(r->text);
     *json = r->text = text;

@@ -21,35 +21,35 @@
 
 /* ---- reasons ---- */
 
-static _Thread_local struct why of_thread;
+static _Thread_local struct failure of_thread;
 
-struct why *run_why_of_thread(void)
+struct failure *run_why_of_thread(void)
 {
-    of_thread = (struct why){ 0 };
+    of_thread = (struct failure){ 0 };
     return &of_thread;
 }
 
-struct why *run_why(struct nsd_run *r)
+struct failure *run_why(struct nsd_run *r)
 {
     if (!r) {
-        why_set(run_why_of_thread(), NSD_USAGE, "there is no run: it was closed, or never made");
+        failure_set(run_why_of_thread(), NSD_USAGE, "there is no run: it was closed, or never made");
         return NULL;
     }
-    r->why = (struct why){ 0 };
+    r->failure = (struct failure){ 0 };
     if (!process_owns(r->maker)) {
-        why_set(&r->why, NSD_USAGE,
+        failure_set(&r->failure, NSD_USAGE,
                 "the run belongs to process %lld, of which this one is a copy by fork(): make "
                 "another run here",
                 (long long)r->maker);
         return NULL;
     }
     team_set_size((int)r->options.threads);
-    return &r->why;
+    return &r->failure;
 }
 
 const char *nsd_error(const struct nsd_run *r)
 {
-    return r ? r->why.text : of_thread.text;
+    return r ? r->failure.text : of_thread.text;
 }
 
 const char *nsd_version(void)
@@ -59,11 +59,11 @@ const char *nsd_version(void)
 
 /* ---- made ---- */
 
-static struct nsd_run *new_run(struct why *why)
+static struct nsd_run *new_run(struct failure *failure)
 {
     struct nsd_run *r = calloc(1, sizeof *r);
     const pid_t maker = process_begin();
-    if (!r) return why_set(why, NSD_SOFTWARE, "no memory for a run"), NULL;
+    if (!r) return failure_set(failure, NSD_SOFTWARE, "no memory for a run"), NULL;
     r->maker = maker;
     r->f.packed = true;
     r->options.threads = 1, r->options.substeps = SUBSTEPS_MOST;
@@ -72,117 +72,117 @@ static struct nsd_run *new_run(struct why *why)
 }
 
 /* The run with its packing: what it needs before the first step */
-static int run_begin(struct nsd_run *r, struct why *why)
+static int run_begin(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     p->events.n = 0; // they belong to the frame that was read
-    if (acts_take(&r->acts, p, why)) return why->status;
-    outside_forget(&p->outside);
-    if (flow_read(&r->flow, p, why)) return r->flow = (struct flow){ 0 }, why->status;
+    if (control_take(&r->acts, p, failure)) return failure->status;
+    external_force_forget(&p->outside);
+    if (flow_read(&r->flow, p, failure)) return r->flow = (struct flow){ 0 }, failure->status;
     for (int64_t i = 0; i < p->n; i++)
         if (p->id[i] >= r->next_id) r->next_id = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
     if (p->first_id > r->next_id) r->next_id = p->first_id;
-    return packing_check(p, why);
+    return packing_check(p, failure);
 }
 
 /* What all constructors begin with: what it is to put its reason into; NULL: there is no place for the run, which is said. */
-static struct why *place_for(struct nsd_run **run)
+static struct failure *place_for(struct nsd_run **run)
 {
-    struct why *why = run_why_of_thread();
-    if (run) return *run = NULL, why;
-    why_set(why, NSD_USAGE, "there is no place for the run");
+    struct failure *failure = run_why_of_thread();
+    if (run) return *run = NULL, failure;
+    failure_set(failure, NSD_USAGE, "there is no place for the run");
     return NULL;
 }
 
 /* What all constructors end with */
-static int run_done(struct nsd_run **out, struct nsd_run *r, struct why *why)
+static int run_done(struct nsd_run **out, struct nsd_run *r, struct failure *failure)
 {
-    if (r && !why->status) run_begin(r, why);
-    if (why->status) nsd_close(&r);
+    if (r && !failure->status) run_begin(r, failure);
+    if (failure->status) nsd_close(&r);
     *out = r;
-    return why->status;
+    return failure->status;
 }
 
 static int build(struct nsd_run *r, const char *text, size_t n, const char *name,
-                 const char *folder, struct why *why)
+                 const char *folder, struct failure *failure)
 {
     struct scene scene;
     process_lock(); // a scene may take bodies from documents
-    if (!scene_file_parse(&scene, text, n, name, folder, why)) {
-        if (scene_build(&r->f.packing, &scene, folder, why)) r->f.packing = (struct packing){ 0 };
+    if (!scene_file_parse(&scene, text, n, name, folder, failure)) {
+        if (scene_build(&r->f.packing, &scene, folder, failure)) r->f.packing = (struct packing){ 0 };
         scene_free(&scene);
     }
     process_unlock();
-    return why->status;
+    return failure->status;
 }
 
 int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
 {
-    struct why *why = place_for(run);
-    if (!why) return NSD_USAGE;
-    if (!text) return why_set(why, NSD_USAGE, "there is no text of a scene");
-    struct nsd_run *r = new_run(why);
-    if (r) build(r, text, strlen(text), NULL, folder, why);
-    return run_done(run, r, why);
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
+    if (!text) return failure_set(failure, NSD_USAGE, "there is no text of a scene");
+    struct nsd_run *r = new_run(failure);
+    if (r) build(r, text, strlen(text), NULL, folder, failure);
+    return run_done(run, r, failure);
 }
 
 int nsd_from_scene_file(struct nsd_run **run, const char *path)
 {
-    struct why *why = place_for(run);
+    struct failure *failure = place_for(run);
     size_t n = 0;
-    if (!why) return NSD_USAGE;
-    if (!path) return why_set(why, NSD_USAGE, "there is no path of a scene");
+    if (!failure) return NSD_USAGE;
+    if (!path) return failure_set(failure, NSD_USAGE, "there is no path of a scene");
     FILE *f = fopen(path, "re");
-    if (!f) return why_set(why, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
-    char *text = scene_file_slurp(f, path, &n, why), *copy = strdup(path);
+    if (!f) return failure_set(failure, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
+    char *text = scene_file_slurp(f, path, &n, failure), *copy = strdup(path);
     fclose(f);
     struct nsd_run *r = NULL;
-    if (text && !copy) why_set(why, NSD_SOFTWARE, "%.200s: no memory", path);
-    if (text && copy && (r = new_run(why))) build(r, text, n, path, dirname(copy), why);
+    if (text && !copy) failure_set(failure, NSD_SOFTWARE, "%.200s: no memory", path);
+    if (text && copy && (r = new_run(failure))) build(r, text, n, path, dirname(copy), failure);
     free(text), free(copy);
-    return run_done(run, r, why);
+    return run_done(run, r, failure);
 }
 
 int nsd_from_document(struct nsd_run **run, const char *path)
 {
-    struct why *why = place_for(run);
-    if (!why) return NSD_USAGE;
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
     if (!path || !strcmp(path, "-"))
-        return why_set(why, NSD_USAGE, "a document has a path; standard input is the program's");
-    struct nsd_run *r = new_run(why);
+        return failure_set(failure, NSD_USAGE, "a document has a path; standard input is the program's");
+    struct nsd_run *r = new_run(failure);
     process_lock();
-    if (r) document_read_file(&r->f, path, why);
+    if (r) document_read_file(&r->f, path, failure);
     process_unlock();
-    return run_done(run, r, why);
+    return run_done(run, r, failure);
 }
 
 int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
 {
-    struct why *why = place_for(run);
-    if (!why) return NSD_USAGE;
-    if (!document) return why_set(why, NSD_USAGE, "there is no document");
-    struct nsd_run *r = new_run(why);
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
+    if (!document) return failure_set(failure, NSD_USAGE, "there is no document");
+    struct nsd_run *r = new_run(failure);
     process_lock();
-    if (r) document_read(&r->f, document, size, why);
+    if (r) document_read(&r->f, document, size, failure);
     process_unlock();
-    return run_done(run, r, why);
+    return run_done(run, r, failure);
 }
 
 int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
                     const struct nsd_bodies *bodies)
 {
-    struct why *why = place_for(run);
+    struct failure *failure = place_for(run);
     struct nsd_run *r;
-    if (!why) return NSD_USAGE;
-    if (nsd_from_scene(&r, scene, folder)) return why->status;
+    if (!failure) return NSD_USAGE;
+    if (nsd_from_scene(&r, scene, folder)) return failure->status;
     if (r->f.packing.n)
-        why_set(why, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
+        failure_set(failure, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
     else
-        run_add(r, bodies, NULL, why);
+        run_add(r, bodies, NULL, failure);
     r->other_bodies = false;
-    if (why->status) nsd_close(&r);
+    if (failure->status) nsd_close(&r);
     *run = r;
-    return why->status;
+    return failure->status;
 }
 
 void nsd_close(struct nsd_run **run)
@@ -202,8 +202,8 @@ void nsd_close(struct nsd_run **run)
     step_forget(&r->memory);
     neighbours_free(&r->ahead);
     flow_free(&r->flow);
-    undo_free(&r->undo), acts_free(&r->acts), outside_free(&r->last);
-    kept_free(&r->first), kept_free(&r->before);
+    rollback_free(&r->undo), control_free(&r->acts), external_force_free(&r->last);
+    frame_memory_free(&r->first), frame_memory_free(&r->before);
     for (int k = 0; k < MADE_MOST; k++) free(r->made[k]);
     free(r->text);
     free(r);
@@ -230,7 +230,7 @@ static const struct cli_option *option_named(const char *name)
 }
 
 /* "1e-4", "auto:0.01" */
-static int run_set_dt(struct nsd_run *r, const char *text, struct why *why)
+static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failure)
 {
     static const char word[] = "auto:";
     struct packing *p = &r->f.packing;
@@ -239,44 +239,44 @@ static int run_set_dt(struct nsd_run *r, const char *text, struct why *why)
     char *end;
     double x = number_read(number, &end);
     if (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX)))
-        return why_set(
-            why, NSD_USAGE,
+        return failure_set(
+            failure, NSD_USAGE,
             "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
             "of a radius above 0 and at most 1",
             text);
-    if (r->out) return why_set(why, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
+    if (r->out) return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
     if (adapts) return r->tol = x, p->adapts = true, 0;
     const struct packing was = *p;
     p->halved = 0;
     packing_set_dt(p, x);
-    if (packing_check_clock(p, why)) {
+    if (packing_check_clock(p, failure)) {
         p->dt = was.dt, p->halved = was.halved, p->t0 = was.t0, p->step0 = was.step0;
-        return why->status;
+        return failure->status;
     }
     memory_scale(&p->memory, x / was.dt);
     r->tol = 0, p->adapts = false, p->tolerance = 0;
     return 0;
 }
 
-static int run_set_flag(bool *to, const char *name, const char *value, struct why *why)
+static int run_set_flag(bool *to, const char *name, const char *value, struct failure *failure)
 {
     const struct cli_option o = { CLI_FLAG, .name = name };
-    return option_set(&o, to, value, why);
+    return option_set(&o, to, value, failure);
 }
 
-static int set_option(struct nsd_run *r, const char *name, const char *value, struct why *why)
+static int set_option(struct nsd_run *r, const char *name, const char *value, struct failure *failure)
 {
-    if (!strcmp(name, "dt")) return run_set_dt(r, value, why);
-    if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, why);
-    if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, why);
-    if (asked_has(name)) return asked_set(&r->asked, name, value, why);
+    if (!strcmp(name, "dt")) return run_set_dt(r, value, failure);
+    if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, failure);
+    if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, failure);
+    if (asked_has(name)) return asked_set(&r->asked, name, value, failure);
     const struct cli_option *o = option_named(name);
-    if (!o) return why_set(why, NSD_USAGE, "%.60s: no such option", name);
+    if (!o) return failure_set(failure, NSD_USAGE, "%.60s: no such option", name);
     struct options asked = r->options;
-    if (option_set(o, options_member(&asked, o->to), value, why)) return why->status;
+    if (option_set(o, options_member(&asked, o->to), value, failure)) return failure->status;
     options_give(&asked, o->to);
     if (!strcmp(name, "theta") && r->out && asked.theta != r->f.packing.theta)
-        return why_set(why, NSD_USAGE, "theta: a trajectory has one: nsd_finish() ends it");
+        return failure_set(failure, NSD_USAGE, "theta: a trajectory has one: nsd_finish() ends it");
     r->options = asked;
     r->chosen = false;
     return 0;
@@ -284,22 +284,22 @@ static int set_option(struct nsd_run *r, const char *name, const char *value, st
 
 int nsd_set(struct nsd_run *r, const char *option, const char *value)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
-    if (!option || !value) return why_set(why, NSD_USAGE, "an option has a name and a value");
-    if (set_option(r, option, value, why) && !strncmp(why->text, "--", 2))
-        memmove(why->text, why->text + 2, strlen(why->text + 2) + 1);
-    return why->status;
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (!option || !value) return failure_set(failure, NSD_USAGE, "an option has a name and a value");
+    if (set_option(r, option, value, failure) && !strncmp(failure->text, "--", 2))
+        memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
+    return failure->status;
 }
 
-int run_choose(struct nsd_run *r, struct why *why)
+int run_choose(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     if (r->chosen) return 0;
-    if (options_names(&r->options, why)) return why->status;
+    if (options_names(&r->options, failure)) return failure->status;
     struct step_opt o = options_step_of(&r->options, p->dt, false);
     char *text = options_json_of(&r->options, &o);
-    if (!text) return why_set(why, NSD_SOFTWARE, "no memory for the options");
+    if (!text) return failure_set(failure, NSD_SOFTWARE, "no memory for the options");
     if (options_has(&r->options, &options.theta)) p->theta = r->options.theta;
     p->overlap = options_overlap_of(&r->options, p, false);
     free(r->option_json);
@@ -311,66 +311,66 @@ int run_choose(struct nsd_run *r, struct why *why)
 
 /* ---- steps ---- */
 
-static void swap_forces(struct outside *a, struct outside *b)
+static void swap_forces(struct external_force *a, struct external_force *b)
 {
-    const struct outside was = *a;
+    const struct external_force was = *a;
     a->force = b->force, a->torque = b->torque, a->push = b->push, a->most = b->most;
     b->force = was.force, b->torque = was.torque, b->push = was.push, b->most = was.most;
 }
 
 /* dt of the step to come */
-static int adapt(struct nsd_run *r, struct why *why)
+static int adapt(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     double had = p->dt;
     const double tol = r->tol > 0 ? r->tol : p->tolerance;
     if (!(tol > 0)) return 0;
-    if (adapt_step(p, tol, &r->ahead, why)) return why->status;
+    if (adapt_step(p, tol, &r->ahead, failure)) return failure->status;
     r->o.solve.local.newton_abs *= p->dt / had;
     return 0;
 }
 
 /* Its contacts are r->spare, its report *rep. */
-static int run_advance(struct nsd_run *r, struct report *rep, struct why *why)
+static int run_advance(struct nsd_run *r, struct report *rep, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     bool changed = false;
-    if (adapt(r, why) || flow_step(&r->flow, p, NULL, &changed, why)) return why->status;
+    if (adapt(r, failure) || flow_step(&r->flow, p, NULL, &changed, failure)) return failure->status;
     if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
-    if (acts_begin(&r->acts, p, why)) return why->status;
-    if (step_advance(p, &r->spare, &r->memory, &r->o, rep, why)) return why->status;
+    if (control_begin(&r->acts, p, failure)) return failure->status;
+    if (step_advance(p, &r->spare, &r->memory, &r->o, rep, failure)) return failure->status;
     if (report_made(rep)) return 0;
     char text[160];
     report_says_end(rep, text, sizeof text);
-    return why_set(why, NSD_DIVERGED, "%s: the bodies have not moved", text);
+    return failure_set(failure, NSD_DIVERGED, "%s: the bodies have not moved", text);
 }
 
 /* Puts the step in front of the reason, unless it is there. */
-static void name_step(int64_t step, struct why *why)
+static void name_step(int64_t step, struct failure *failure)
 {
-    char text[sizeof why->text];
-    if (!strncmp(why->text, "step ", 5)) return;
-    memcpy(text, why->text, sizeof text);
-    snprintf(why->text, sizeof why->text, "step %lld: %.360s", (long long)step, text);
+    char text[sizeof failure->text];
+    if (!strncmp(failure->text, "step ", 5)) return;
+    memcpy(text, failure->text, sizeof text);
+    snprintf(failure->text, sizeof failure->text, "step %lld: %.360s", (long long)step, text);
 }
 
-static int step_once(struct nsd_run *r, struct why *why)
+static int step_once(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     struct report rep = { 0 };
     const struct step_opt o = r->o;
     if (r->solved) rep = r->f.report;
     rep.options = r->option_json;
-    if (undo_take(&r->undo, p, &r->acts, why)) return why->status;
+    if (rollback_take(&r->undo, p, &r->acts, failure)) return failure->status;
     bool whole = r->undo.whole;
     if (!whole) swap_forces(&p->outside, &r->last);
-    if (run_advance(r, &rep, why)) {
-        name_step(r->undo.was.step + 1, why);
+    if (run_advance(r, &rep, failure)) {
+        name_step(r->undo.was.step + 1, failure);
         if (!whole) swap_forces(&p->outside, &r->last);
-        undo_back(&r->undo, p, &r->acts);
+        rollback_back(&r->undo, p, &r->acts);
         step_forget(&r->memory), neighbours_free(&r->ahead);
         r->o = o;
-        return why->status;
+        return failure->status;
     }
     struct contacts had = r->f.contacts;
     r->f.contacts = r->spare, r->spare = had;
@@ -378,18 +378,18 @@ static int step_once(struct nsd_run *r, struct why *why)
     r->f.report = rep, r->solved = true;
     r->f.detected = r->f.reported = r->f.moved = true;
     account_add(&r->f.account, &rep), account_add(&r->account, &rep);
-    acts_end(&r->acts, p->walls);
+    control_end(&r->acts, p->walls);
     return 0;
 }
 
 int nsd_step(struct nsd_run *r, int64_t n)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
-    if (n < 0) return why_set(why, NSD_USAGE, "%lld steps cannot be made", (long long)n);
-    if (n && run_choose(r, why)) return why->status;
-    for (int64_t k = 0; k < n && !why->status; k++) step_once(r, why);
-    return why->status;
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (n < 0) return failure_set(failure, NSD_USAGE, "%lld steps cannot be made", (long long)n);
+    if (n && run_choose(r, failure)) return failure->status;
+    for (int64_t k = 0; k < n && !failure->status; k++) step_once(r, failure);
+    return failure->status;
 }
 
 /* s: what a time may differ from that of its step, as nsd-step has it */
@@ -400,15 +400,15 @@ static double slack(const struct packing *p, double t)
 
 int nsd_until(struct nsd_run *r, double t)
 {
-    struct why *why = run_why(r);
-    if (!why) return NSD_USAGE;
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
     const struct packing *p = &r->f.packing;
-    if (!isfinite(t)) return why_set(why, NSD_USAGE, "a time of %g s is never reached", t);
+    if (!isfinite(t)) return failure_set(failure, NSD_USAGE, "a time of %g s is never reached", t);
     if (!((t - p->t) / p->dt < 1e15))
-        return why_set(why, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t, p->dt);
-    if (run_choose(r, why)) return why->status;
-    while (!why->status && p->t < t - slack(p, t)) step_once(r, why);
-    return why->status;
+        return failure_set(failure, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t, p->dt);
+    if (run_choose(r, failure)) return failure->status;
+    while (!failure->status && p->t < t - slack(p, t)) step_once(r, failure);
+    return failure->status;
 }
 
 int nsd_resizes(const struct nsd_run *r)
@@ -421,6 +421,6 @@ void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s)
     packing_free(&r->f.packing), contacts_free(&r->f.contacts);
     r->f.packing = *p, r->f.contacts = *s;
     step_forget(&r->memory), neighbours_free(&r->ahead);
-    outside_free(&r->last);
+    external_force_free(&r->last);
     r->other_bodies = true;
 }

@@ -19,12 +19,12 @@ struct nsd_run {
     pid_t maker; /* the process that may use it */
     struct frame f;
     struct contacts spare; /* where the contacts of the next step go */
-    struct outside last;   /* the forces of the last step, while the next is made */
+    struct external_force last;   /* the forces of the last step, while the next is made */
     struct step_memory memory;
     struct neighbours ahead; /* of where bodies would be at the end of a step */
     struct flow flow;
-    struct undo undo;
-    struct acts acts;
+    struct rollback undo;
+    struct control acts;
     struct account account; /* of the steps of this run */
     double measured;        /* of them that have not converged, when it was measured last */
     bool solved;            /* the report is of a step of this run, and its options are these: */
@@ -36,7 +36,7 @@ struct nsd_run {
     double tol;            /* radii: of dt auto:TOL; 0: the document's, if its dt is automatic */
     bool contacts, forces; /* what is saved */
     struct asked asked;
-    struct kept first, before; /* what measures remember */
+    struct frame_memory first, before; /* what measures remember */
     bool remembers;
 
     int32_t next_id;   /* no body had it */
@@ -48,19 +48,19 @@ struct nsd_run {
 
     void *made[MADE_MOST]; /* arrays by their place in the table of names; or NULL */
     char *text;            /* JSON that was asked for */
-    struct why why;
+    struct failure failure;
 };
 
 /* Each function of nsd.h that has a run begins with this: what it is to put its reason into; NULL: there is no run, or it
    is another process's, which is said (NSD_USAGE). */
-struct why *run_why(struct nsd_run *run);
+struct failure *run_why(struct nsd_run *run);
 /* The reason of this thread where there is no run */
-struct why *run_why_of_thread(void);
+struct failure *run_why_of_thread(void);
 
 /* r->o and r->option_json are what the options come to; the packing has theta and what is done about overlap. */
-int run_choose(struct nsd_run *r, struct why *why);
+int run_choose(struct nsd_run *r, struct failure *failure);
 /* As nsd_add() */
-int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct why *why);
+int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct failure *failure);
 /* Where the packing gets other bodies: a new one in place of it */
 void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s);
 

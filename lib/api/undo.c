@@ -3,24 +3,24 @@
 #include <stdlib.h>
 #include <string.h>
 
-void undo_free(struct undo *u)
+void rollback_free(struct rollback *u)
 {
     free(u->x), free(u->v), free(u->w), free(u->q), free(u->image), free(u->wall), free(u->recall);
-    if (u->whole) packing_free(&u->was), acts_free(&u->acts);
-    *u = (struct undo){ 0 };
+    if (u->whole) packing_free(&u->was), control_free(&u->acts);
+    *u = (struct rollback){ 0 };
 }
 
-static int rollback_no_memory(struct why *why)
+static int rollback_no_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "no memory for the state before a step");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the state before a step");
 }
 
 /* Memory for the parts of p that a step changes */
-static int rollback_make_room(struct undo *u, const struct packing *p, struct why *why)
+static int rollback_make_room(struct rollback *u, const struct packing *p, struct failure *failure)
 {
     size_t n = (size_t)p->n + 1;
     if (!u->x || u->n != p->n || u->walls != p->walls || !u->image != !p->image) {
-        undo_free(u);
+        rollback_free(u);
         u->recall = NULL; // as it is; the analyzer loses sight of it
         u->n = p->n, u->walls = p->walls;
         u->x = malloc(n * sizeof *u->x), u->v = malloc(n * sizeof *u->v);
@@ -31,12 +31,12 @@ static int rollback_make_room(struct undo *u, const struct packing *p, struct wh
     if (!u->recall || u->room < p->memory.n) {
         int64_t room = p->memory.n + p->memory.n / 2;
         struct recall *more = realloc(u->recall, ((size_t)room + 1) * sizeof *more);
-        if (!more) return undo_free(u), rollback_no_memory(why);
+        if (!more) return rollback_free(u), rollback_no_memory(failure);
         u->recall = more, u->room = room;
     }
     if (u->x && u->v && u->w && u->q && u->wall && u->recall && (u->image || !p->image)) return 0;
-    undo_free(u);
-    return rollback_no_memory(why);
+    rollback_free(u);
+    return rollback_no_memory(failure);
 }
 
 /* Does a step change more than places and velocities? */
@@ -45,19 +45,19 @@ static bool changes_more(const struct packing *p)
     return packing_varies(p) || p->law;
 }
 
-int undo_take(struct undo *u, const struct packing *p, const struct acts *acts, struct why *why)
+int rollback_take(struct rollback *u, const struct packing *p, const struct control *acts, struct failure *failure)
 {
     size_t n = (size_t)p->n;
-    if (u->whole) undo_free(u);
+    if (u->whole) rollback_free(u);
     if (changes_more(p)) {
-        undo_free(u);
-        if (packing_copy(&u->was, p, why)) return u->was = (struct packing){ 0 }, why->status;
-        if (packing_varies(p) && acts_copy(&u->acts, acts, p->walls, why))
-            return packing_free(&u->was), why->status;
+        rollback_free(u);
+        if (packing_copy(&u->was, p, failure)) return u->was = (struct packing){ 0 }, failure->status;
+        if (packing_varies(p) && control_copy(&u->acts, acts, p->walls, failure))
+            return packing_free(&u->was), failure->status;
         u->whole = true;
         return 0;
     }
-    if (rollback_make_room(u, p, why)) return why->status;
+    if (rollback_make_room(u, p, failure)) return failure->status;
     memcpy(u->x, p->x, n * sizeof *u->x), memcpy(u->v, p->v, n * sizeof *u->v);
     memcpy(u->w, p->w, n * sizeof *u->w), memcpy(u->q, p->q, n * sizeof *u->q);
     if (p->walls) memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);
@@ -78,7 +78,7 @@ static void keep_places(struct packing *was, struct packing *p)
     }
 }
 
-void undo_back(struct undo *u, struct packing *p, struct acts *acts)
+void rollback_back(struct rollback *u, struct packing *p, struct control *acts)
 {
     size_t n = (size_t)u->n;
     if (u->whole) {
@@ -87,8 +87,8 @@ void undo_back(struct undo *u, struct packing *p, struct acts *acts)
         packing_free(p);
         *p = u->was;
         if (varies)
-            acts_free(acts), *acts = u->acts; // else a step that fails leaves them as they are
-        u->whole = false, u->was = (struct packing){ 0 }, u->acts = (struct acts){ 0 };
+            control_free(acts), *acts = u->acts; // else a step that fails leaves them as they are
+        u->whole = false, u->was = (struct packing){ 0 }, u->acts = (struct control){ 0 };
         return;
     }
     memcpy(p->x, u->x, n * sizeof *u->x), memcpy(p->v, u->v, n * sizeof *u->v);

@@ -8,7 +8,7 @@
 #include "api/acts.h"
 
 /* All zero to begin with */
-struct undo {
+struct rollback {
     int64_t n, room;     /* bodies; reactions there is memory for */
     vec3 *x, *v, *w;     /* [n] */
     quat *q;             /* [n] */
@@ -18,13 +18,13 @@ struct undo {
     struct recall *recall; /* [room] */
     struct packing was;    /* its numbers; or, whole, a copy */
     bool whole;
-    struct acts acts; /* where bodies come and go: a copy, too */
+    struct control acts; /* where bodies come and go: a copy, too */
 };
 
-void undo_free(struct undo *undo);
+void rollback_free(struct rollback *undo);
 /* Remembers. Returns 0 or EX_SOFTWARE, where the packing may not be stepped. */
-int undo_take(struct undo *undo, const struct packing *p, const struct acts *acts, struct why *why);
+int rollback_take(struct rollback *undo, const struct packing *p, const struct control *acts, struct failure *failure);
 /* p and acts are what they were. */
-void undo_back(struct undo *undo, struct packing *p, struct acts *acts);
+void rollback_back(struct rollback *undo, struct packing *p, struct control *acts);
 
 #endif

@@ -2,14 +2,14 @@
 
 #include <stdatomic.h>
 
-static atomic_bool guest;
+static atomic_bool embedded;
 
-void guest_set(void)
+void embedded_set(void)
 {
-    atomic_store(&guest, true);
+    atomic_store(&embedded, true);
 }
 
-bool guest_is(void)
+bool embedded_is(void)
 {
-    return atomic_load(&guest);
+    return atomic_load(&embedded);
 }

@@ -7,7 +7,7 @@
 
 #include <stdbool.h>
 
-void guest_set(void);
-bool guest_is(void);
+void embedded_set(void);
+bool embedded_is(void);
 
 #endif

@@ -59,12 +59,12 @@ void limits_no_core(void)
     set_limit(RLIMIT_CORE, 0);
 }
 
-int limits_reason(int signal, const char *name, struct why *why)
+int limits_reason(int signal, const char *name, struct failure *failure)
 {
     if (signal == SIGXCPU)
-        return why_set(why, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
+        return failure_set(failure, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
                        name);
     if (signal == SIGKILL)
-        return why_set(why, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", name);
+        return failure_set(failure, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", name);
     return 0;
 }

@@ -28,6 +28,6 @@ void limits_no_core(void);
 
 /* Why a process that read `name` was ended by this signal, where a limit or a lack of memory ended it: EX_DATAERR or
    EX_SOFTWARE; else 0. */
-int limits_reason(int signal, const char *name, struct why *why);
+int limits_reason(int signal, const char *name, struct failure *failure);
 
 #endif

@@ -52,6 +52,6 @@ struct cli_option {
 void option_words(const struct cli_option *o, char *text, size_t size);
 /* Sets a variable of the option's kind, *to, by a text; a flag takes none, or true or false. Returns 0, or EX_USAGE
    with "--name: trouble". A CLI_TEXT is borrowed. */
-int option_set(const struct cli_option *o, void *to, const char *text, struct why *why);
+int option_set(const struct cli_option *o, void *to, const char *text, struct failure *failure);
 
 #endif

@@ -58,7 +58,7 @@ static void output_enlist(struct output *o)
 {
     static const int signals[] = { SIGINT, SIGTERM, SIGHUP };
     pthread_mutex_lock(&list_lock);
-    if (!owner && !guest_is()) {
+    if (!owner && !embedded_is()) {
         atexit(remove_all);
         for (int k = 0; k < 3;
              k++) // those that the tool has not taken for itself, and that are not ignored
@@ -91,7 +91,7 @@ static void output_unlist(struct output *o)
  * taken: it would keep readers out, too (h5py of a growing trajectory). Only a byte beyond all data is locked:
  * MPI-IO may lock the bytes that the processes of one run write together.
  */
-int output_lock(int fd, int how, const char *name, struct why *why)
+int output_lock(int fd, int how, const char *name, struct failure *failure)
 {
     struct flock lock = { .l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = LOCKED, .l_len = 1 };
     struct stat st;
@@ -99,7 +99,7 @@ int output_lock(int fd, int how, const char *name, struct why *why)
     while (fcntl(fd, how, &lock)) {
         if (errno == EINTR) continue;
         if (errno == EACCES || errno == EAGAIN)
-            return why_set(why, EX_IOERR, "%s: another program is writing it", name);
+            return failure_set(failure, EX_IOERR, "%s: another program is writing it", name);
         return 0; // no file that can be locked
     }
     return 0;
@@ -119,9 +119,9 @@ bool output_removed(int fd)
 
 /* ---- the new file ---- */
 
-static int output_failed(const struct output *o, struct why *why, int trouble)
+static int output_failed(const struct output *o, struct failure *failure, int trouble)
 {
-    return why_set(why, EX_IOERR, "%s: %s", o->name, strerror(trouble));
+    return failure_set(failure, EX_IOERR, "%s: %s", o->name, strerror(trouble));
 }
 
 /* Its rights are those of the file whose place it takes. */
@@ -145,17 +145,17 @@ static char *name_beside(const char *target)
 }
 
 /* Opens it, locked, and empty: one that a killed program has left is used again. */
-static int open_beside(struct output *o, struct why *why)
+static int open_beside(struct output *o, struct failure *failure)
 {
     o->at = name_beside(o->target);
-    if (!o->at) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!o->at) return failure_set(failure, EX_SOFTWARE, "no memory");
     do {
         if (o->fd >= 0) close(o->fd); // the other writer was done with it in between
         o->fd = open(o->at, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (o->fd < 0) return output_failed(o, why, errno);
-        if (output_lock(o->fd, F_OFD_SETLK, o->name, why)) return why->status;
+        if (o->fd < 0) return output_failed(o, failure, errno);
+        if (output_lock(o->fd, F_OFD_SETLK, o->name, failure)) return failure->status;
     } while (!is_at(o));
-    if (ftruncate(o->fd, 0)) return output_failed(o, why, errno);
+    if (ftruncate(o->fd, 0)) return output_failed(o, failure, errno);
     take_rights(o);
     output_enlist(o);
     return 0;
@@ -187,27 +187,27 @@ static bool is_open_already(const char *path)
            !strncmp(path, "/proc/", 6);
 }
 
-static int open_new(struct output *o, const char *path, struct why *why)
+static int open_new(struct output *o, const char *path, struct failure *failure)
 {
     struct stat st;
     *o = (struct output){ .name = path, .fd = -1, .old = -1 };
     o->target = realpath(path, NULL);
     bool there = o->target && !stat(o->target, &st);
-    if (there && S_ISDIR(st.st_mode)) return output_failed(o, why, EISDIR);
+    if (there && S_ISDIR(st.st_mode)) return output_failed(o, failure, EISDIR);
     if (is_open_already(path) || (there && !S_ISREG(st.st_mode))) {
         free(o->target);
         o->target = NULL;
         bool regular = there && S_ISREG(st.st_mode);
         o->fd = open(path, (regular ? O_RDWR | O_TRUNC : O_WRONLY) | O_CLOEXEC);
-        if (o->fd < 0) return output_failed(o, why, errno);
+        if (o->fd < 0) return output_failed(o, failure, errno);
         o->nameless = output_removed(o->fd);
         return 0;
     }
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
-    if (there && o->old < 0) return output_failed(o, why, errno);
-    if (there && output_lock(o->old, F_OFD_SETLK, o->name, why)) return why->status;
-    if (!there && !(o->target = output_follow(path))) return why_set(why, EX_SOFTWARE, "no memory");
-    return open_beside(o, why);
+    if (there && o->old < 0) return output_failed(o, failure, errno);
+    if (there && output_lock(o->old, F_OFD_SETLK, o->name, failure)) return failure->status;
+    if (!there && !(o->target = output_follow(path))) return failure_set(failure, EX_SOFTWARE, "no memory");
+    return open_beside(o, failure);
 }
 
 static void output_forget(struct output *o)
@@ -220,18 +220,18 @@ static void output_forget(struct output *o)
     *o = (struct output){ .name = o->name, .fd = -1, .old = -1 };
 }
 
-int output_open(struct output *o, const char *path, struct why *why)
+int output_open(struct output *o, const char *path, struct failure *failure)
 {
-    if (open_new(o, path, why)) output_forget(o);
-    return why->status;
+    if (open_new(o, path, failure)) output_forget(o);
+    return failure->status;
 }
 
-static int output_put_in_place(struct output *o, struct why *why)
+static int output_put_in_place(struct output *o, struct failure *failure)
 {
     if (o->placed || !o->target) return 0;
     if (!is_at(o))
-        return why_set(why, EX_IOERR, "%s: another program has removed %s", o->name, o->at);
-    if (rename(o->at, o->target)) return output_failed(o, why, errno);
+        return failure_set(failure, EX_IOERR, "%s: another program has removed %s", o->name, o->at);
+    if (rename(o->at, o->target)) return output_failed(o, failure, errno);
     free(o->at);
     o->at = o->target, o->placed = true;
     if (o->old >= 0) close(o->old);
@@ -239,15 +239,15 @@ static int output_put_in_place(struct output *o, struct why *why)
     return 0;
 }
 
-int output_place_for_now(struct output *o, struct why *why)
+int output_place_for_now(struct output *o, struct failure *failure)
 {
-    return output_put_in_place(o, why);
+    return output_put_in_place(o, failure);
 }
 
-int output_place(struct output *o, struct why *why)
+int output_place(struct output *o, struct failure *failure)
 {
-    if (!output_put_in_place(o, why)) output_unlist(o);
-    return why->status;
+    if (!output_put_in_place(o, failure)) output_unlist(o);
+    return failure->status;
 }
 
 /* Asks the file system what it says of the data when a file is closed, while the lock is kept. */
@@ -257,15 +257,15 @@ static bool closes(int fd)
     return copy >= 0 && !close(copy);
 }
 
-int output_close(struct output *o, struct why *why)
+int output_close(struct output *o, struct failure *failure)
 {
     if (!o->nameless && output_removed(o->fd))
-        why_set(why, EX_IOERR, "%s: another program has removed it", o->name);
-    else if (!why->status && !closes(o->fd))
-        output_failed(o, why, errno);
-    if (why->status || output_place(o, why)) return output_drop(o), why->status;
+        failure_set(failure, EX_IOERR, "%s: another program has removed it", o->name);
+    else if (!failure->status && !closes(o->fd))
+        output_failed(o, failure, errno);
+    if (failure->status || output_place(o, failure)) return output_drop(o), failure->status;
     output_forget(o);
-    return why->status;
+    return failure->status;
 }
 
 void output_drop(struct output *o)
@@ -287,22 +287,22 @@ void output_keep(struct output *o)
 
 /* ---- as a stream ---- */
 
-FILE *output_stream(struct output *o, const char *path, struct why *why)
+FILE *output_stream(struct output *o, const char *path, struct failure *failure)
 {
-    if (output_open(o, path, why)) return NULL;
+    if (output_open(o, path, failure)) return NULL;
     int fd = fcntl(o->fd, F_DUPFD_CLOEXEC, 0); // the stream's own
     FILE *stream = fd < 0 ? NULL : fdopen(fd, "w");
     if (stream) return stream;
     if (fd >= 0) close(fd);
-    output_failed(o, why, errno);
+    output_failed(o, failure, errno);
     output_drop(o);
     return NULL;
 }
 
-int output_stream_close(struct output *o, FILE *stream, struct why *why)
+int output_stream_close(struct output *o, FILE *stream, struct failure *failure)
 {
     bool bad = ferror(stream);
-    if (fclose(stream)) output_failed(o, why, errno);
-    if (bad) why_set(why, EX_IOERR, "%s: not written (disk full?)", o->name);
-    return output_close(o, why);
+    if (fclose(stream)) output_failed(o, failure, errno);
+    if (bad) failure_set(failure, EX_IOERR, "%s: not written (disk full?)", o->name);
+    return output_close(o, failure);
 }

@@ -30,14 +30,14 @@ struct output {
 
 /* Opens a new file for this path; EX_IOERR: it could not be written, or another program is writing it.
    The struct has to stay where it is until output_close or output_drop. */
-int output_open(struct output *o, const char *path, struct why *why);
+int output_open(struct output *o, const char *path, struct failure *failure);
 /* There is something whole in it: it takes its place, and may grow there. */
-int output_place(struct output *o, struct why *why);
+int output_place(struct output *o, struct failure *failure);
 /* The same, but it is still removed should the tool end before output_close. */
-int output_place_for_now(struct output *o, struct why *why);
+int output_place_for_now(struct output *o, struct failure *failure);
 /* It is whole, unless why has a reason, which drops it: it takes its place if it has not yet, and is closed.
    EX_IOERR also where another program has removed it. */
-int output_close(struct output *o, struct why *why);
+int output_close(struct output *o, struct failure *failure);
 /* It will not be: it is closed, and removed unless it has its place for good. */
 void output_drop(struct output *o);
 
@@ -47,12 +47,12 @@ void output_borrow(struct output *o, int fd, const char *name);
 void output_keep(struct output *o);
 
 /* The same as a stream: opened; and closed by what returns EX_IOERR also where any of it was not written */
-FILE *output_stream(struct output *o, const char *path, struct why *why);
-int output_stream_close(struct output *o, FILE *stream, struct why *why);
+FILE *output_stream(struct output *o, const char *path, struct failure *failure);
+int output_stream_close(struct output *o, FILE *stream, struct failure *failure);
 
 /* Locks a regular file for one writer until it is closed, or another time; how: F_OFD_SETLK, F_OFD_SETLKW.
    Returns 0, or EX_IOERR where another program has it. */
-int output_lock(int fd, int how, const char *name, struct why *why);
+int output_lock(int fd, int how, const char *name, struct failure *failure);
 void output_unlock(int fd);
 /* Has another program removed the open file, which had a name once? */
 bool output_removed(int fd);

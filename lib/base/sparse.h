@@ -43,7 +43,7 @@ bool stored_columns(struct stored *S, const struct sparse *A);
 
 /* A = S, all of it checked; moves the arrays of S into A. Returns 0, EX_SOFTWARE or EX_DATAERR with
    a reason "name/p: ...". */
-int sparse_unpack(struct sparse *A, struct stored *S, const char *name, struct why *why);
+int sparse_unpack(struct sparse *A, struct stored *S, const char *name, struct failure *failure);
 
 /* Items that belong to n owners, listed by owner: those of o are item[first[o]] ..
    item[first[o+1]-1]. */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stdio.h>
 
-#undef why_set // which is what the analyser takes for it
+#undef failure_set // which is what the analyser takes for it
 
 /* How many bytes the UTF-8 character at s has, with the number in *is; 0: it is none */
 static int failure_character(const unsigned char *s, unsigned *is)
@@ -19,7 +19,7 @@ static int failure_character(const unsigned char *s, unsigned *is)
     return n;
 }
 
-void why_plain(char *text)
+void failure_plain(char *text)
 {
     for (unsigned char *s = (unsigned char *)text; *s;) {
         unsigned is;
@@ -30,13 +30,13 @@ void why_plain(char *text)
     }
 }
 
-int why_set(struct why *why, int status, const char *format, ...)
+int failure_set(struct failure *failure, int status, const char *format, ...)
 {
-    if (why->status) return why->status;
+    if (failure->status) return failure->status;
     va_list ap;
     va_start(ap, format);
-    vsnprintf(why->text, sizeof why->text, format, ap);
+    vsnprintf(failure->text, sizeof failure->text, format, ap);
     va_end(ap);
-    why_plain(why->text);
-    return why->status = status;
+    failure_plain(failure->text);
+    return failure->status = status;
 }

@@ -10,25 +10,25 @@
 
 #include <sysexits.h>
 
-struct why {
+struct failure {
     int status;     /* 0: no failure */
     char text[400]; /* "thing: trouble", one line */
 };
 
 /* Sets the reason unless there is one already. Control characters become '?', for names out of
    files are in it. Returns the status of the first, never 0, for use as `return why_set(...)`. */
-int why_set(struct why *why, int status, const char *format, ...)
+int failure_set(struct failure *failure, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 /* Names out of files are in messages: control characters, C1 too, and bytes that are no UTF-8 become '?', for
    they may move a terminal. */
-void why_plain(char *text);
+void failure_plain(char *text);
 
 /* What the static analyser, which sees one file at a time, has to know of it */
 #ifdef __clang_analyzer__
 void why_said(const char *format, ...);
-#define why_set(why, code, ...)                                                                    \
-    ((why)->status ? (why)->status : (why_said(__VA_ARGS__), (why)->status = (code)))
+#define failure_set(failure, code, ...)                                                                    \
+    ((failure)->status ? (failure)->status : (why_said(__VA_ARGS__), (failure)->status = (code)))
 #endif
 
 #endif

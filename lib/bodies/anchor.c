@@ -29,13 +29,13 @@ static struct contact bond_anchor_place(const struct packing *p, const struct bo
     const vec3 *x = at->x;
     const quat *q = at->q;
     struct contact c = { .a = b->a, .b = b->b, .feature = b->feature };
-    quat qb = packing_shape(p, b->b) ? q[b->b] : top_predict(p, b->b);
+    quat qb = packing_shape(p, b->b) ? q[b->b] : rotation_predict(p, b->b);
     vec3 xb = v3_add(v3_add(x[b->b], cell_shift(at->edge, b->shift)), quat_turn(qb, b->at_b)), xa;
     if (b->a < 0) {
         const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], at->t);
         xa = nearest_image(&p->cell, at->edge, pose_of(&pose, b->at_a), xb);
     } else {
-        quat qa = packing_shape(p, b->a) ? q[b->a] : top_predict(p, b->a);
+        quat qa = packing_shape(p, b->a) ? q[b->a] : rotation_predict(p, b->a);
         xa = v3_add(x[b->a], quat_turn(qa, b->at_a));
     }
     for (int k = 0; k < 3; k++) c.shift[k] = b->shift[k];
@@ -83,7 +83,7 @@ static bool bond_anchor_merge(struct contacts *to, const struct packing *p, cons
 }
 
 int anchors_place(struct contacts *s, const struct packing *p, const struct positions *at,
-                  struct why *why)
+                  struct failure *failure)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < p->bonds.n; i++) n += bond_anchored(&p->bonds.bond[i]);
@@ -99,7 +99,7 @@ int anchors_place(struct contacts *s, const struct packing *p, const struct posi
     }
     if (!placed || !bond_anchor_merge(&both, p, s, placed, n)) {
         free(placed), contacts_free(&both);
-        return why_set(why, EX_SOFTWARE, "no memory for the contacts of bonds");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the contacts of bonds");
     }
     free(placed), contacts_free(s);
     *s = both;
@@ -110,10 +110,10 @@ int anchors_place(struct contacts *s, const struct packing *p, const struct posi
 static struct pose ahead_of(const struct packing *p, int64_t i, double ahead)
 {
     if (!(ahead > 0)) return (struct pose){ p->q[i], p->x[i] };
-    return (struct pose){ top_predict(p, i), packing_predict(p, i) };
+    return (struct pose){ rotation_predict(p, i), packing_predict(p, i) };
 }
 
-void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area,
+void bond_anchor(struct bond *b, const struct packing *p, const struct contact *c, double area,
                  double ahead)
 {
     vec3 edge[3], half = v3_scale(0.5 * c->gap, c->n);

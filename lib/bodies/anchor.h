@@ -21,7 +21,7 @@
  * EX_SOFTWARE.
  */
 int anchors_place(struct contacts *s, const struct packing *p, const struct positions *at,
-                  struct why *why);
+                  struct failure *failure);
 
 /* Is the contact that of an anchored bond? */
 static inline bool contact_anchored(const struct contact *c)
@@ -30,7 +30,7 @@ static inline bool contact_anchored(const struct contact *c)
 }
 
 /* Gives b, made at c of this step, its anchors and an area (m^2). The contact has been detected `ahead` (s) of the bodies. */
-void anchor_bond(struct bond *b, const struct packing *p, const struct contact *c, double area,
+void bond_anchor(struct bond *b, const struct packing *p, const struct contact *c, double area,
                  double ahead);
 
 #endif

@@ -175,7 +175,7 @@ static bool face_of(const struct surface_hold *y, int32_t i, vec3 away, vec3 n, 
     const struct shape *shape = packing_shape(y->p, i);
     out->n = 0;
     if (!shape || shape->form != SHAPE_HULL || y->p->dim == 2) return false;
-    const quat q = top_predict(y->p, i);
+    const quat q = rotation_predict(y->p, i);
     const vec3 x = v3_add(packing_predict(y->p, i), away), along = quat_turn_back(q, n);
     int32_t best = 0;
     for (int32_t f = 1; f < shape->faces; f++)
@@ -387,14 +387,14 @@ static bool attraction_is_shared(const struct contacts *s, const struct packing 
 }
 
 int attraction_share(struct attraction *of, const struct contacts *s, const struct packing *p,
-                     struct why *why)
+                     struct failure *failure)
 {
     int64_t n = 0, count = 0;
     vec3 edge[3];
     cell_predict(&p->cell, step_ahead(p), edge);
     for (int64_t i = 0; i < s->n; i++) of[i].among = of[i].bonds = 0, n += attraction_is_shared(s, p, of, i);
     struct attraction_hold *hold = malloc((size_t)(2 * n + 1) * sizeof *hold);
-    if (!hold) return why_set(why, EX_SOFTWARE, "no memory for the ties");
+    if (!hold) return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0; i < s->n; i++)
         if (attraction_is_shared(s, p, of, i)) hold[count++] = hold_of(p, s, i, edge);
     qsort(hold, (size_t)n, sizeof *hold, attraction_compare);

@@ -23,6 +23,6 @@ struct attraction {
 
 /* Sets of[i].among and .bonds, 1 at least, of all contacts. Returns 0 or EX_SOFTWARE. */
 int attraction_share(struct attraction *of, const struct contacts *s, const struct packing *p,
-                     struct why *why);
+                     struct failure *failure);
 
 #endif

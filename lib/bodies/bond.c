@@ -10,13 +10,13 @@ void bonds_free(struct bonds *s)
     *s = (struct bonds){ 0 };
 }
 
-int bonds_copy(struct bonds *to, const struct bonds *from, struct why *why)
+int bonds_copy(struct bonds *to, const struct bonds *from, struct failure *failure)
 {
     *to = (struct bonds){ 0 };
     for (int64_t i = 0; i < from->n; i++)
         if (!bonds_add(to, &from->bond[i])) {
             bonds_free(to);
-            return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+            return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
         }
     return 0;
 }
@@ -81,14 +81,14 @@ static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, i
     return NULL;
 }
 
-int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls, struct why *why)
+int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls, struct failure *failure)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct bond *x = &s->bond[i];
         const char *trouble = bond_trouble(x, dim, bodies, walls);
-        if (trouble) return why_set(why, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
         if (i && compare_bonds(x - 1, x) >= 0)
-            return why_set(why, EX_DATAERR, "bond %lld: not sorted by its bodies, or twice",
+            return failure_set(failure, EX_DATAERR, "bond %lld: not sorted by its bodies, or twice",
                            (long long)i);
     }
     return 0;

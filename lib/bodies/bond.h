@@ -45,7 +45,7 @@ struct bonds {
 
 void bonds_free(struct bonds *bonds);
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int bonds_copy(struct bonds *to, const struct bonds *from, struct why *why);
+int bonds_copy(struct bonds *to, const struct bonds *from, struct failure *failure);
 /* Appends one; NULL when memory is short. */
 struct bond *bonds_add(struct bonds *bonds, const struct bond *bond);
 /* Back into order, after keys have changed */
@@ -59,6 +59,6 @@ bool bonds_broken(const struct bonds *bonds, int32_t a, int32_t b, int64_t from)
 
 /* Do bodies and walls exist, are keys in order, numbers in range, and where dim is 2 places in the plane?
    Returns 0, or EX_DATAERR with the first bond that fails. */
-int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls, struct why *why);
+int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls, struct failure *failure);
 
 #endif

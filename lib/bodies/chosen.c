@@ -6,10 +6,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-void chosen_free(struct chosen *c)
+void selection_free(struct selection *c)
 {
     free(c->wall), free(c->name), free(c->kind);
-    *c = (struct chosen){ 0 };
+    *c = (struct selection){ 0 };
 }
 
 /* What there is to choose, as long as there is room */
@@ -26,7 +26,7 @@ static void list_all(const struct packing *p, char *text, size_t room)
     if (at >= room) snprintf(text + room - 4, 4, "...");
 }
 
-static bool choose_number(struct chosen *c, const struct packing *p, const char *word, size_t n)
+static bool choose_number(struct selection *c, const struct packing *p, const char *word, size_t n)
 {
     long k = 0;
     if (!n || n > 9) return false;
@@ -38,7 +38,7 @@ static bool choose_number(struct chosen *c, const struct packing *p, const char 
     return c->wall[k] = true;
 }
 
-static bool selection_choose(struct chosen *c, const struct packing *p, const char *word, size_t n)
+static bool selection_choose(struct selection *c, const struct packing *p, const char *word, size_t n)
 {
     int32_t name = names_find(&p->names, word, n);
     if (choose_number(c, p, word, n)) return true;
@@ -66,35 +66,35 @@ static bool is_of_walls(const struct packing *p, int32_t name)
     return false;
 }
 
-int chosen_init(struct chosen *c, const struct packing *p, const char *option, const char *list,
-                struct why *why)
+int selection_init(struct selection *c, const struct packing *p, const char *option, const char *list,
+                struct failure *failure)
 {
-    *c = (struct chosen){ .any = list };
+    *c = (struct selection){ .any = list };
     if (!list) return 0;
     c->wall = calloc((size_t)p->walls + 1, sizeof *c->wall);
     c->name = calloc((size_t)p->names.n + 1, sizeof *c->name);
     c->kind = calloc((size_t)p->kinds + 1, sizeof *c->kind);
-    if (!c->wall || !c->name || !c->kind) why_set(why, EX_SOFTWARE, "no memory for names");
-    for (const char *s = list; !why->status; s++) {
+    if (!c->wall || !c->name || !c->kind) failure_set(failure, EX_SOFTWARE, "no memory for names");
+    for (const char *s = list; !failure->status; s++) {
         size_t n = strcspn(s, ",");
         char all[240];
         if (!selection_choose(c, p, s, n)) {
             list_all(p, all, sizeof all);
-            why_set(why, EX_DATAERR, "%s: no '%.*s' here, but %s", option,
+            failure_set(failure, EX_DATAERR, "%s: no '%.*s' here, but %s", option,
                     (int)(n > NAME_BYTES ? NAME_BYTES : n), s, all);
         }
         s += n;
         if (!*s) break;
     }
-    if (why->status) return chosen_free(c), why->status;
-    for (int32_t w = 0; w < p->walls; w++) c->walls = c->walls || chosen_wall(c, p, w);
+    if (failure->status) return selection_free(c), failure->status;
+    for (int32_t w = 0; w < p->walls; w++) c->walls = c->walls || selection_wall(c, p, w);
     for (int32_t k = 0; k < p->kinds; k++) c->bodies = c->bodies || c->kind[k];
     for (int32_t k = 0; k < p->names.n; k++)
         c->bodies = c->bodies || (c->name[k] && !is_of_walls(p, k));
     return 0;
 }
 
-bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face)
+bool selection_face(const struct selection *c, const struct packing *p, int32_t wall, int32_t face)
 {
     if (!c->any || c->wall[wall]) return true;
     for (int32_t k = 0; k < p->names.rows; k++) {
@@ -106,7 +106,7 @@ bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, 
     return false;
 }
 
-bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall)
+bool selection_wall(const struct selection *c, const struct packing *p, int32_t wall)
 {
     if (!c->any || c->wall[wall]) return true;
     for (int32_t k = 0; k < p->names.rows; k++)
@@ -114,16 +114,16 @@ bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall)
     return false;
 }
 
-bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i)
+bool selection_body(const struct selection *c, const struct packing *p, int64_t i)
 {
     if (!c->any || c->kind[p->kind[i]]) return true;
     return p->group && p->group[i] > 0 && c->name[p->group[i] - 1];
 }
 
-bool chosen_contact(const struct chosen *c, const struct packing *p, const struct wall_faces *faces,
+bool selection_contact(const struct selection *c, const struct packing *p, const struct wall_faces *faces,
                     const struct contact *contact)
 {
-    if (chosen_body(c, p, contact->b)) return true;
-    if (contact->a >= 0) return chosen_body(c, p, contact->a);
-    return chosen_face(c, p, -1 - contact->a, face_of_contact(faces, p, contact, 0));
+    if (selection_body(c, p, contact->b)) return true;
+    if (contact->a >= 0) return selection_body(c, p, contact->a);
+    return selection_face(c, p, -1 - contact->a, face_of_contact(faces, p, contact, 0));
 }

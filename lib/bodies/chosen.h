@@ -8,7 +8,7 @@
 #include "bodies/packing.h"
 #include "bodies/wall_faces.h"
 
-struct chosen {
+struct selection {
     bool any;    /* a list is given; else all are chosen */
     bool walls;  /* it names a wall, or a part of one */
     bool bodies; /* it names a group of bodies or a kind */
@@ -19,16 +19,16 @@ struct chosen {
 
 /* list NULL: all. option: "--only", for the message, which lists what there is. Returns 0, EX_DATAERR or EX_SOFTWARE
    with nothing to free. */
-int chosen_init(struct chosen *c, const struct packing *p, const char *option, const char *list,
-                struct why *why);
-void chosen_free(struct chosen *c);
+int selection_init(struct selection *c, const struct packing *p, const char *option, const char *list,
+                struct failure *failure);
+void selection_free(struct selection *c);
 
 /* The wall, or any of its faces; the face, counted from the wall's first one; the body */
-bool chosen_wall(const struct chosen *c, const struct packing *p, int32_t wall);
-bool chosen_face(const struct chosen *c, const struct packing *p, int32_t wall, int32_t face);
-bool chosen_body(const struct chosen *c, const struct packing *p, int64_t i);
+bool selection_wall(const struct selection *c, const struct packing *p, int32_t wall);
+bool selection_face(const struct selection *c, const struct packing *p, int32_t wall, int32_t face);
+bool selection_body(const struct selection *c, const struct packing *p, int64_t i);
 /* The contact of such a body, or with such a face; faces: of face_of_init() */
-bool chosen_contact(const struct chosen *c, const struct packing *p, const struct wall_faces *faces,
+bool selection_contact(const struct selection *c, const struct packing *p, const struct wall_faces *faces,
                     const struct contact *contact);
 
 #endif

@@ -181,14 +181,14 @@ static const char *contact_law_trouble(const struct contact_law *t)
     return t->state >= 0 && t->state < CONTACT_LAW_STATES ? NULL : "its tie has no such state";
 }
 
-int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct why *why)
+int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct failure *failure)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const char *what = contact_trouble(&s->c[i], s->found ? &s->found[i] : NULL, bodies, walls);
         for (int k = 0; k < 3 && s->moment; k++)
             if (!isfinite(s->moment[i][k])) what = "moment is not finite";
         if (!what && s->law) what = contact_law_trouble(&s->law[i]);
-        if (what) return why_set(why, EX_DATAERR, "contact %lld: %s", (long long)i, what);
+        if (what) return failure_set(failure, EX_DATAERR, "contact %lld: %s", (long long)i, what);
     }
     return 0;
 }

@@ -179,12 +179,12 @@ static struct attraction attraction_of(const struct packing *p, const struct con
     return t;
 }
 
-int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why)
+int contact_laws_find(struct contacts *s, const struct packing *p, struct failure *failure)
 {
     struct attraction *of = malloc(((size_t)s->n + 1) * sizeof *of);
     if (!of || contacts_alloc_laws(s)) {
         free(of);
-        return why_set(why, EX_SOFTWARE, "no memory for the ties");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
     }
     for (int64_t i = 0, pair = 0, from = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
@@ -192,11 +192,11 @@ int contact_laws_find(struct contacts *s, const struct packing *p, struct why *w
         of[i] = attraction_of(p, c, bonds_find(&p->bonds, c, &from), pair);
     }
     int64_t from = 0;
-    if (!attraction_share(of, s, p, why))
+    if (!attraction_share(of, s, p, failure))
         for (int64_t i = 0; i < s->n; i++)
             set_tie(&s->law[i], p, &s->c[i], bonds_find(&p->bonds, &s->c[i], &from), &of[i]);
     free(of);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- over the step ---- */
@@ -382,7 +382,7 @@ static void anchor(struct bond *b, struct contact_law_keeping *y, int64_t i, str
     for (int64_t k = y->kept.n - 1; contact_law_has_bond(c, &y->kept, k); k--)
         least = lesser(least, y->kept.bond[k].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
-    anchor_bond(b, p, c, area, step_ahead(p));
+    bond_anchor(b, p, c, area, step_ahead(p));
 }
 
 /* Adds the anchored bonds that broke in earlier steps, of pairs that have not parted since; false when
@@ -420,7 +420,7 @@ static bool contact_law_keep(struct contact_law_keeping *y, int64_t i)
     return bonds_add(&y->kept, &b) != NULL;
 }
 
-int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why)
+int contact_laws_keep(struct packing *p, const struct contacts *s, struct failure *failure)
 {
     struct contact_law_keeping y = { .p = p, .s = s };
     bool good = true;
@@ -428,7 +428,7 @@ int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *w
     good = good && (!p->shape || remember_broken(&y.kept, p, s));
     if (!good) {
         bonds_free(&y.kept);
-        return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     }
     if (p->shape) bonds_sort(&y.kept);
     bonds_free(&p->bonds);

@@ -47,7 +47,7 @@ double contact_laws_reach(const struct packing *p);
  * bonds are made. Where adhesion holds mu is that of what is not bonded; it and a gap let nothing
  * rebound. Returns 0 or EX_SOFTWARE.
  */
-int contact_laws_find(struct contacts *s, const struct packing *p, struct why *why);
+int contact_laws_find(struct contacts *s, const struct packing *p, struct failure *failure);
 /* Does anything but touch make this a contact? */
 static inline bool contact_law_holds(const struct contact_law *t)
 {
@@ -83,6 +83,6 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
 
 /* p->bonds = what lasts of the contacts' ties; the bodies have not moved yet. Returns 0 or
    EX_SOFTWARE. */
-int contact_laws_keep(struct packing *p, const struct contacts *s, struct why *why);
+int contact_laws_keep(struct packing *p, const struct contacts *s, struct failure *failure);
 
 #endif

@@ -2,9 +2,9 @@
 
 #include "geometry/surface_tree.h"
 
-int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes, struct why *why)
+int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes, struct failure *failure)
 {
-    return wall_faces_init(f, p->walls, p->wall, meshes ? &p->mesh : NULL, why);
+    return wall_faces_init(f, p->walls, p->wall, meshes ? &p->mesh : NULL, failure);
 }
 
 int32_t face_of_contact(const struct wall_faces *f, const struct packing *p,

@@ -56,16 +56,16 @@ static struct freedom edge_freedom(const struct packing *p, int k, int i, const 
 /* Loads of boundaries that each move by themselves */
 static bool moves_alone(const struct wall *w)
 {
-    return w->load.way && !room_has(w);
+    return w->load.way && !servo_box_has(w);
 }
 
 /* The size of the room with these levers */
 static struct freedom room_freedom(const struct packing *p, const double *lever, double t)
 {
     return (struct freedom){ .boundary = ROOM,
-                             .mass = room_mass(p),
-                             .force = room_force(p, lever, t),
-                             .speed = room_growth(p),
+                             .mass = servo_box_mass(p),
+                             .force = servo_box_force(p, lever, t),
+                             .speed = servo_box_growth(p),
                              .lever = lever };
 }
 
@@ -74,11 +74,11 @@ static double *levers_of(const struct packing *p, bool ended, bool *good)
 {
     bool any = false;
     *good = true;
-    for (int32_t w = 0; w < p->walls; w++) any = any || room_has(&p->wall[w]);
+    for (int32_t w = 0; w < p->walls; w++) any = any || servo_box_has(&p->wall[w]);
     if (!any) return NULL;
     double *lever = malloc((size_t)p->walls * sizeof *lever);
     if (!(*good = lever)) return NULL;
-    room_levers(p, p->t + (ended ? -step_after(p) : step_ahead(p)), lever);
+    servo_box_levers(p, p->t + (ended ? -step_after(p) : step_ahead(p)), lever);
     return lever;
 }
 
@@ -110,7 +110,7 @@ static void face_areas(const struct packing *p, const vec3 edge[3], const vec3 i
 }
 
 int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3], bool ended,
-                  struct why *why)
+                  struct failure *failure)
 {
     const double t = middle(p, ended);
     *list = (struct freedoms){ 0 };
@@ -120,11 +120,11 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
     list->lever = levers_of(p, ended, &good);
     if (!list->f || !good) {
         freedoms_free(list);
-        return why_set(why, EX_SOFTWARE, "no memory for the loads");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
     }
     for (int32_t w = 0; w < p->walls; w++)
         if (moves_alone(&p->wall[w])) list->f[list->n++] = wall_freedom(p, w, t);
-    if (list->lever && room_mass(p) > 0) list->f[list->n++] = room_freedom(p, list->lever, t);
+    if (list->lever && servo_box_mass(p) > 0) list->f[list->n++] = room_freedom(p, list->lever, t);
     vec3 inverse[3], area[3];
     cell_inverse(half, inverse);
     face_areas(p, half, inverse, area);
@@ -138,16 +138,16 @@ int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 hal
 /* m/s: the same of the wall of the room that is farthest from its centre */
 static double fastest_of_room(const struct packing *p, bool had, double t)
 {
-    const double mass = room_mass(p);
+    const double mass = servo_box_mass(p);
     double force = 0, farthest = 0;
     if (!(mass > 0)) return 0;
     for (int32_t w = 0; w < p->walls; w++) {
-        if (!room_has(&p->wall[w])) continue;
+        if (!servo_box_has(&p->wall[w])) continue;
         double lever = wall_lever(p, &p->wall[w], p->t);
         force += lever * wall_force(p, &p->wall[w], t);
         farthest = dmax(farthest, fabs(lever));
     }
-    return farthest * (had * fabs(room_growth(p)) + p->dt * fabs(force) / mass);
+    return farthest * (had * fabs(servo_box_growth(p)) + p->dt * fabs(force) / mass);
 }
 
 /* m/s: |had speed| + dt |force|/mass, the most of all that glide */
@@ -267,14 +267,14 @@ void freedom_move(const struct freedom *f, struct packing *p, double change, boo
     if (freedom_of_cell(f))
         edge_move(p, f, change, back);
     else if (f->boundary == ROOM)
-        room_move(p, f->lever, change, back);
+        servo_box_move(p, f->lever, change, back);
     else
         wall_move(p, &p->wall[f->boundary].load, change, back);
 }
 
 void freedoms_move_rates(const struct freedoms *list, struct packing *p, bool back)
 {
-    if (list->lever && !(room_mass(p) > 0)) room_move(p, list->lever, 0, back);
+    if (list->lever && !(servo_box_mass(p) > 0)) servo_box_move(p, list->lever, 0, back);
 }
 
 void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way)
@@ -286,7 +286,7 @@ void freedoms_displace(const struct freedoms *list, struct packing *p, const dou
         if (freedom_of_cell(f))
             freedom_gain(f, way[k], gain);
         else if (f->boundary == ROOM)
-            room_displace(p, f->lever, way[k]);
+            servo_box_displace(p, f->lever, way[k]);
         else
             p->wall[f->boundary].load.travel += way[k];
     }

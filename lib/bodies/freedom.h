@@ -64,7 +64,7 @@ bool freedoms_in(const struct packing *p);
    the packing has. half: the edges of the cell where the contacts act, m. Returns 0, or EX_SOFTWARE with
    nothing to free. */
 int freedoms_init(struct freedoms *list, const struct packing *p, const vec3 half[3], bool ended,
-                  struct why *why);
+                  struct failure *failure);
 void freedoms_free(struct freedoms *list);
 
 /* m/s: the largest that what loads move along an axis has at the end of a step by them alone */

@@ -19,12 +19,12 @@ void memory_set(struct memory *m, bool on)
     m->on = on;
 }
 
-int memory_copy(struct memory *to, const struct memory *from, struct why *why)
+int memory_copy(struct memory *to, const struct memory *from, struct failure *failure)
 {
     *to = (struct memory){ .on = from->on, .n = from->n, .room = from->n };
     if (!from->n) return 0;
     to->recall = malloc((size_t)from->n * sizeof *to->recall);
-    if (!to->recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    if (!to->recall) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     memcpy(to->recall, from->recall, (size_t)from->n * sizeof *to->recall);
     return 0;
 }
@@ -46,13 +46,13 @@ static double trust(vec3 r, const struct recall *before)
     return most >= size ? 1 : most > TRUST * size ? most / size : TRUST;
 }
 
-int memory_keep(struct memory *m, const struct contacts *s, struct why *why)
+int memory_keep(struct memory *m, const struct contacts *s, struct failure *failure)
 {
     struct memory now = { .on = true };
     if (!m->on || !s->found) return 0;
     for (int64_t i = 0; i < s->n; i++) now.room += s->found[i].r[0] != 0;
     now.recall = malloc((size_t)(now.room + 1) * sizeof *now.recall);
-    if (!now.recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    if (!now.recall) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     for (int64_t i = 0, from = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
         if (s->found[i].r[0] == 0 || s->found[i].status == STATUS_JAMMED) continue;
@@ -77,10 +77,10 @@ static void in_basis(const struct contact *c, vec3 x, double r[3])
     r[0] = v3_dot(x, c->n), r[1] = v3_dot(x, c->t1), r[2] = v3_dot(x, contact_t2(c));
 }
 
-int memory_give(const struct memory *m, struct contacts *s, bool moments, struct why *why)
+int memory_give(const struct memory *m, struct contacts *s, bool moments, struct failure *failure)
 {
     if (contacts_alloc_found(s) || (moments && contacts_alloc_moment(s)))
-        return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     for (int64_t i = 0, from = 0; i < s->n; i++) {
         const struct recall *x = memory_find(m, contact_key(&s->c[i]), &from);
         if (!x) continue;
@@ -122,7 +122,7 @@ void memory_follow(struct memory *m, const int32_t *row)
     m->n = n;
 }
 
-int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct why *why)
+int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct failure *failure)
 {
     for (int64_t i = 0; i < m->n; i++) {
         const struct recall *x = &m->recall[i];
@@ -134,7 +134,7 @@ int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct w
         else if (i && memory_compare(x - 1, x) >= 0)
             trouble = "not sorted by its bodies, or twice";
         if (trouble)
-            return why_set(why, EX_DATAERR, "remembered reaction %lld: %s", (long long)i, trouble);
+            return failure_set(failure, EX_DATAERR, "remembered reaction %lld: %s", (long long)i, trouble);
     }
     return 0;
 }

@@ -36,13 +36,13 @@ void memory_free(struct memory *m);
 /* Whether solves are to start from it; where not, what there is is forgotten. */
 void memory_set(struct memory *m, bool on);
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int memory_copy(struct memory *to, const struct memory *from, struct why *why);
+int memory_copy(struct memory *to, const struct memory *from, struct failure *failure);
 /* Remembers the reactions of solved contacts, in place of the older ones; nothing where it is not on. Returns 0
    or EX_SOFTWARE. */
-int memory_keep(struct memory *m, const struct contacts *s, struct why *why);
+int memory_keep(struct memory *m, const struct contacts *s, struct failure *failure);
 /* s->found (and moment, where any is wanted) = what is remembered, in the bases of the contacts, and 0 for new
    ones. Returns 0 or EX_SOFTWARE. */
-int memory_give(const struct memory *m, struct contacts *s, bool moments, struct why *why);
+int memory_give(const struct memory *m, struct contacts *s, bool moments, struct failure *failure);
 /* Impulses of steps that were `factor` times as long: forces go on where dt changes. */
 void memory_scale(struct memory *m, double factor);
 /* Back into order, after keys have changed */
@@ -50,6 +50,6 @@ void memory_sort(struct memory *m);
 /* Bodies have new rows, in the same order; row[] < 0: gone */
 void memory_follow(struct memory *m, const int32_t *row);
 /* Do bodies and walls exist, are keys in order and numbers finite? Returns 0 or EX_DATAERR. */
-int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct why *why);
+int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct failure *failure);
 
 #endif

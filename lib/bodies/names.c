@@ -10,44 +10,44 @@ void names_free(struct names *s)
     *s = (struct names){ 0 };
 }
 
-static int names_no_memory(struct why *why)
+static int names_no_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "no memory for names");
+    return failure_set(failure, EX_SOFTWARE, "no memory for names");
 }
 
-static int add_text(struct names *s, const char *text, size_t n, struct why *why)
+static int add_text(struct names *s, const char *text, size_t n, struct failure *failure)
 {
     char **more = realloc(s->text, ((size_t)s->n + 1) * sizeof *more);
-    if (!more) return names_no_memory(why);
+    if (!more) return names_no_memory(failure);
     s->text = more;
-    if (!(s->text[s->n] = strndup(text, n))) return names_no_memory(why);
+    if (!(s->text[s->n] = strndup(text, n))) return names_no_memory(failure);
     s->n++;
     return 0;
 }
 
-static int names_add_row(struct names *s, struct named row, struct why *why)
+static int names_add_row(struct names *s, struct named row, struct failure *failure)
 {
     // the room doubles: it is used up where the number of rows is a power of two
     if (!(s->rows & (s->rows - 1))) {
         struct named *more = realloc(s->row, 2 * ((size_t)s->rows + 1) * sizeof *more);
-        if (!more) return names_no_memory(why);
+        if (!more) return names_no_memory(failure);
         s->row = more;
     }
     s->row[s->rows++] = row;
     return 0;
 }
 
-int names_copy(struct names *to, const struct names *from, struct why *why)
+int names_copy(struct names *to, const struct names *from, struct failure *failure)
 {
     *to = (struct names){ 0 };
     for (int32_t k = 0; k < from->n; k++)
-        if (add_text(to, from->text[k], strlen(from->text[k]), why)) goto fail;
+        if (add_text(to, from->text[k], strlen(from->text[k]), failure)) goto fail;
     for (int32_t k = 0; k < from->rows; k++)
-        if (names_add_row(to, from->row[k], why)) goto fail;
+        if (names_add_row(to, from->row[k], failure)) goto fail;
     return 0;
 fail:
     names_free(to);
-    return why->status;
+    return failure->status;
 }
 
 /* Bytes of the character at s, of which there are n; 0: no UTF-8, or a character that controls a terminal */
@@ -89,26 +89,26 @@ int32_t names_find(const struct names *s, const char *text, size_t n)
     return -1;
 }
 
-int names_add(struct names *s, const char *text, int32_t *which, struct why *why)
+int names_add(struct names *s, const char *text, int32_t *which, struct failure *failure)
 {
     size_t n = strlen(text);
     const char *trouble = name_trouble(text, n);
-    if (trouble) return why_set(why, EX_DATAERR, "a name %s", trouble);
+    if (trouble) return failure_set(failure, EX_DATAERR, "a name %s", trouble);
     *which = names_find(s, text, n);
     if (*which >= 0) return 0;
-    if (s->n == NAMES_MOST) return why_set(why, EX_DATAERR, "more than %d names", NAMES_MOST);
+    if (s->n == NAMES_MOST) return failure_set(failure, EX_DATAERR, "more than %d names", NAMES_MOST);
     *which = s->n;
-    return add_text(s, text, n, why);
+    return add_text(s, text, n, failure);
 }
 
 int names_give(struct names *s, const char *text, int32_t boundary, int32_t first, int32_t count,
-               struct why *why)
+               struct failure *failure)
 {
     int32_t name;
-    if (names_add(s, text, &name, why)) return why->status;
+    if (names_add(s, text, &name, failure)) return failure->status;
     if (s->rows == NAMED_MOST)
-        return why_set(why, EX_DATAERR, "names of more than %d ranges of faces", NAMED_MOST);
-    return names_add_row(s, (struct named){ name, boundary, first, count }, why);
+        return failure_set(failure, EX_DATAERR, "names of more than %d ranges of faces", NAMED_MOST);
+    return names_add_row(s, (struct named){ name, boundary, first, count }, failure);
 }
 
 static int names_compare(const void *a, const void *b)
@@ -138,28 +138,28 @@ void names_settle(struct names *s)
     s->rows = n;
 }
 
-int names_check(const struct names *s, int32_t walls, const struct wall *wall, struct why *why)
+int names_check(const struct names *s, int32_t walls, const struct wall *wall, struct failure *failure)
 {
     for (int32_t k = 0; k < s->n; k++) {
         const char *trouble = name_trouble(s->text[k], strlen(s->text[k]));
-        if (trouble) return why_set(why, EX_DATAERR, "name %d %s", k, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, "name %d %s", k, trouble);
         if (names_find(s, s->text[k], strlen(s->text[k])) != k)
-            return why_set(why, EX_DATAERR, "name \"%s\" occurs twice", s->text[k]);
+            return failure_set(failure, EX_DATAERR, "name \"%s\" occurs twice", s->text[k]);
     }
     for (int32_t k = 0; k < s->rows; k++) {
         const struct named *r = &s->row[k], *last = k ? r - 1 : NULL;
         if (r->name < 0 || r->name >= s->n || r->boundary < 0 || r->boundary >= walls)
-            return why_set(why, EX_DATAERR, "names: no such name, or no such wall");
+            return failure_set(failure, EX_DATAERR, "names: no such name, or no such wall");
         const struct wall *w = &wall[r->boundary];
         int32_t faces = w->shape == BOUNDARY_MESH ? w->elements : 0;
         if (r->first < 0 || r->count < 0 || r->first > faces || r->count > faces - r->first ||
             (!r->count && r->first))
-            return why_set(why, EX_DATAERR, "name \"%s\": wall %d has no such faces, it has %d",
+            return failure_set(failure, EX_DATAERR, "name \"%s\": wall %d has no such faces, it has %d",
                            s->text[r->name], r->boundary, faces);
         bool same = last && last->name == r->name && last->boundary == r->boundary;
         if (last && (names_compare(last, r) >= 0 ||
                      (same && (!last->count || r->first < last->first + last->count))))
-            return why_set(why, EX_DATAERR, "names: not sorted, or a face twice");
+            return failure_set(failure, EX_DATAERR, "names: not sorted, or a face twice");
     }
     return 0;
 }

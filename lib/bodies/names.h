@@ -35,7 +35,7 @@ struct names {
 
 void names_free(struct names *names);
 /* to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int names_copy(struct names *to, const struct names *from, struct why *why);
+int names_copy(struct names *to, const struct names *from, struct failure *failure);
 
 /* NULL, or what is wrong with a name: it must not be empty, too long, no UTF-8, or a number; commas separate names in
    options, and quotes and backslashes would have to be escaped where names are printed. */
@@ -46,15 +46,15 @@ const char *name_trouble_of_kind(const char *text, size_t n);
 /* The row of a name of n bytes; -1: none */
 int32_t names_find(const struct names *names, const char *text, size_t n);
 /* The same; a new one is added. Returns 0, EX_DATAERR (name_trouble) or EX_SOFTWARE. */
-int names_add(struct names *names, const char *text, int32_t *which, struct why *why);
+int names_add(struct names *names, const char *text, int32_t *which, struct failure *failure);
 /* Gives a boundary, or some of its faces, the name. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int names_give(struct names *names, const char *text, int32_t boundary, int32_t first,
-               int32_t count, struct why *why);
+               int32_t count, struct failure *failure);
 /* Sorts the rows, and joins those of one name. */
 void names_settle(struct names *names);
 
 /* Do the rows speak of boundaries and faces that exist, each face once a name? Returns 0 or EX_DATAERR. */
-int names_check(const struct names *names, int32_t walls, const struct wall *wall, struct why *why);
+int names_check(const struct names *names, int32_t walls, const struct wall *wall, struct failure *failure);
 
 /* The name of a whole boundary; NULL: it has none */
 const char *names_of_wall(const struct names *names, int32_t boundary);

@@ -32,13 +32,13 @@ static void free_column(struct packing *p, const struct column *c)
     column_set_array(c, p, NULL);
 }
 
-int packing_alloc_column(struct packing *p, int column, struct why *why)
+int packing_alloc_column(struct packing *p, int column, struct failure *failure)
 {
     const struct column *c = &body_columns[column].column;
     free_column(p, c);
     column_set_array(c, p, array(p->n, column_bytes(c)));
     return column_array(c, p) ? 0
-                              : why_set(why, EX_SOFTWARE, "no memory for %lld bodies' %s",
+                              : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
                                         (long long)p->n, c->name);
 }
 
@@ -51,10 +51,10 @@ uint32_t packing_optional(const struct packing *p)
     return set;
 }
 
-int packing_alloc_optional(struct packing *p, uint32_t set, struct why *why)
+int packing_alloc_optional(struct packing *p, uint32_t set, struct failure *failure)
 {
     for (int k = 0; k < BODY_COLUMNS; k++)
-        if ((set & 1u << k) && packing_alloc_column(p, k, why)) return why->status;
+        if ((set & 1u << k) && packing_alloc_column(p, k, failure)) return failure->status;
     return 0;
 }
 
@@ -64,14 +64,14 @@ static void set_default(struct packing *p, int64_t first)
     for (int64_t i = first; i < p->n; i++) p->id[i] = -1, p->q[i].w = 1;
 }
 
-int packing_init(struct packing *p, int dim, int64_t n, struct why *why)
+int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
 {
     *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
-    for (int k = 0; k < BODY_COLUMNS && !why->status; k++)
-        if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, why);
-    if (why->status || packing_alloc_walls(p, 0, why) || packing_alloc_kinds(p, 1, why)) {
+    for (int k = 0; k < BODY_COLUMNS && !failure->status; k++)
+        if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, failure);
+    if (failure->status || packing_alloc_walls(p, 0, failure) || packing_alloc_kinds(p, 1, failure)) {
         packing_free(p);
-        return why->status;
+        return failure->status;
     }
     set_default(p, 0);
     for (int64_t i = 0; i < n; i++) p->id[i] = (int32_t)i;
@@ -99,22 +99,22 @@ void packing_free(struct packing *p)
     events_free(&p->events);
     bonds_free(&p->bonds);
     memory_free(&p->memory);
-    outside_free(&p->outside);
+    external_force_free(&p->outside);
     cell_free(&p->cell);
     kinds_free(p);
     memset(p, 0, sizeof *p);
 }
 
-int packing_alloc_walls(struct packing *p, int32_t k, struct why *why)
+int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure)
 {
     free(p->wall);
     p->walls = k;
     p->wall = array(k, sizeof *p->wall);
     for (int32_t w = 0; p->wall && w < k; w++) p->wall[w].until = INFINITY;
-    return p->wall ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d walls", k);
+    return p->wall ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d walls", k);
 }
 
-int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
+int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure)
 {
     kinds_free(p);
     p->kind_name = array(k, sizeof *p->kind_name);
@@ -129,14 +129,14 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why)
         snprintf(name, sizeof name, "%d", p->kinds);
         allocated = (p->kind_name[p->kinds] = strdup(name));
     }
-    return allocated ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", k);
+    return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
-int packing_alloc_laws(struct packing *p, struct why *why)
+int packing_alloc_laws(struct packing *p, struct failure *failure)
 {
     free(p->law);
     p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
-    return p->law ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+    return p->law ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
 }
 
 bool packing_sticks(const struct packing *p)
@@ -169,16 +169,16 @@ bool packing_bounds(const struct packing *p, const struct contact *c)
            (law == IMPACT_BOUNDED || (law == IMPACT_DEFAULT && shaped));
 }
 
-int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why)
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct failure *failure)
 {
     free(p->poured), free(p->removed);
     p->poured = array(pours, sizeof *p->poured);
     p->removed = array(removals, sizeof *p->removed);
     p->pours = p->poured ? pours : 0, p->removals = p->removed ? removals : 0;
-    return p->poured && p->removed ? 0 : why_set(why, EX_SOFTWARE, "no memory for passages");
+    return p->poured && p->removed ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for passages");
 }
 
-int packing_resize(struct packing *p, int64_t n, struct why *why)
+int packing_resize(struct packing *p, int64_t n, struct failure *failure)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
         const struct column *c = &b->column;
@@ -186,12 +186,12 @@ int packing_resize(struct packing *p, int64_t n, struct why *why)
         char *old = column_array(c, p);
         if (!old && is_optional(b)) continue;
         char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
         if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
         column_set_array(c, p, more);
     }
     int64_t had = p->n;
-    if (outside_resize(&p->outside, had, n, why)) return why->status;
+    if (external_force_resize(&p->outside, had, n, failure)) return failure->status;
     p->n = n;
     set_default(p, had);
     return 0;
@@ -217,51 +217,51 @@ struct packing packing_with_bodies(const struct packing *p, const struct packing
     return q;
 }
 
-int packing_copy(struct packing *to, const struct packing *p, struct why *why)
+int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
 {
-    if (packing_init(to, p->dim, p->n, why)) return why->status;
-    if (packing_alloc_walls(to, p->walls, why) || packing_alloc_kinds(to, p->kinds, why)) goto fail;
+    if (packing_init(to, p->dim, p->n, failure)) return failure->status;
+    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure)) goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
     to->tolerance = p->tolerance;
     to->overlap = p->overlap;
     to->seed = p->seed, to->pulls_most = p->pulls_most;
-    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, why) ||
-        packing_alloc_optional(to, packing_optional(p), why))
+    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, failure) ||
+        packing_alloc_optional(to, packing_optional(p), failure))
         goto fail;
     for (const struct body_column *b = body_columns; b->column.name; b++)
         if (column_array(&b->column, p))
             memcpy(column_array(&b->column, to), column_array(&b->column, p),
                    n * column_bytes(&b->column));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
-    if (drives_copy(&to->drives, &p->drives, why) || drives_copy(&to->pushes, &p->pushes, why) ||
-        drives_copy(&to->pulls, &p->pulls, why) || mesh_copy(&to->mesh, &p->mesh, why) ||
-        names_copy(&to->names, &p->names, why) || sums_copy(&to->sums, &p->sums, why))
+    if (drives_copy(&to->drives, &p->drives, failure) || drives_copy(&to->pushes, &p->pushes, failure) ||
+        drives_copy(&to->pulls, &p->pulls, failure) || mesh_copy(&to->mesh, &p->mesh, failure) ||
+        names_copy(&to->names, &p->names, failure) || sums_copy(&to->sums, &p->sums, failure))
         goto fail;
 #define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
     EVERY_PAIR_COLUMN(COPY)
 #undef COPY
-    if (p->law && packing_alloc_laws(to, why)) goto fail;
+    if (p->law && packing_alloc_laws(to, failure)) goto fail;
     if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, why) || memory_copy(&to->memory, &p->memory, why))
+    if (bonds_copy(&to->bonds, &p->bonds, failure) || memory_copy(&to->memory, &p->memory, failure))
         goto fail;
-    if (outside_copy(&to->outside, &p->outside, p->n, p->walls, why)) goto fail;
+    if (external_force_copy(&to->outside, &p->outside, p->n, p->walls, failure)) goto fail;
     for (int32_t i = 0; i < p->kinds; i++) {
         free(to->kind_name[i]);
         if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
     }
     if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
-    if (packing_alloc_passages(to, p->pours, p->removals, why)) goto fail;
+    if (packing_alloc_passages(to, p->pours, p->removals, failure)) goto fail;
     to->first_id = p->first_id;
     for (int32_t k = 0; k < p->pours; k++) to->poured[k] = p->poured[k];
     for (int32_t k = 0; k < p->removals; k++) to->removed[k] = p->removed[k];
     for (int64_t i = 0; i < p->events.n; i++)
-        if (events_add(&to->events, &p->events.e[i], why)) goto fail;
+        if (events_add(&to->events, &p->events.e[i], failure)) goto fail;
     return 0;
 fail:
     packing_free(to);
-    return why_set(why, EX_SOFTWARE, "no memory for a copy of the packing");
+    return failure_set(failure, EX_SOFTWARE, "no memory for a copy of the packing");
 }
 
 void packing_count_from(struct packing *p, double t0, int64_t step0)
@@ -285,13 +285,13 @@ void packing_set_dt(struct packing *p, double dt)
     packing_count_from(p, p->t0, p->step0);
 }
 
-int packing_check_clock(const struct packing *p, struct why *why)
+int packing_check_clock(const struct packing *p, struct failure *failure)
 {
     double t = fmax(fabs(p->t), fabs(packing_next_time(p)));
     double grain = nextafter(t, INFINITY) - t;
     if (grain <= p->dt) return 0;
-    return why_set(
-        why, EX_DATAERR,
+    return failure_set(
+        failure, EX_DATAERR,
         "dt = %g s does not change a time of %g s, where numbers are %.2g s apart: begin "
         "at an earlier time, or with a longer dt",
         p->dt, p->t, grain);
@@ -312,7 +312,7 @@ struct whole packing_whole(const struct packing *p)
     for (int64_t i = 0; i < p->n; i++) {
         double speed = v3_norm(p->v[i]);
         all.speed = dmax(all.speed, speed);
-        all.top_speed = dmax(all.top_speed, speed + p->radius[i] * v3_norm(p->w[i]));
+        all.rotation_speed = dmax(all.rotation_speed, speed + p->radius[i] * v3_norm(p->w[i]));
         all.small = dmin(all.small, p->radius[i]), all.large = dmax(all.large, p->radius[i]);
     }
     for (int64_t i = 0; i < p->bonds.n; i++)
@@ -407,7 +407,7 @@ static const char *room_trouble(const struct packing *p, const struct wall *w,
 }
 
 /* Do the loads of its walls make one room? */
-static int check_room(const struct packing *p, struct why *why)
+static int check_room(const struct packing *p, struct failure *failure)
 {
     const struct load *first = NULL;
     double mass = 0;
@@ -417,10 +417,10 @@ static int check_room(const struct packing *p, struct why *why)
         if (!first) first = &w->load;
         mass += w->load.mass;
         const char *trouble = room_trouble(p, w, first);
-        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
     }
     if (first && first->speed != 0 && !(mass > 0))
-        return why_set(why, EX_DATAERR, "the room of the walls grows, and has no mass");
+        return failure_set(failure, EX_DATAERR, "the room of the walls grows, and has no mass");
     return 0;
 }
 
@@ -450,31 +450,31 @@ static bool repeats_along(const struct packing *p, const struct wall *w, vec3 ed
     return v3_norm(v3_cross(edge, w->n)) <= tiny;
 }
 
-static int check_images(const struct packing *p, int64_t first, struct why *why)
+static int check_images(const struct packing *p, int64_t first, struct failure *failure)
 {
     for (int64_t i = 0; p->image && i < p->n; i++)
         for (int k = 0; k < 3; k++)
             if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
-                return why_set(why, EX_DATAERR, "body %lld: image is out of range",
+                return failure_set(failure, EX_DATAERR, "body %lld: image is out of range",
                                (long long)(first + i));
     return 0;
 }
 
 /* The cell, which the largest body must fit into, and the images. */
-static int check_cell(const struct packing *p, struct why *why)
+static int check_cell(const struct packing *p, struct failure *failure)
 {
     double most = 0;
     for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
-    if (cell_check(&p->cell, p->dim, 2 * most, why)) return why->status;
+    if (cell_check(&p->cell, p->dim, 2 * most, failure)) return failure->status;
     if (cell_repeats(&p->cell) != (p->image != NULL))
-        return why_set(why, EX_DATAERR, "images without a periodic cell, or the reverse");
-    if (check_images(p, 0, why)) return why->status;
+        return failure_set(failure, EX_DATAERR, "images without a periodic cell, or the reverse");
+    if (check_images(p, 0, failure)) return failure->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
             if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
-                return why_set(why, EX_DATAERR, "wall %d: crosses a periodic edge of the cell", i);
+                return failure_set(failure, EX_DATAERR, "wall %d: crosses a periodic edge of the cell", i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
-                return why_set(why, EX_DATAERR,
+                return failure_set(failure, EX_DATAERR,
                                "wall %d: the edges along it move, so that its bodies' images "
                                "would meet it at other speeds",
                                i);
@@ -482,7 +482,7 @@ static int check_cell(const struct packing *p, struct why *why)
     return 0;
 }
 
-static int packing_check_each_body(const struct packing *p, int64_t first, struct why *why)
+static int packing_check_each_body(const struct packing *p, int64_t first, struct failure *failure)
 {
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = NULL;
@@ -490,32 +490,32 @@ static int packing_check_each_body(const struct packing *p, int64_t first, struc
             bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
             trouble = real ? packing_number_trouble(b, p, i) : NULL;
             if (trouble)
-                return why_set(why, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
+                return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
                                b->column.name, trouble);
         }
         if ((trouble = body_trouble(p, i)))
-            return why_set(why, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
+            return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
     }
     return 0;
 }
 
-int packing_check_bodies(const struct packing *p, int64_t first, struct why *why)
+int packing_check_bodies(const struct packing *p, int64_t first, struct failure *failure)
 {
-    return packing_check_each_body(p, first, why) || check_images(p, first, why) ? why->status : 0;
+    return packing_check_each_body(p, first, failure) || check_images(p, first, failure) ? failure->status : 0;
 }
 
-int packing_check(const struct packing *p, struct why *why)
+int packing_check(const struct packing *p, struct failure *failure)
 {
     if (p->dim != 2 && p->dim != 3)
-        return why_set(why, EX_DATAERR, "dim is %d, not 2 or 3", p->dim);
-    if (!(p->dt > 0 && isfinite(p->dt))) return why_set(why, EX_DATAERR, "dt must be positive");
-    if (!isfinite(p->t)) return why_set(why, EX_DATAERR, "time is not finite");
+        return failure_set(failure, EX_DATAERR, "dim is %d, not 2 or 3", p->dim);
+    if (!(p->dt > 0 && isfinite(p->dt))) return failure_set(failure, EX_DATAERR, "dt must be positive");
+    if (!isfinite(p->t)) return failure_set(failure, EX_DATAERR, "time is not finite");
     if (!(p->theta >= 0 && p->theta <= 1))
-        return why_set(why, EX_DATAERR, "theta must lie in [0, 1]");
-    if (!v3_finite(p->g)) return why_set(why, EX_DATAERR, "gravity is not finite");
-    if (outside_check(&p->outside, p->dim, p->n, p->walls, why)) return why->status;
+        return failure_set(failure, EX_DATAERR, "theta must lie in [0, 1]");
+    if (!v3_finite(p->g)) return failure_set(failure, EX_DATAERR, "gravity is not finite");
+    if (external_force_check(&p->outside, p->dim, p->n, p->walls, failure)) return failure->status;
     if (p->dim == 2 && p->g.z != 0)
-        return why_set(why, EX_DATAERR, "gravity leaves the plane, and dim is 2");
+        return failure_set(failure, EX_DATAERR, "gravity leaves the plane, and dim is 2");
     for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
         const char *pair = "the material of kinds %s and %s: %s";
         const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
@@ -526,32 +526,32 @@ int packing_check(const struct packing *p, struct why *why)
         EVERY_PAIR_COLUMN(CHECK)
 #undef CHECK
         if (p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
-        if (trouble) return why_set(why, EX_DATAERR, pair, a, b, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, pair, a, b, trouble);
     }
-    if (packing_check_each_body(p, 0, why)) return why->status;
+    if (packing_check_each_body(p, 0, failure)) return failure->status;
     if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
-        return why_set(
-            why, EX_DATAERR,
+        return failure_set(
+            failure, EX_DATAERR,
             "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
             (long long)p->n, p->walls, BOUNDARIES_BODY);
-    if (drives_check(&p->drives, p->walls, p->dim, "drive", why) ||
-        drives_check(&p->pushes, p->walls, p->dim, "push", why))
-        return why->status; // before any wall is asked where it is
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", failure) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", failure))
+        return failure->status; // before any wall is asked where it is
     for (int32_t i = 0; i < p->walls; i++) {
         const char *trouble = wall_trouble(p, &p->wall[i]);
-        if (trouble) return why_set(why, EX_DATAERR, "wall %d: %s", i, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
     }
-    if (check_room(p, why)) return why->status;
-    if (names_check(&p->names, p->walls, p->wall, why) ||
-        sums_check(&p->sums, p->walls, p->wall, why))
-        return why->status;
+    if (check_room(p, failure)) return failure->status;
+    if (names_check(&p->names, p->walls, p->wall, failure) ||
+        sums_check(&p->sums, p->walls, p->wall, failure))
+        return failure->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)
-            return why_set(why, EX_DATAERR, "push %d: its boundary is not load-controlled", i);
-    if (pulls_check(&p->pulls, p->pulls_most, p->dim, why)) return why->status;
-    if (mesh_check(&p->mesh, p->dim, why)) return why->status;
-    if (bonds_check(&p->bonds, p->dim, p->n, p->walls, why)) return why->status;
-    return check_cell(p, why);
+            return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled", i);
+    if (pulls_check(&p->pulls, p->pulls_most, p->dim, failure)) return failure->status;
+    if (mesh_check(&p->mesh, p->dim, failure)) return failure->status;
+    if (bonds_check(&p->bonds, p->dim, p->n, p->walls, failure)) return failure->status;
+    return check_cell(p, failure);
 }
 
 struct cell_flow packing_flow(const struct packing *p)

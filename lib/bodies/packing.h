@@ -70,11 +70,11 @@ struct packing {
     struct bonds bonds;   /* what lasts of pairs by these laws */
 
     struct memory memory;   /* the reactions that the next step starts from */
-    struct outside outside; /* what acts from outside in the step to come */
+    struct external_force outside; /* what acts from outside in the step to come */
 
     /* Inlets and outlets act [scene/flow.h] where there are pours or removals. */
     int32_t pours, removals;
-    struct passage *poured, *removed; /* [pours], [removals] */
+    struct flow_count *poured, *removed; /* [pours], [removals] */
     int32_t first_id;                 /* of the first body that is poured */
     struct events events;             /* since the last frame */
 
@@ -86,7 +86,7 @@ struct packing {
 
 /* What a part of a packing knows of all bodies */
 struct whole {
-    double speed, top_speed; /* m/s: of the fastest centre, and of the fastest point */
+    double speed, rotation_speed; /* m/s: of the fastest centre, and of the fastest point */
     double small, large;     /* m: the smallest and the largest radius */
     double apart; /* m: the widest gap at which contacts are to be sought for the bonds that hold
                                 and keep no place; -INFINITY where there are none */
@@ -98,20 +98,20 @@ double packing_mean_mass(const struct packing *p);
 
 /* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
    dt too. Returns 0 or EX_SOFTWARE. */
-int packing_init(struct packing *p, int dim, int64_t n, struct why *why);
+int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure);
 void packing_free(struct packing *p);
 
 /* k walls, k kinds, in place of the old ones; their numbers are 0 and kinds are named "0", "1" ...
    Each returns 0 or EX_SOFTWARE. */
-int packing_alloc_walls(struct packing *p, int32_t k, struct why *why);
-int packing_alloc_kinds(struct packing *p, int32_t k, struct why *why);
+int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure);
+int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure);
 
 /* law[kinds * kinds], all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
-int packing_alloc_laws(struct packing *p, struct why *why);
+int packing_alloc_laws(struct packing *p, struct failure *failure);
 
 /* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
    EX_SOFTWARE. */
-int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct why *why);
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct failure *failure);
 
 /* Are there inlets or outlets? */
 static inline bool packing_varies(const struct packing *p)
@@ -130,20 +130,20 @@ bool packing_bounds(const struct packing *p, const struct contact *c);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the
    last ones are cut off. Returns 0 or EX_SOFTWARE; then n is as before. */
-int packing_resize(struct packing *p, int64_t n, struct why *why);
+int packing_resize(struct packing *p, int64_t n, struct failure *failure);
 /* The array of a column, all zero, in place of the old one. Returns 0 or EX_SOFTWARE. */
-int packing_alloc_column(struct packing *p, int column, struct why *why);
+int packing_alloc_column(struct packing *p, int column, struct failure *failure);
 /* The optional arrays that p has, bit k for body_columns[k]; and those of such a set, all zero */
 uint32_t packing_optional(const struct packing *p);
-int packing_alloc_optional(struct packing *p, uint32_t columns, struct why *why);
+int packing_alloc_optional(struct packing *p, uint32_t columns, struct failure *failure);
 /* shape[n], all balls; image[n], all zero */
-static inline int packing_alloc_shapes(struct packing *p, struct why *why)
+static inline int packing_alloc_shapes(struct packing *p, struct failure *failure)
 {
-    return packing_alloc_column(p, BODY_shape, why);
+    return packing_alloc_column(p, BODY_shape, failure);
 }
-static inline int packing_alloc_images(struct packing *p, struct why *why)
+static inline int packing_alloc_images(struct packing *p, struct failure *failure)
 {
-    return packing_alloc_column(p, BODY_image, why);
+    return packing_alloc_column(p, BODY_image, failure);
 }
 /* Body `to` of p = body i of from, all numbers that both have */
 void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i);
@@ -183,16 +183,16 @@ void packing_set_dt(struct packing *p, double dt);
 void packing_count_from(struct packing *p, double t0, int64_t step0);
 /* Does dt still change the time, or is it less than the distance of t to the next number? Returns 0 or
    EX_DATAERR. */
-int packing_check_clock(const struct packing *p, struct why *why);
+int packing_check_clock(const struct packing *p, struct failure *failure);
 
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int packing_copy(struct packing *to, const struct packing *from, struct why *why);
+int packing_copy(struct packing *to, const struct packing *from, struct failure *failure);
 
 /* Is every number finite and in its range (radius > 0, mass >= 0, mu >= 0, 0 <= e <= 1, dt > 0,
    unit normals ...)? Returns 0, or EX_DATAERR with the first body or wall that fails. */
-int packing_check(const struct packing *p, struct why *why);
+int packing_check(const struct packing *p, struct failure *failure);
 /* Of its bodies alone; the first one is the whole's body `first`. Returns the same. */
-int packing_check_bodies(const struct packing *p, int64_t first, struct why *why);
+int packing_check_bodies(const struct packing *p, int64_t first, struct failure *failure);
 
 /* Is the wall still there at time t (s)? */
 static inline bool wall_there(const struct wall *w, double t)

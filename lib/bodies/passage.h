@@ -12,7 +12,7 @@
 #include <stdint.h>
 
 /* What one pour has brought, or one removal has taken, so far */
-struct passage {
+struct flow_count {
     int64_t bodies;
     double mass; /* kg */
 };
@@ -35,7 +35,7 @@ struct events {
 };
 
 /* Returns 0 or EX_SOFTWARE. */
-int events_add(struct events *events, const struct event *event, struct why *why);
+int events_add(struct events *events, const struct event *event, struct failure *failure);
 void events_free(struct events *events);
 
 #endif

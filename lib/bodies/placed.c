@@ -15,7 +15,7 @@ static int32_t normals_of(const struct shape *s, int dim)
 }
 
 int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
-                struct why *why)
+                struct failure *failure)
 {
     const vec3 *x = at->x;
     const quat *q = at->q;
@@ -32,7 +32,7 @@ int placed_init(struct placed *s, const struct packing *p, const struct position
     s->normal = good ? malloc(((size_t)s->face[p->n] + 1) * sizeof *s->normal) : NULL;
     if (!s->vertex || !s->normal) {
         placed_free(s);
-        return why_set(why, EX_SOFTWARE, "no memory for the corners of the bodies");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the corners of the bodies");
     }
     for (int64_t i = 0; i < p->n; i++) {
         const struct shape *shape = packing_shape(p, i);

@@ -18,7 +18,7 @@ struct placed {
 
 /* Of the bodies at these positions. Returns 0, or EX_SOFTWARE with nothing to free. */
 int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
-                struct why *why);
+                struct failure *failure);
 void placed_free(struct placed *s);
 
 /* How many cores a body has, and one of them */

@@ -48,13 +48,13 @@ double pulls_most(const struct drives *d, int64_t n, const int32_t *id, const do
     return most;
 }
 
-int pulls_check(const struct drives *d, double most, int dim, struct why *why)
+int pulls_check(const struct drives *d, double most, int dim, struct failure *failure)
 {
-    if (drives_check(d, INT32_MAX, dim, "force", why)) return why->status;
+    if (drives_check(d, INT32_MAX, dim, "force", failure)) return failure->status;
     for (int32_t k = 0; k < d->n; k++)
         if (d->drive[k].signal == DRIVE_SPEED)
-            return why_set(why, EX_DATAERR, "force %d: no such signal", k);
+            return failure_set(failure, EX_DATAERR, "force %d: no such signal", k);
     if (!(most >= 0 && isfinite(most)))
-        return why_set(why, EX_DATAERR, "forces: their largest acceleration is not a number");
+        return failure_set(failure, EX_DATAERR, "forces: their largest acceleration is not a number");
     return 0;
 }

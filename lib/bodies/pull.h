@@ -13,6 +13,6 @@ vec3 pulls_on(const struct drives *pulls, int32_t id, double t, bool turns);
 /* m/s^2: no body of these ids and masses (kg) [n] gains more by them */
 double pulls_most(const struct drives *pulls, int64_t n, const int32_t *id, const double *mass);
 /* Are they signals of forces, in their order, and `most` (m/s^2) a number? Returns 0 or EX_DATAERR. */
-int pulls_check(const struct drives *pulls, double most, int dim, struct why *why);
+int pulls_check(const struct drives *pulls, double most, int dim, struct failure *failure);
 
 #endif

@@ -29,28 +29,28 @@
 #include "bodies/packing.h"
 
 /* Is the wall one of the room's? */
-static inline bool room_has(const struct wall *w)
+static inline bool servo_box_has(const struct wall *w)
 {
     return w->load.way == LOAD_ROOM;
 }
 /* kg m^2: the inertia of the growth; 0: there is no room, or it does not yield */
-double room_mass(const struct packing *p);
+double servo_box_mass(const struct packing *p);
 /* 1/s: the growth; 0 without a room */
-double room_growth(const struct packing *p);
+double servo_box_growth(const struct packing *p);
 
 /* lever[p->walls] (m) = the levers at time t (s), 0 of other walls */
-void room_levers(const struct packing *p, double t, double *lever);
+void servo_box_levers(const struct packing *p, double t, double *lever);
 /* N m: what the pressures on the faces at time t (s) do to the growth with these levers */
-double room_force(const struct packing *p, const double *lever, double t);
+double servo_box_force(const struct packing *p, const double *lever, double t);
 
 /* The walls through a step in which the growth changes by `change` (1/s) where the contacts act; back: the
    inverse. */
-void room_move(struct packing *p, const double *lever, double change, bool back);
+void servo_box_move(struct packing *p, const double *lever, double change, bool back);
 /* They are displaced in proportion, by `part` of their levers. */
-void room_displace(struct packing *p, const double *lever, double part);
+void servo_box_displace(struct packing *p, const double *lever, double part);
 
 /* After a step: does the size change by so little in a step that the next one can be made? Returns 0 or
    EX_DATAERR. */
-int room_check_growth(const struct packing *p, struct why *why);
+int servo_box_check_growth(const struct packing *p, struct failure *failure);
 
 #endif

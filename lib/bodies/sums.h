@@ -36,10 +36,10 @@ struct wall_sums {
 
 /* Sums of 0 that begin at time t (s), of these walls. Returns 0, EX_DATAERR (no walls) or EX_SOFTWARE. */
 int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, double t,
-               struct why *why);
+               struct failure *failure);
 void sums_free(struct wall_sums *s);
-int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct why *why);
+int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct failure *failure);
 /* Are they of these walls' faces, and finite? Returns 0 or EX_DATAERR. */
-int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct why *why);
+int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct failure *failure);
 
 #endif

@@ -7,30 +7,30 @@ static vec3 apply_diagonal(quat q, vec3 d, vec3 a)
     return quat_turn(q, v3(d.x * b.x, d.y * b.y, d.z * b.z));
 }
 
-vec3 top_momentum(const struct packing *p, int64_t i, quat q, vec3 w)
+vec3 rotation_momentum(const struct packing *p, int64_t i, quat q, vec3 w)
 {
-    if (!top_is(p, i)) return v3_scale(p->inertia[i], w);
-    return apply_diagonal(q, top_moments(p, i), w);
+    if (!rotation_is(p, i)) return v3_scale(p->inertia[i], w);
+    return apply_diagonal(q, rotation_moments(p, i), w);
 }
 
-vec3 top_spin(const struct packing *p, int64_t i, quat q, vec3 L)
+vec3 rotation_spin(const struct packing *p, int64_t i, quat q, vec3 L)
 {
-    if (!top_is(p, i)) return v3_scale(1 / p->inertia[i], L);
-    vec3 m = top_moments(p, i);
+    if (!rotation_is(p, i)) return v3_scale(1 / p->inertia[i], L);
+    vec3 m = rotation_moments(p, i);
     return apply_diagonal(q, v3(1 / m.x, 1 / m.y, 1 / m.z), L);
 }
 
-vec3 top_root(const struct packing *p, int64_t i, quat q, vec3 a)
+vec3 rotation_root(const struct packing *p, int64_t i, quat q, vec3 a)
 {
-    vec3 m = top_moments(p, i);
-    if (!top_is(p, i)) return v3_scale(sqrt(m.x), a);
+    vec3 m = rotation_moments(p, i);
+    if (!rotation_is(p, i)) return v3_scale(sqrt(m.x), a);
     return apply_diagonal(q, v3(sqrt(m.x), sqrt(m.y), sqrt(m.z)), a);
 }
 
-vec3 top_inverse_root(const struct packing *p, int64_t i, quat q, vec3 a)
+vec3 rotation_inverse_root(const struct packing *p, int64_t i, quat q, vec3 a)
 {
-    vec3 m = top_moments(p, i);
-    if (!top_is(p, i)) return v3_scale(1 / sqrt(m.x), a);
+    vec3 m = rotation_moments(p, i);
+    if (!rotation_is(p, i)) return v3_scale(1 / sqrt(m.x), a);
     return apply_diagonal(q, v3(1 / sqrt(m.x), 1 / sqrt(m.y), 1 / sqrt(m.z)), a);
 }
 
@@ -41,11 +41,11 @@ static quat turn_about(quat q, vec3 L, int k, double rate, double dt)
     return quat_mul(q, quat_rotation(v3_scale(dt * rate * v3_dot(axis, b), axis)));
 }
 
-quat top_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt)
+quat rotation_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt)
 {
-    vec3 moments = top_moments(p, i);
+    vec3 moments = rotation_moments(p, i);
     double m[3] = { moments.x, moments.y, moments.z };
-    if (!top_is(p, i)) return quat_mul(quat_rotation(v3_scale(dt / m[0], L)), q);
+    if (!rotation_is(p, i)) return quat_mul(quat_rotation(v3_scale(dt / m[0], L)), q);
     int middle = 0;
     for (int k = 0; k < 3; k++)
         if ((m[k] - m[(k + 1) % 3]) * (m[k] - m[(k + 2) % 3]) <= 0) middle = k;
@@ -57,15 +57,15 @@ quat top_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt)
     return quat_unit(quat_mul(quat_rotation(v3_scale(dt / m[middle], L)), q));
 }
 
-quat top_predict(const struct packing *p, int64_t i)
+quat rotation_predict(const struct packing *p, int64_t i)
 {
     double ahead = step_ahead(p);
-    if (top_is(p, i)) return top_turn(p, i, p->q[i], top_momentum(p, i, p->q[i], p->w[i]), ahead);
+    if (rotation_is(p, i)) return rotation_turn(p, i, p->q[i], rotation_momentum(p, i, p->q[i], p->w[i]), ahead);
     return quat_mul(quat_rotation(v3_scale(ahead, p->w[i])), p->q[i]);
 }
 
-vec3 top_predict_spin(const struct packing *p, int64_t i, quat predicted)
+vec3 rotation_predict_spin(const struct packing *p, int64_t i, quat predicted)
 {
-    if (!top_is(p, i)) return p->w[i];
-    return top_spin(p, i, predicted, top_momentum(p, i, p->q[i], p->w[i]));
+    if (!rotation_is(p, i)) return p->w[i];
+    return rotation_spin(p, i, predicted, rotation_momentum(p, i, p->q[i], p->w[i]));
 }

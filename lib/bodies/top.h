@@ -22,46 +22,46 @@
 #include "bodies/packing.h"
 
 /* The shape of body i where it turns otherwise than a ball, else NULL */
-static inline const struct shape *top_shape(const struct packing *p, int64_t i)
+static inline const struct shape *rotation_shape(const struct packing *p, int64_t i)
 {
     const struct shape *s = p->dim == 3 && p->mass[i] > 0 ? packing_shape(p, i) : NULL;
     return s && (s->moment[0] != s->moment[1] || s->moment[1] != s->moment[2]) ? s : NULL;
 }
-static inline bool top_is(const struct packing *p, int64_t i)
+static inline bool rotation_is(const struct packing *p, int64_t i)
 {
-    return top_shape(p, i) != NULL;
+    return rotation_shape(p, i) != NULL;
 }
 
 /* kg m^2: its principal moments; their mean is inertia[i] */
-static inline vec3 top_moments(const struct packing *p, int64_t i)
+static inline vec3 rotation_moments(const struct packing *p, int64_t i)
 {
-    const struct shape *s = top_shape(p, i);
+    const struct shape *s = rotation_shape(p, i);
     if (!s) return v3(p->inertia[i], p->inertia[i], p->inertia[i]);
     const double *m = s->moment, unit = 3 / (m[0] + m[1] + m[2]);
     return v3_scale(unit * p->inertia[i], v3(m[0], m[1], m[2]));
 }
 
 /* kg m^2/s: L of body i at orientation q with angular velocity w, and w of L */
-vec3 top_momentum(const struct packing *p, int64_t i, quat q, vec3 w);
-vec3 top_spin(const struct packing *p, int64_t i, quat q, vec3 L);
+vec3 rotation_momentum(const struct packing *p, int64_t i, quat q, vec3 w);
+vec3 rotation_spin(const struct packing *p, int64_t i, quat q, vec3 L);
 
 /* I^1/2 a and I^-1/2 a */
-vec3 top_root(const struct packing *p, int64_t i, quat q, vec3 a);
-vec3 top_inverse_root(const struct packing *p, int64_t i, quat q, vec3 a);
+vec3 rotation_root(const struct packing *p, int64_t i, quat q, vec3 a);
+vec3 rotation_inverse_root(const struct packing *p, int64_t i, quat q, vec3 a);
 
 /* q after a free turning for dt (s; < 0: back) with angular momentum L */
-quat top_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt);
+quat rotation_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt);
 
 /* The orientation at which contacts are detected, and the angular velocity there before the
    reactions */
-quat top_predict(const struct packing *p, int64_t i);
-vec3 top_predict_spin(const struct packing *p, int64_t i, quat predicted);
+quat rotation_predict(const struct packing *p, int64_t i);
+vec3 rotation_predict_spin(const struct packing *p, int64_t i, quat predicted);
 
 /* J, twice: of turning, I w . w */
-static inline double top_energy2(const struct packing *p, int64_t i, quat q, vec3 w)
+static inline double rotation_energy2(const struct packing *p, int64_t i, quat q, vec3 w)
 {
-    if (!top_is(p, i)) return p->inertia[i] * v3_dot(w, w);
-    return v3_dot(w, top_momentum(p, i, q, w));
+    if (!rotation_is(p, i)) return p->inertia[i] * v3_dot(w, w);
+    return v3_dot(w, rotation_momentum(p, i, q, w));
 }
 
 #endif

@@ -18,7 +18,7 @@ struct wall_faces {
 /* mesh: places are to be found on the faces of meshes; NULL: not. Returns 0, EX_DATAERR or EX_SOFTWARE with nothing to
    free. */
 int wall_faces_init(struct wall_faces *f, int32_t walls, const struct wall *wall,
-                    const struct mesh *mesh, struct why *why);
+                    const struct mesh *mesh, struct failure *failure);
 void wall_faces_free(struct wall_faces *f);
 
 #endif

@@ -33,7 +33,7 @@ static void cli_message(const char *format, va_list ap)
 {
     char text[MESSAGE];
     vsnprintf(text, sizeof text, format, ap);
-    why_plain(text);
+    failure_plain(text);
     progress_end();
     fprintf(stderr, "%s: %s\n", tool.name, text);
 }
@@ -58,9 +58,9 @@ void die_usage(const char *format, ...)
     exit(EX_USAGE);
 }
 
-void die_why(const struct why *why)
+void die_why(const struct failure *failure)
 {
-    die(why->status, "%s", why->text);
+    die(failure->status, "%s", failure->text);
 }
 
 void warn(const char *format, ...)
@@ -192,8 +192,8 @@ static bool is_standard_output(const struct cli_option *o, const char *text)
 /* Sets the option and returns its value for the history. */
 static json_t *cli_set(const struct cli_option *o, const char *text)
 {
-    struct why why = { 0 };
-    if (option_set(o, o->to, text, &why)) die_usage("%s", why.text);
+    struct failure failure = { 0 };
+    if (option_set(o, o->to, text, &failure)) die_usage("%s", failure.text);
     const struct cli_every *e = o->to;
     switch (o->kind) {
     case CLI_FLAG:

@@ -40,7 +40,7 @@ const char *cli_history(void);
 /* Messages to stderr, after the tool's name. Those called die end the tool. */
 void die(int status, const char *format, ...) __attribute__((noreturn, format(printf, 2, 3)));
 void die_usage(const char *format, ...) __attribute__((noreturn, format(printf, 1, 2)));
-void die_why(const struct why *why) __attribute__((noreturn));
+void die_why(const struct failure *failure) __attribute__((noreturn));
 void warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* One line that is overwritten, at most ten times a second, only when stderr is a terminal: is it time for one?

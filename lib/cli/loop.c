@@ -21,7 +21,7 @@ enum {
     ANSWER_BODY = 512,        /* and for each body: four vectors with all their digits have 320 */
     DOCUMENT_LEAST = 1 << 24, /* bytes that an answered document may have, at least, */
     DOCUMENT_BODY = 4096,     /* and for each body: with ten contacts it has 3000 */
-    KEPT_MOST = 1 << 30       /* bytes of answers between two frames, which are kept in memory */
+    FRAME_MEMORY_MOST = 1 << 30       /* bytes of answers between two frames, which are kept in memory */
 };
 
 static const char *command, *replay, *boundaries, *measures;
@@ -58,8 +58,8 @@ static struct {
     struct partner *partner;
     const struct measure *chosen[MOST_MEASURES + 1];
     struct asked asked;
-    struct chosen told; /* boundaries; none: all */
-    struct kept first, before;
+    struct selection told; /* boundaries; none: all */
+    struct frame_memory first, before;
     bool remembers;
     struct said *said;
     int64_t n, room;                   /* of them */
@@ -76,12 +76,12 @@ bool loop_asks(void)
 
 void loop_check(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (command && replay) die_usage("--with and --replay exclude each other");
     for (const struct cli_option *o = options_loop + 1; o->kind && o->to != &replay; o++)
         if (cli_given(o->to) && !command) die_usage("--%s: needs --with", o->name);
-    if (measures && measured_choose(loop.chosen, measures, &why))
-        die_usage("--with-measures: %s", strchr(why.text, ' ') + 1);
+    if (measures && measured_choose(loop.chosen, measures, &failure))
+        die_usage("--with-measures: %s", strchr(failure.text, ' ') + 1);
 }
 
 /* ---- answers of a run before ---- */
@@ -107,7 +107,7 @@ static json_t *stored_answer(const char *line, size_t length, int64_t *step)
 static void keep_line(const char *line, size_t length)
 {
     static const char where[] = "/nsd/outside/answer";
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int64_t step, before = loop.n ? loop.said[loop.n - 1].step : 0;
     if (length > answer_most(loop.most))
         die(EX_DATAERR, "--replay: %s: %s: an answer of %zu bytes: %zu are allowed", replay, where,
@@ -116,9 +116,9 @@ static void keep_line(const char *line, size_t length)
     if (!answer)
         die(EX_DATAERR, "--replay: %s: %s: line %lld is not a step above 0 and an answer", replay,
             where, (long long)loop.n + 1);
-    if (answer_check(answer, &why))
+    if (reply_check(answer, &failure))
         die(EX_DATAERR, "--replay: %s: %s: line %lld: %s", replay, where, (long long)loop.n + 1,
-            why.text);
+            failure.text);
     json_decref(answer);
     if (step <= before)
         die(EX_DATAERR, "--replay: %s: %s: line %lld is of step %lld, and the one before of %lld",
@@ -132,7 +132,7 @@ static void keep_line(const char *line, size_t length)
     if (!loop.said[loop.n++].line) die(EX_SOFTWARE, "no memory for answers");
 }
 
-static void keep_lines(const struct outside *o)
+static void keep_lines(const struct external_force *o)
 {
     for (int64_t at = 0; at < o->length;) {
         const char *line = o->words + at, *end = memchr(line, '\n', (size_t)(o->length - at));
@@ -146,19 +146,19 @@ static void read_answers(void)
 {
     struct reader *in;
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
     char *path = strdup(replay);
     if (!path) die(EX_SOFTWARE, "no memory for a path");
-    if (reader_open(&in, 1, &path, &why)) die_why(&why);
-    for (loop.begin = INT64_MAX; !reader_next(in, NULL, &f, &more, &why) && more;) {
+    if (reader_open(&in, 1, &path, &failure)) die_why(&failure);
+    for (loop.begin = INT64_MAX; !reader_next(in, NULL, &f, &more, &failure) && more;) {
         const struct packing *p = &f.packing;
         if (!f.packed) continue;
         if (loop.begin == INT64_MAX) loop.begin = p->step;
         if (p->n > loop.most) loop.most = p->n;
         keep_lines(&p->outside), loop.last = p->step;
     }
-    if (why.status) die_why(&why);
+    if (failure.status) die_why(&failure);
     frame_free(&f);
     reader_close(in);
     free(path);
@@ -183,31 +183,31 @@ static void check_answers(const struct packing *p)
 
 void loop_choose_boundaries(const struct packing *p)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (!boundaries || !strcmp(boundaries, "all")) return;
-    if (chosen_init(&loop.told, p, "--with-boundaries", boundaries, &why)) die_why(&why);
+    if (selection_init(&loop.told, p, "--with-boundaries", boundaries, &failure)) die_why(&failure);
     if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", boundaries);
 }
 
 void loop_open(const struct packing *p, const volatile sig_atomic_t *stop)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     loop.stop = stop;
     if (replay) read_answers(), check_answers(p);
-    if (command && partner_start(&loop.partner, command, stop, &why))
-        die(why.status, "--with: %s", why.text);
+    if (command && partner_start(&loop.partner, command, stop, &failure))
+        die(failure.status, "--with: %s", failure.text);
 }
 
-void loop_close(struct why *why)
+void loop_close(struct failure *failure)
 {
-    struct why trouble = { 0 };
+    struct failure trouble = { 0 };
     partner_end(loop.partner, loop.failed ? 0 : timeout, &trouble);
     if (trouble.status && !loop.failed && !*loop.stop)
-        why_set(why, trouble.status, "--with: %s", trouble.text);
+        failure_set(failure, trouble.status, "--with: %s", trouble.text);
     loop.partner = NULL;
     for (int64_t k = 0; k < loop.n; k++) free(loop.said[k].line);
     free(loop.said);
-    kept_free(&loop.first), kept_free(&loop.before), chosen_free(&loop.told);
+    frame_memory_free(&loop.first), frame_memory_free(&loop.before), selection_free(&loop.told);
 }
 
 /* ---- what is told ---- */
@@ -235,7 +235,7 @@ static void loop_put_boundaries(FILE *out, const struct packing *p, const struct
     const char *mark = "";
     fputs(",\"boundaries\":[", out);
     for (int32_t w = 0; w < p->walls; w++) {
-        if (!chosen_wall(&loop.told, p, w)) continue;
+        if (!selection_wall(&loop.told, p, w)) continue;
         vec3 x = wall_at(p, &p->wall[w], p->t);
         fprintf(out, "%s{\"boundary\":%d", mark, w);
         if (names_of_wall(&p->names, w))
@@ -261,29 +261,29 @@ static void put_report(FILE *out, const struct frame *f)
     json_decref(j);
 }
 
-static int put_measures(FILE *out, const struct frame *f, const struct contacts *s, struct why *why)
+static int put_measures(FILE *out, const struct frame *f, const struct contacts *s, struct failure *failure)
 {
     struct snapshot look;
     struct table t[MOST_MEASURES];
     const struct packing *p = &f->packing;
-    snapshot_init(&look, p, s, f->moved, &loop.asked, why);
+    snapshot_init(&look, p, s, f->moved, &loop.asked, failure);
     if (loop.remembers) look.first = &loop.first, look.before = &loop.before;
-    if (!measured_run(t, loop.chosen, &look, why)) {
+    if (!measured_run(t, loop.chosen, &look, failure)) {
         fputs(",\"measures\":", out);
         measured_json(out, &look, loop.chosen, t);
     }
     measured_free(t);
-    if (!why->status && measured_remember(loop.chosen)) {
+    if (!failure->status && measured_remember(loop.chosen)) {
         loop.remembers = true;
-        measured_keep(loop.chosen, &look, &loop.first, &loop.before, why);
+        measured_keep(loop.chosen, &look, &loop.first, &loop.before, failure);
     }
     snapshot_free(&look);
-    return why->status;
+    return failure->status;
 }
 
 /* The line, and the document behind it; to be freed */
-static char *loop_message(const struct frame *f, const struct contacts *s, struct acts *acts,
-                     size_t *length, struct why *why)
+static char *loop_message(const struct frame *f, const struct contacts *s, struct control *acts,
+                     size_t *length, struct failure *failure)
 {
     const struct packing *p = &f->packing;
     struct text written;
@@ -291,9 +291,9 @@ static char *loop_message(const struct frame *f, const struct contacts *s, struc
     size_t size = 0;
     struct frame all = *f;
     all.detected = s != NULL;
-    if (document && acts->id && acts_arrays(acts, p, why)) return NULL;
-    if (document) all.packing.outside.lasts = acts_lend(acts, p->walls);
-    if (document && !(bytes = document_write(&all, &size, why))) return NULL;
+    if (document && acts->id && control_arrays(acts, p, failure)) return NULL;
+    if (document) all.packing.outside.lasts = control_lend(acts, p->walls);
+    if (document && !(bytes = document_write(&all, &size, failure))) return NULL;
     FILE *out = text_open(&written);
     if (out) {
         fprintf(out, "{\"step\":%" PRId64 ",\"time\":", p->step);
@@ -302,13 +302,13 @@ static char *loop_message(const struct frame *f, const struct contacts *s, struc
         fprintf(out, ",\"bodies\":%" PRId64, p->n);
         put_report(out, s ? f : NULL);
         if (boundaries) loop_put_boundaries(out, p, s);
-        if (measures) put_measures(out, f, s, why);
+        if (measures) put_measures(out, f, s, failure);
         if (document) fprintf(out, ",\"document\":%zu", size);
         fputs("}\n", out);
         if (size) fwrite(bytes, 1, size, out);
     }
     if (!(text = text_close(&written, out, length)))
-        why_set(why, EX_SOFTWARE, "no memory for a line");
+        failure_set(failure, EX_SOFTWARE, "no memory for a line");
     free(bytes);
     return text;
 }
@@ -316,92 +316,92 @@ static char *loop_message(const struct frame *f, const struct contacts *s, struc
 /* ---- a step ---- */
 
 /* For whoever repeats the run */
-static int loop_keep(struct packing *p, const json_t *answer, struct why *why)
+static int loop_keep(struct packing *p, const json_t *answer, struct failure *failure)
 {
     json_t *j = json_pack("{s:I, s:O}", "step", (json_int_t)p->step + 1, "answer", answer);
     char *text = j ? json_dumps(j, JSON_COMPACT | JSON_REAL_PRECISION(17)) : NULL;
     json_decref(j);
-    if (!text) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    if (!text) return failure_set(failure, EX_SOFTWARE, "no memory for an answer");
     size_t n = strlen(text);
     text[n] = '\n'; // in place of its end
-    if (p->outside.length + (int64_t)n > KEPT_MOST)
-        why_set(why, EX_UNAVAILABLE,
+    if (p->outside.length + (int64_t)n > FRAME_MEMORY_MOST)
+        failure_set(failure, EX_UNAVAILABLE,
                 "more than %d MiB of answers since the last frame: keep more frames (--every)",
-                KEPT_MOST >> 20);
+                FRAME_MEMORY_MOST >> 20);
     else
-        outside_say(&p->outside, text, (int64_t)n + 1, why);
+        external_force_say(&p->outside, text, (int64_t)n + 1, failure);
     free(text);
-    return why->status;
+    return failure->status;
 }
 
 /* The answer that the document of the next n bytes is */
-static json_t *take_document(const struct packing *p, double n, struct why *why)
+static json_t *take_document(const struct packing *p, double n, struct failure *failure)
 {
     const size_t most = DOCUMENT_LEAST + (size_t)p->n * DOCUMENT_BODY;
     char *bytes;
     struct frame f = { 0 };
     json_t *answer = NULL;
     if (!(n <= (double)most))
-        why_set(why, EX_UNAVAILABLE, "the document answered has more than %zu bytes", most);
-    else if (!partner_bytes(loop.partner, &bytes, (size_t)n, why) &&
-             !document_read(&f, bytes, (size_t)n, why))
-        answer = answer_of_frame(&f, p, why);
+        failure_set(failure, EX_UNAVAILABLE, "the document answered has more than %zu bytes", most);
+    else if (!partner_bytes(loop.partner, &bytes, (size_t)n, failure) &&
+             !document_read(&f, bytes, (size_t)n, failure))
+        answer = reply_of_frame(&f, p, failure);
     frame_free(&f);
     return answer;
 }
 
 /* A document by itself: its header says how long it is. */
-static json_t *take_bare_document(const struct packing *p, struct why *why)
+static json_t *take_bare_document(const struct packing *p, struct failure *failure)
 {
     char *header;
-    if (partner_peek(loop.partner, &header, DOCUMENT_USERBLOCK, why)) return NULL;
+    if (partner_peek(loop.partner, &header, DOCUMENT_USERBLOCK, failure)) return NULL;
     int64_t n = document_length((unsigned char *)header);
-    if (n > 0) return take_document(p, (double)n, why);
-    why_set(
-        why, EX_DATAERR,
+    if (n > 0) return take_document(p, (double)n, failure);
+    failure_set(
+        failure, EX_DATAERR,
         "the document answered %s: a line {\"document\": BYTES} in front of it gives its length",
         n ? "has no header of nsd's" : "is unfinished");
     return NULL;
 }
 
 /* The line, and the document that it says to follow; what the line has besides comes first. */
-static json_t *take_line(const struct packing *p, struct why *why)
+static json_t *take_line(const struct packing *p, struct failure *failure)
 {
     size_t n;
     char *line;
-    if (partner_line(loop.partner, &line, &n, answer_most(p->n), why)) return NULL;
-    json_t *answer = answer_parse(line, n, why), *size = json_object_get(answer, "document");
+    if (partner_line(loop.partner, &line, &n, answer_most(p->n), failure)) return NULL;
+    json_t *answer = reply_parse(line, n, failure), *size = json_object_get(answer, "document");
     if (!size) return answer;
     json_t *whole = NULL;
     if (!json_is_integer(size) || json_integer_value(size) < 1)
-        why_set(why, EX_DATAERR, "the answer's document is a number of bytes above 0");
+        failure_set(failure, EX_DATAERR, "the answer's document is a number of bytes above 0");
     else
-        whole = take_document(p, (double)json_integer_value(size), why);
+        whole = take_document(p, (double)json_integer_value(size), failure);
     json_object_del(answer, "document");
-    if (whole && json_object_update(whole, answer)) why_set(why, EX_SOFTWARE, "no memory");
+    if (whole && json_object_update(whole, answer)) failure_set(failure, EX_SOFTWARE, "no memory");
     json_decref(answer);
     return whole;
 }
 
-static json_t *loop_ask(const struct frame *f, struct acts *acts, bool first, struct why *why)
+static json_t *loop_ask(const struct frame *f, struct control *acts, bool first, struct failure *failure)
 {
     static const unsigned char document_begins = 0x89; // no JSON does
     size_t length = 0;
-    char *begin, *text = loop_message(f, first ? NULL : &f->contacts, acts, &length, why);
+    char *begin, *text = loop_message(f, first ? NULL : &f->contacts, acts, &length, failure);
     json_t *answer = NULL;
-    if (!why->status && (first || !partner_check_silent(loop.partner, why)) &&
-        !partner_write(loop.partner, text, length, timeout, why)) {
+    if (!failure->status && (first || !partner_check_silent(loop.partner, failure)) &&
+        !partner_write(loop.partner, text, length, timeout, failure)) {
         partner_expect(loop.partner, timeout);
-        if (!partner_peek(loop.partner, &begin, 1, why))
+        if (!partner_peek(loop.partner, &begin, 1, failure))
             answer = ((unsigned char)*begin == document_begins ? take_bare_document
-                                                               : take_line)(&f->packing, why);
+                                                               : take_line)(&f->packing, failure);
     }
     free(text);
     return answer;
 }
 
 /* The last answer until the step: before the first one of a run what acts since then, later its own */
-static json_t *replayed(int64_t step, bool first, struct why *why)
+static json_t *replayed(int64_t step, bool first, struct failure *failure)
 {
     int64_t lo = 0, hi = loop.n; // in the order of their steps
     while (lo < hi) {
@@ -412,28 +412,28 @@ static json_t *replayed(int64_t step, bool first, struct why *why)
     if (!lo || (!first && loop.said[lo - 1].step != step)) return NULL;
     const char *line = loop.said[lo - 1].line;
     json_t *answer = stored_answer(line, strlen(line), &step);
-    if (!answer) why_set(why, EX_SOFTWARE, "no memory for an answer");
+    if (!answer) failure_set(failure, EX_SOFTWARE, "no memory for an answer");
     return answer;
 }
 
-bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why *why)
+bool loop_before_step(struct frame *f, struct control *acts, bool first, struct failure *failure)
 {
     struct packing *p = &f->packing;
-    struct why trouble = { 0 };
+    struct failure trouble = { 0 };
     p->outside.steered = true; // from the first frame on: later answers may move what rests
     bool stop = *loop.stop, due = first || p->step % every == 0;
     if (stop) return false;
     json_t *answer = NULL;
     if (replay) answer = replayed(p->step + 1, first, &trouble);
     if (command && due) answer = loop_ask(f, acts, first, &trouble);
-    if (answer && !trouble.status && !answer_apply(answer, acts, p, &stop, &trouble))
+    if (answer && !trouble.status && !reply_apply(answer, acts, p, &stop, &trouble))
         loop_keep(p, answer, &trouble);
     if (replay && !answer) stop = p->step >= loop.last;
     json_decref(answer);
     if (!trouble.status) return !stop;
     loop.failed = !*loop.stop;
     if (*loop.stop) return false;
-    why_set(why, trouble.status == EX_SOFTWARE ? EX_SOFTWARE : EX_UNAVAILABLE,
+    failure_set(failure, trouble.status == EX_SOFTWARE ? EX_SOFTWARE : EX_UNAVAILABLE,
             "step %lld: --%s: %s", (long long)p->step + 1, command ? "with" : "replay",
             trouble.text);
     return false;

@@ -27,9 +27,9 @@ void loop_open(const struct packing *p, const volatile sig_atomic_t *stop);
  * False: the run ends before the step, because the program says so, because *stop does or, with a status in why, because it
  * failed.
  */
-bool loop_before_step(struct frame *f, struct acts *acts, bool first, struct why *why);
+bool loop_before_step(struct frame *f, struct control *acts, bool first, struct failure *failure);
 /* The run has ended. A program that has written more than was read has a status in why: its answers may have acted in other
    steps. */
-void loop_close(struct why *why);
+void loop_close(struct failure *failure);
 
 #endif

@@ -43,24 +43,24 @@ static void mark_given(void)
 
 void options_check(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     team_set_size((int)options.threads);
     mark_given();
-    if (options_names(&options, &why)) die_usage("%s", why.text);
+    if (options_names(&options, &failure)) die_usage("%s", failure.text);
     if (!options.device) return;
     if (!strcmp(options.device, "list")) {
-        if (device_list(stdout, &why)) die_why(&why);
+        if (device_list(stdout, &failure)) die_why(&failure);
         finish_stdout();
         exit(0);
     }
-    if (device_named(options.device, &why)) die_usage("%s", why.text);
+    if (device_named(options.device, &failure)) die_usage("%s", failure.text);
 }
 
 /* When there is input: the processes that read it have been started, and have nothing of a driver. */
 static void options_open_device(void)
 {
-    struct why why = { 0 };
-    if (options.device && !device && !(device = device_open(options.device, &why))) die_why(&why);
+    struct failure failure = { 0 };
+    if (options.device && !device && !(device = device_open(options.device, &failure))) die_why(&failure);
 }
 
 static struct {

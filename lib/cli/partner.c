@@ -43,9 +43,9 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static int partner_failed(struct why *why, const char *what)
+static int partner_failed(struct failure *failure, const char *what)
 {
-    return why_set(why, EX_UNAVAILABLE, "%s: %s", what, strerror(errno));
+    return failure_set(failure, EX_UNAVAILABLE, "%s: %s", what, strerror(errno));
 }
 
 /* The program: a group of processes of its own, so that a signal from the terminal is for us, who end it */
@@ -72,34 +72,34 @@ static void be_guard(int life, pid_t group)
     _exit(0);
 }
 
-static int start_guard(struct partner *p, struct why *why)
+static int start_guard(struct partner *p, struct failure *failure)
 {
     int life[2];
-    if (pipe2(life, O_CLOEXEC)) return partner_failed(why, "no pipe to the program's guard");
+    if (pipe2(life, O_CLOEXEC)) return partner_failed(failure, "no pipe to the program's guard");
     p->guard = fork();
     if (p->guard == 0) close(life[1]), be_guard(life[0], p->pid);
     close(life[0]), p->life = life[1];
-    return p->guard < 0 ? partner_failed(why, "the program's guard cannot be started") : 0;
+    return p->guard < 0 ? partner_failed(failure, "the program's guard cannot be started") : 0;
 }
 
 int partner_start(struct partner **out, const char *command, const volatile sig_atomic_t *stop,
-                  struct why *why)
+                  struct failure *failure)
 {
     int to[2], from[2];
     struct partner *p = *out = calloc(1, sizeof *p);
-    if (!p) return why_set(why, EX_SOFTWARE, "no memory for a program");
+    if (!p) return failure_set(failure, EX_SOFTWARE, "no memory for a program");
     p->to = p->from = p->life = -1, p->stop = stop;
-    if (pipe2(to, O_CLOEXEC)) return partner_failed(why, "no pipe to the program");
+    if (pipe2(to, O_CLOEXEC)) return partner_failed(failure, "no pipe to the program");
     p->to = to[1];
-    if (pipe2(from, O_CLOEXEC)) return close(to[0]), partner_failed(why, "no pipe from the program");
+    if (pipe2(from, O_CLOEXEC)) return close(to[0]), partner_failed(failure, "no pipe from the program");
     p->from = from[0];
     p->pid = fork();
     if (p->pid == 0) be_program(to[0], from[1], command);
     close(to[0]), close(from[1]);
-    if (p->pid < 0) return partner_failed(why, "the program cannot be started");
+    if (p->pid < 0) return partner_failed(failure, "the program cannot be started");
     setpgid(p->pid, p->pid); // whoever of both comes first
     fcntl(p->to, F_SETFL, O_NONBLOCK), fcntl(p->from, F_SETFL, O_NONBLOCK);
-    return start_guard(p, why);
+    return start_guard(p, failure);
 }
 
 /* Takes the time since *then off *left, but for a time in which this process was stopped: then the program may have been, too. */
@@ -147,28 +147,28 @@ static bool has_ended(struct partner *p, int *status, double seconds)
 }
 
 /* A pipe is closed, so that it ends now, or lives on without: how it has ended */
-static int ended(struct partner *p, const char *pipe, struct why *why)
+static int ended(struct partner *p, const char *pipe, struct failure *failure)
 {
     int status = 0;
     const char *where = p->n > p->taken ? ", within an answer" : "";
     if (!has_ended(p, &status, 1))
-        return why_set(why, EX_UNAVAILABLE, "the program has closed its %s%s", pipe, where);
+        return failure_set(failure, EX_UNAVAILABLE, "the program has closed its %s%s", pipe, where);
     if (WIFSIGNALED(status))
-        return why_set(why, EX_UNAVAILABLE, "the program was killed: %s%s",
+        return failure_set(failure, EX_UNAVAILABLE, "the program was killed: %s%s",
                        strsignal(WTERMSIG(status)), where);
-    return why_set(why, EX_UNAVAILABLE, "the program has ended, with status %d%s",
+    return failure_set(failure, EX_UNAVAILABLE, "the program has ended, with status %d%s",
                    WEXITSTATUS(status), where);
 }
 
 /* Nothing could be written or read: why */
-static int waited(const struct partner *p, const char *what, double seconds, struct why *why)
+static int waited(const struct partner *p, const char *what, double seconds, struct failure *failure)
 {
-    if (*p->stop) return why_set(why, EX_UNAVAILABLE, "a signal has come");
-    return why_set(why, EX_UNAVAILABLE, "the program has %s for %g s (--with-timeout)", what,
+    if (*p->stop) return failure_set(failure, EX_UNAVAILABLE, "a signal has come");
+    return failure_set(failure, EX_UNAVAILABLE, "the program has %s for %g s (--with-timeout)", what,
                    seconds);
 }
 
-int partner_write(struct partner *p, const void *bytes, size_t n, double seconds, struct why *why)
+int partner_write(struct partner *p, const void *bytes, size_t n, double seconds, struct failure *failure)
 {
     double left = seconds;
     const char *at = bytes;
@@ -176,9 +176,9 @@ int partner_write(struct partner *p, const void *bytes, size_t n, double seconds
         ssize_t done = write_quietly(p->to, at, n);
         if (done > 0) at += done, n -= (size_t)done;
         if (done >= 0 || errno == EINTR) continue;
-        if (errno == EPIPE) return ended(p, "input", why);
-        if (errno != EAGAIN) return partner_failed(why, "the program");
-        if (!ready(p, p->to, POLLOUT, &left)) return waited(p, "read nothing", seconds, why);
+        if (errno == EPIPE) return ended(p, "input", failure);
+        if (errno != EAGAIN) return partner_failed(failure, "the program");
+        if (!ready(p, p->to, POLLOUT, &left)) return waited(p, "read nothing", seconds, failure);
     }
     return 0;
 }
@@ -207,69 +207,69 @@ static void partner_forget(struct partner *p)
 }
 
 /* Reads what there is; got: bytes, 0 at the end, -1 where there is nothing yet */
-static int read_piece(struct partner *p, ssize_t *got, struct why *why)
+static int read_piece(struct partner *p, ssize_t *got, struct failure *failure)
 {
-    if (!partner_grow(p)) return why_set(why, EX_SOFTWARE, "no memory for an answer");
+    if (!partner_grow(p)) return failure_set(failure, EX_SOFTWARE, "no memory for an answer");
     do *got = read(p->from, p->text + p->n, PIECE);
     while (*got < 0 && errno == EINTR);
-    if (*got < 0 && errno != EAGAIN) return partner_failed(why, "the program");
+    if (*got < 0 && errno != EAGAIN) return partner_failed(failure, "the program");
     if (*got > 0) p->n += (size_t)*got;
     return 0;
 }
 
 /* The same, or waits for it. */
-static int read_more(struct partner *p, struct why *why)
+static int read_more(struct partner *p, struct failure *failure)
 {
     ssize_t got;
-    if (*p->stop) return waited(p, "not answered", p->seconds, why);
-    if (read_piece(p, &got, why)) return why->status;
-    if (got == 0) return ended(p, "output", why);
+    if (*p->stop) return waited(p, "not answered", p->seconds, failure);
+    if (read_piece(p, &got, failure)) return failure->status;
+    if (got == 0) return ended(p, "output", failure);
     if (got < 0 && !ready(p, p->from, POLLIN, &p->left))
-        return waited(p, "not answered", p->seconds, why);
+        return waited(p, "not answered", p->seconds, failure);
     return 0;
 }
 
-int partner_check_silent(struct partner *p, struct why *why)
+int partner_check_silent(struct partner *p, struct failure *failure)
 {
     ssize_t got = 0;
     partner_forget(p);
-    if (!p->n && read_piece(p, &got, why)) return why->status;
+    if (!p->n && read_piece(p, &got, failure)) return failure->status;
     if (!p->n) return 0;
-    return why_set(why, EX_UNAVAILABLE,
+    return failure_set(failure, EX_UNAVAILABLE,
                    "the program has written more than its answer: one line, or one document, for "
                    "each line that it reads");
 }
 
-int partner_peek(struct partner *p, char **bytes, size_t n, struct why *why)
+int partner_peek(struct partner *p, char **bytes, size_t n, struct failure *failure)
 {
     partner_forget(p);
     while (p->n < n)
-        if (read_more(p, why)) return why->status;
+        if (read_more(p, failure)) return failure->status;
     *bytes = p->text;
     return 0;
 }
 
-int partner_bytes(struct partner *p, char **bytes, size_t n, struct why *why)
+int partner_bytes(struct partner *p, char **bytes, size_t n, struct failure *failure)
 {
-    if (partner_peek(p, bytes, n, why)) return why->status;
+    if (partner_peek(p, bytes, n, failure)) return failure->status;
     p->taken = n;
     return 0;
 }
 
-int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct why *why)
+int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct failure *failure)
 {
     partner_forget(p);
     for (size_t looked = 0;;) {
         char *stop = p->n > looked ? memchr(p->text + looked, '\n', p->n - looked) : NULL;
         if ((stop ? (size_t)(stop - p->text) : p->n) > most)
-            return why_set(why, EX_UNAVAILABLE, "the program's answer has more than %zu bytes",
+            return failure_set(failure, EX_UNAVAILABLE, "the program's answer has more than %zu bytes",
                            most);
         if (stop) {
             *stop = 0, *line = p->text, *n = (size_t)(stop - p->text), p->taken = *n + 1;
             return 0;
         }
         looked = p->n;
-        if (read_more(p, why)) return why->status;
+        if (read_more(p, failure)) return failure->status;
     }
 }
 
@@ -302,23 +302,23 @@ static void wait_for_end(struct partner *p, double seconds)
         }
         ssize_t got = 0;
         p->n = p->n > 0, p->taken = 0; // lest it waits to be read
-        if (read_piece(p, &got, &(struct why){ 0 }) || got <= 0) usleep(1000 * NAP);
+        if (read_piece(p, &got, &(struct failure){ 0 }) || got <= 0) usleep(1000 * NAP);
     }
     if (seconds > GRACE) say_end(p, status, killed, seconds);
 }
 
-int partner_end(struct partner *p, double seconds, struct why *why)
+int partner_end(struct partner *p, double seconds, struct failure *failure)
 {
     if (!p) return 0;
-    bool silent = p->from < 0 || !partner_check_silent(p, why);
+    bool silent = p->from < 0 || !partner_check_silent(p, failure);
     if (p->to >= 0) close(p->to);
     p->to = -1;
     wait_for_end(p, fmax(seconds, GRACE));
-    if (silent && p->from >= 0) partner_check_silent(p, why);
+    if (silent && p->from >= 0) partner_check_silent(p, failure);
     if (p->guard > 0) kill(p->guard, SIGKILL), waitpid(p->guard, NULL, 0);
     if (p->life >= 0) close(p->life);
     if (p->from >= 0) close(p->from);
     free(p->text);
     free(p);
-    return why->status;
+    return failure->status;
 }

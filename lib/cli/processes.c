@@ -64,10 +64,10 @@ struct distributed *processes_take_bodies(bool contacts)
 }
 
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
-                   const struct step_opt *o, struct why *why)
+                   const struct step_opt *o, struct failure *failure)
 {
     if (changes.bodies) step_forget(m);
-    return step_advance(&f->packing, &f->contacts, m, o, &f->report, why);
+    return step_advance(&f->packing, &f->contacts, m, o, &f->report, failure);
 }
 
 const char *processes_leave(void)

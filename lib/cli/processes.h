@@ -30,7 +30,7 @@ struct changes {
 };
 /* The leader: step_advance() of a frame by all */
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
-                   const struct step_opt *o, struct why *why);
+                   const struct step_opt *o, struct failure *failure);
 /* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
 const char *processes_leave(void);
 

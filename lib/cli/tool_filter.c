@@ -9,16 +9,16 @@ void tool_filter(int files, char *const *file, void (*each)(struct frame *, cons
     struct reader *in;
     struct writer *out;
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
-    if (writer_open(&out, NULL, WRITER_STREAM, &why) || reader_open(&in, files, file, &why))
-        die_why(&why);
+    if (writer_open(&out, NULL, WRITER_STREAM, &failure) || reader_open(&in, files, file, &failure))
+        die_why(&failure);
     reader_copies(in);
-    while (!reader_next(in, NULL, &f, &more, &why) && more) {
+    while (!reader_next(in, NULL, &f, &more, &failure) && more) {
         each(&f, reader_where(in));
-        if (frame_note(&f, cli_history(), &why) || writer_frame(out, &f, &why)) break;
+        if (frame_note(&f, cli_history(), &failure) || writer_frame(out, &f, &failure)) break;
     }
-    if (why.status || writer_close(out, &why)) die_why(&why);
+    if (failure.status || writer_close(out, &failure)) die_why(&failure);
     frame_free(&f);
     reader_close(in);
 }

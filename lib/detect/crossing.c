@@ -35,8 +35,8 @@ static bool crossing_cross(const struct counting *o, const struct fast *a, const
     const vec3 none = v3(0, 0, 0);
     if (!(v3_dot(way, way) > thick * thick)) return false;
     if (!ha && !hb) return through_ball(o, crossing_size_of(a) + crossing_size_of(b), from, way);
-    if (ha && swift_through_hull(ha, p->dim, a->radius, a->q, from, v3_add(from, way))) return true;
-    return hb && swift_through_hull(hb, p->dim, b->radius, b->q, v3_sub(none, from),
+    if (ha && tunnelling_through_hull(ha, p->dim, a->radius, a->q, from, v3_add(from, way))) return true;
+    return hb && tunnelling_through_hull(hb, p->dim, b->radius, b->q, v3_sub(none, from),
                                     v3_sub(none, v3_add(from, way)));
 }
 
@@ -44,13 +44,13 @@ static void crossing_count_pair(void *arg, const struct fast *a, const struct fa
 {
     const struct counting *o = arg;
     if (fast_is_fixed_hull(o->p, a) || fast_is_fixed_hull(o->p, b)) return; // in swift_passed()
-    if (crossing_cross(o, a, b)) swift_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
+    if (crossing_cross(o, a, b)) tunnelling_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
 }
 
-int crossing_count(struct passed *s, const struct packing *p, const bool *of,
-                   const struct fast_list *list, struct window window, bool beyond, struct why *why)
+int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
+                   const struct fast_list *list, struct window window, bool beyond, struct failure *failure)
 {
     struct counting o = { p, window, beyond, s };
     if (!(window.length > 0)) return 0;
-    return fast_pairs(p, of, list, window, crossing_count_pair, &o, why);
+    return fast_pairs(p, of, list, window, crossing_count_pair, &o, failure);
 }

@@ -18,8 +18,8 @@
    all ranks, in any order. A pair is one of the body with the lower number where both are fast, else of the other
    one. beyond: balls need not end apart, but beyond the place at which they are nearest, where a contact would have the
    wrong normal. Returns 0 or EX_SOFTWARE. */
-int crossing_count(struct passed *s, const struct packing *p, const bool *of,
+int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
                    const struct fast_list *list, struct window window, bool beyond,
-                   struct why *why);
+                   struct failure *failure);
 
 #endif

@@ -42,7 +42,7 @@ static void count_wedged(struct depth *d, const struct packing *p, struct depth_
 }
 
 int depth_of(struct depth *d, const struct packing *p, const struct contacts *s, const bool *counts,
-             struct why *why)
+             struct failure *failure)
 {
     int64_t deep = 0, most = -1;
     *d = (struct depth){ 0 };
@@ -58,7 +58,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     }
     if (deep < 2) return 0;
     struct depth_side *side = malloc(2 * (size_t)deep * sizeof *side);
-    if (!side) return why_set(why, EX_SOFTWARE, "no memory for overlaps");
+    if (!side) return failure_set(failure, EX_SOFTWARE, "no memory for overlaps");
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];

@@ -15,6 +15,6 @@
 /* Of contacts whose gaps are known. counts[i]: whether body i counts, which several processes have; NULL:
    all do. Returns 0 or EX_SOFTWARE. */
 int depth_of(struct depth *depth, const struct packing *p, const struct contacts *s,
-             const bool *counts, struct why *why);
+             const bool *counts, struct failure *failure);
 
 #endif

@@ -145,13 +145,13 @@ static bool detect_add_body(struct contacts *out, const struct sought *o, const 
 static bool detect_add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
 {
     const struct packing *p = o->all.p;
-    const double most = swift_beside(p, o->wall);
+    const double most = tunnelling_beside(p, o->wall);
     struct pose pose = wall_pose(p, &p->wall[o->wall], o->all.t);
     for (int64_t i = first; i < end; i++) {
         if (!packing_may_meet(p, -1 - o->wall, (int32_t)i)) continue;
         int64_t before = out->n;
         if (!detect_add_body(out, o, &pose, i)) return false;
-        if (swift_is(p, i, most) && !swift_meets_wall(out, before, &o->all, o->wall, i))
+        if (tunnelling_is(p, i, most) && !tunnelling_meets_wall(out, before, &o->all, o->wall, i))
             return false;
     }
     return true;
@@ -217,20 +217,20 @@ static void count_elements(struct neighbours *near, const struct packing *p, _At
 }
 
 static int check_crowd(struct neighbours *near, const struct packing *p, int64_t seen,
-                       struct why *why)
+                       struct failure *failure)
 {
     int64_t most = ELEMENTS_LEAST + ELEMENTS_BODY * p->n;
     for (int32_t w = 0; near->surface && w < p->walls; w++) near->surface[w].seen = NULL;
     if (seen <= most) return 0;
-    return why_set(
-        why, EX_DATAERR,
+    return failure_set(
+        failure, EX_DATAERR,
         "bodies have more than %lld elements of meshes near them: a mesh much finer than the "
         "bodies, or crowded",
         (long long)most);
 }
 
 static int detect_all(struct contacts *out, const struct packing *p, const struct positions *at,
-                  double gap, struct neighbours *kept, struct why *why)
+                  double gap, struct neighbours *kept, struct failure *failure)
 {
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
@@ -239,10 +239,10 @@ static int detect_all(struct contacts *out, const struct packing *p, const struc
     bool stored = true;
     _Atomic int64_t seen = 0;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
-    int e = neighbours_find(near, p, at, gap, kept, why);
-    if (!e) e = neighbours_surfaces(near, p, why);
+    int e = neighbours_find(near, p, at, gap, kept, failure);
+    if (!e) e = neighbours_surfaces(near, p, failure);
     if (!e) count_elements(near, p, &seen);
-    if (!e && shaped) e = placed_init(shaped, p, at, why);
+    if (!e && shaped) e = placed_init(shaped, p, at, failure);
     o.all.surface = near->surface;
     for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
         const struct wall *wall = &p->wall[o.wall];
@@ -254,20 +254,20 @@ static int detect_all(struct contacts *out, const struct packing *p, const struc
     if (!e && stored)
         stored = find_all(out, &o, near->list.n, shaped ? PER_THREAD_CURVED : PER_THREAD_FLAT,
                           add_pairs);
-    if (!e && stored) e = seams_drop(out, &o.all, why);
-    if (!e && stored) stored = swift_meet_hulls(out, &o.all);
+    if (!e && stored) e = seams_drop(out, &o.all, failure);
+    if (!e && stored) stored = tunnelling_meet_hulls(out, &o.all);
     placed_free(&placed);
-    if (!e) e = check_crowd(near, p, seen, why);
+    if (!e) e = check_crowd(near, p, seen, failure);
     neighbours_free(&once);
-    return e || stored ? e : why_set(why, EX_SOFTWARE, "no memory for the contacts");
+    return e || stored ? e : failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
 }
 
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
-                       double gap, struct why *why)
+                       double gap, struct failure *failure)
 {
     struct positions at = { .x = x, .q = p->q, .t = t };
     cell_predict(&p->cell, t - p->t, at.edge);
-    return detect_all(out, p, &at, gap, NULL, why);
+    return detect_all(out, p, &at, gap, NULL, failure);
 }
 
 /* What decides which pairs that do not touch the law sees */
@@ -279,7 +279,7 @@ struct detect_sight {
                     something flies off */
 };
 
-static struct detect_sight sight_of(const struct packing *p)
+static struct detect_sight ray_of(const struct packing *p)
 {
     return (struct detect_sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
                            0.5 * packing_whole(p).small };
@@ -290,8 +290,8 @@ static struct detect_sight sight_of(const struct packing *p)
 static double seeing_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
-    const struct detect_sight o = sight_of(p);
-    double speed = p->shape ? all.top_speed : all.speed; // a corner is faster than its body
+    const struct detect_sight o = ray_of(p);
+    double speed = p->shape ? all.rotation_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     double near = fmin(OVERLAP_NEAR * all.large + o.near, o.most);
     return o.meets ? fmax(near, fmin(p->dt * (2 * speed + o.calm), o.most)) : near;
@@ -320,11 +320,11 @@ static void keep_seen(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
     bool sees = overlap_sees_gaps(p->overlap);
-    const struct detect_sight o = sight_of(p);
+    const struct detect_sight o = ray_of(p);
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->law && contact_law_holds(&s->law[i]);
         bool seen = sees && is_seen(p, &o, &s->c[i]);
-        if (!(s->c[i].gap <= gap || held || swift_ahead(&s->c[i]) || seen)) continue;
+        if (!(s->c[i].gap <= gap || held || tunnelling_ahead(&s->c[i]) || seen)) continue;
         if (s->law) s->law[n] = s->law[i];
         s->c[n++] = s->c[i];
     }
@@ -355,17 +355,17 @@ static void predict_some(void *arg, int64_t first, int64_t end)
     const struct packing *p = y->p;
     for (int64_t i = first; i < end; i++) y->m->x[i] = packing_predict(p, i);
     for (int64_t i = first; i < end && y->m->q; i++)
-        y->m->q[i] = packing_shape(p, i) ? top_predict(p, i) : p->q[i];
+        y->m->q[i] = packing_shape(p, i) ? rotation_predict(p, i) : p->q[i];
 }
 
-static int detect_predict(struct prediction *m, const struct packing *p, struct why *why)
+static int detect_predict(struct prediction *m, const struct packing *p, struct failure *failure)
 {
     double ahead = step_ahead(p);
     *m = (struct prediction){ .x = malloc(((size_t)p->n + 1) * sizeof *m->x) };
     if (p->shape) m->q = malloc(((size_t)p->n + 1) * sizeof *m->q);
     if (!m->x || (p->shape && !m->q)) {
         prediction_free(m);
-        return why_set(why, EX_SOFTWARE, "no memory for the contacts");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
     }
     struct predicting y = { p, m };
     team_share(team_size(), p->n, PER_THREAD_FLAT, predict_some, &y);
@@ -375,39 +375,39 @@ static int detect_predict(struct prediction *m, const struct packing *p, struct 
 }
 
 int detect_near(struct contacts *out, const struct packing *p, double reach,
-                struct neighbours *kept, struct why *why)
+                struct neighbours *kept, struct failure *failure)
 {
     struct prediction m;
-    if (detect_predict(&m, p, why)) return why->status;
-    int e = detect_all(out, p, &m.at, reach, kept, why);
+    if (detect_predict(&m, p, failure)) return failure->status;
+    int e = detect_all(out, p, &m.at, reach, kept, failure);
     prediction_free(&m);
     return e;
 }
 
 /* The places of bonds between shapes are contacts, too. */
-static int add_anchored(struct contacts *s, const struct packing *p, struct why *why)
+static int add_anchored(struct contacts *s, const struct packing *p, struct failure *failure)
 {
     struct prediction m;
-    if (detect_predict(&m, p, why)) return why->status;
-    int e = anchors_place(s, p, &m.at, why);
+    if (detect_predict(&m, p, failure)) return failure->status;
+    int e = anchors_place(s, p, &m.at, failure);
     prediction_free(&m);
     return e;
 }
 
 int detect_choose(struct contacts *s, const struct packing *p, double gap, double reach,
-                  struct why *why)
+                  struct failure *failure)
 {
-    int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, why) : 0;
+    int e = p->law && p->shape && p->bonds.n ? add_anchored(s, p, failure) : 0;
     if (!e) friction_choose(s, p);
-    if (!e && p->law) e = contact_laws_find(s, p, why);
+    if (!e && p->law) e = contact_laws_find(s, p, failure);
     if (!e && reach > gap) keep_seen(s, p, gap);
     return e;
 }
 
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
-                    struct neighbours *kept, struct why *why)
+                    struct neighbours *kept, struct failure *failure)
 {
     double reach = detect_reach(p, gap);
-    int e = detect_near(out, p, reach, kept, why);
-    return e ? e : detect_choose(out, p, gap, reach, why);
+    int e = detect_near(out, p, reach, kept, failure);
+    return e ? e : detect_choose(out, p, gap, reach, failure);
 }

@@ -19,18 +19,18 @@
  * contacts are the same. Returns 0 or EX_SOFTWARE.
  */
 int detect_contacts(struct contacts *out, const struct packing *p, double gap,
-                    struct neighbours *kept, struct why *why);
+                    struct neighbours *kept, struct failure *failure);
 
 /* Its parts: m, the largest gap of a pair that it looks at; those pairs; which of them are contacts, and
    what ties them */
 double detect_reach(const struct packing *p, double gap);
 int detect_near(struct contacts *out, const struct packing *p, double reach,
-                struct neighbours *kept, struct why *why);
+                struct neighbours *kept, struct failure *failure);
 int detect_choose(struct contacts *s, const struct packing *p, double gap, double reach,
-                  struct why *why);
+                  struct failure *failure);
 
 /* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
-                       double gap, struct why *why);
+                       double gap, struct failure *failure);
 
 #endif

@@ -13,7 +13,7 @@ static struct fast body_of(const struct packing *p, int64_t i)
                       .kind = p->kind[i],
                       .shape = p->shape ? p->shape[i] : 0,
                       .radius = p->radius[i],
-                      .thick = swift_thickness(p, i),
+                      .thick = tunnelling_thickness(p, i),
                       .mass = p->mass[i],
                       .x = p->x[i],
                       .v = p->v[i],
@@ -28,7 +28,7 @@ static double least_thickness(const struct packing *p)
     double least = 1;
     if (!p->shape) return least;
     for (int64_t i = 0; i < p->n; i++)
-        if (p->shape[i]) least = dmin(least, swift_thickness(p, i) / p->radius[i]);
+        if (p->shape[i]) least = dmin(least, tunnelling_thickness(p, i) / p->radius[i]);
     return least;
 }
 
@@ -42,20 +42,20 @@ static bool fast_pairs_may_be(const struct packing *p)
     return any;
 }
 
-int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct why *why)
+int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct failure *failure)
 {
     *list = (struct fast_list){ 0 };
     if (!fast_pairs_may_be(p)) return 0;
     for (int64_t i = 0; i < p->n; i++) {
         if (of && !of[i]) continue;
-        if (!is_fast(p, i, p->shape ? swift_thickness(p, i) : p->radius[i])) continue;
+        if (!is_fast(p, i, p->shape ? tunnelling_thickness(p, i) : p->radius[i])) continue;
         const struct fast b = body_of(p, i);
         if (!(list->n & (list->n - 1))) { // the room doubles
             struct fast *more =
                 realloc(list->of, (size_t)(list->n ? 2 * list->n : 1) * sizeof *more);
             if (!more) {
                 free(list->of), list->of = NULL;
-                return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
+                return failure_set(failure, EX_SOFTWARE, "no memory for fast bodies");
             }
             list->of = more;
         }
@@ -180,14 +180,14 @@ bool fast_is_fixed_hull(const struct packing *p, const struct fast *b)
 }
 
 int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *list,
-               struct window window, fast_visit *visit, void *arg, struct why *why)
+               struct window window, fast_visit *visit, void *arg, struct failure *failure)
 {
     int64_t images;
     if (!list->n) return 0;
     const struct fast_pairs_box here = box_of_all(p, of, window);
     const int axis = longest_axis(&here);
     struct placed_path *all = with_images(p, &here, axis, window, list, &images);
-    if (!all) return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
+    if (!all) return failure_set(failure, EX_SOFTWARE, "no memory for fast bodies");
     for (int64_t i = 0; i < p->n && images; i++) {
         if (of && !of[i]) continue;
         const struct fast b = body_of(p, i);

@@ -28,7 +28,7 @@ struct fast_list {
 };
 
 /* Those of the packing for which of[p->n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
-int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct why *why);
+int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct failure *failure);
 
 /* m: where the window begins */
 static inline vec3 fast_from(struct window window, const struct fast *b)
@@ -45,6 +45,6 @@ typedef void fast_visit(void *arg, const struct fast *a, const struct fast *b);
 /* Visits each pair of a fast body and one of the packing, as above, whose paths in the window may meet, once: of two
    fast bodies b is the one with the lower number. Pairs that cannot move, or do not act on each other, are left out. Returns 0 or EX_SOFTWARE. */
 int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *list,
-               struct window window, fast_visit *visit, void *arg, struct why *why);
+               struct window window, fast_visit *visit, void *arg, struct failure *failure);
 
 #endif

@@ -186,7 +186,7 @@ static double cell_limit(const struct packing *p, const struct fast_list *list)
     return 0.25 * least / speed;
 }
 
-static int room_for(struct corners *room, const struct packing *p, struct why *why)
+static int room_for(struct corners *room, const struct packing *p, struct failure *failure)
 {
     int32_t most = 1;
     for (int32_t k = 0; p->shape && k < p->shapes.n; k++)
@@ -194,7 +194,7 @@ static int room_for(struct corners *room, const struct packing *p, struct why *w
     const size_t size = (size_t)most * sizeof *room->a;
     room->a = malloc(size), room->b = malloc(size), room->moved = malloc(size);
     if (room->a && room->b && room->moved) return 0;
-    return why_set(why, EX_SOFTWARE, "no memory for fast bodies");
+    return failure_set(failure, EX_SOFTWARE, "no memory for fast bodies");
 }
 
 /* s: in which the fastest of the list goes as far as they are thick in the mean */
@@ -206,8 +206,8 @@ static double horizon_of(const struct fast_list *list)
     return thick / (double)list->n / sqrt(v2);
 }
 
-int meeting_part(double *part, const struct packing *p, const bool *of,
-                 const struct fast_list *list, double rest, int64_t left, struct why *why)
+int time_of_impact_part(double *part, const struct packing *p, const bool *of,
+                 const struct fast_list *list, double rest, int64_t left, struct failure *failure)
 {
     struct time_of_impact_meeting s = { .p = p, .least = rest / (QUARTER * (double)left) };
     s.sought = (1 - p->theta) * rest;
@@ -216,14 +216,14 @@ int meeting_part(double *part, const struct packing *p, const bool *of,
     const double most = dmin(rest, cell_limit(p, list)), horizon = horizon_of(list);
     if (!(most > 0 && horizon > 0))
         return 0; // squares of velocities overflow: the whole step diverges
-    bool good = !room_for(&s.room, p, why), ends = false;
+    bool good = !room_for(&s.room, p, failure), ends = false;
     // paths are looked at as far as it takes: a meeting after the time t leaves a substep of more than t/2
     for (double time = horizon; good && !ends; time *= 4) {
         s.rest = s.part = dmin(time, most);
-        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, time_of_impact_look, &s, why);
+        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, time_of_impact_look, &s, failure);
         ends = s.part <= 0.5 * s.rest || s.rest >= most;
     }
     free(s.room.a), free(s.room.b), free(s.room.moved);
     if (s.part < rest * (1 - 1e-12)) *part = s.part;
-    return why->status;
+    return failure->status;
 }

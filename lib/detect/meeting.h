@@ -18,7 +18,7 @@
 /* Of the bodies for which of[p->n] is true (NULL: all) with those of the list, which has the fast bodies of all ranks for a step of p->dt,
    of which `rest` (s) is left, for `left` substeps at most: *part = how long (s) the next substep may be, at most the rest. Bodies lie in the cell.
    Returns 0 or EX_SOFTWARE. */
-int meeting_part(double *part, const struct packing *p, const bool *of,
-                 const struct fast_list *list, double rest, int64_t left, struct why *why);
+int time_of_impact_part(double *part, const struct packing *p, const bool *of,
+                 const struct fast_list *list, double rest, int64_t left, struct failure *failure);
 
 #endif

@@ -186,11 +186,11 @@ static double spare_reach(const struct packing *p)
 
 /* Where the list is made: images and edges, for the steps that it is to serve */
 static int note_images(struct neighbours *s, const struct packing *p, const vec3 edge[3],
-                       struct why *why)
+                       struct failure *failure)
 {
     size_t size = (size_t)p->n * sizeof *s->image;
     int32_t(*image)[3] = realloc(s->image, size + sizeof *image);
-    if (!image) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    if (!image) return failure_set(failure, EX_SOFTWARE, "no memory for the neighbours");
     s->image = image;
     memcpy(image, p->image, size);
     cell_inverse(edge, s->inverse);
@@ -210,7 +210,7 @@ void neighbours_shift(const struct neighbours *s, const struct packing *p, const
 }
 
 int neighbours_find(struct neighbours *s, const struct packing *p, const struct positions *at,
-                    double gap, bool keep, struct why *why)
+                    double gap, bool keep, struct failure *failure)
 {
     const vec3 *x = at->x, *edge = at->edge;
     size_t size = (size_t)p->n * sizeof *x;
@@ -218,33 +218,33 @@ int neighbours_find(struct neighbours *s, const struct packing *p, const struct 
     if (images) {
         struct cell now = { .origin = p->cell.origin };
         for (int k = 0; k < 3; k++) now.edge[k] = edge[k], now.repeats[k] = p->cell.repeats[k];
-        if (cell_check(&now, p->dim, 2 * largest_radius(p) + gap, why)) return why->status;
+        if (cell_check(&now, p->dim, 2 * largest_radius(p) + gap, failure)) return failure->status;
     }
     if (s->list.bodies == p->n && list_serves(s, p, x, edge, gap)) return 0;
     vec3 *listed = keep ? realloc(s->listed, size + sizeof *x) : s->listed;
-    if (keep && !listed) return why_set(why, EX_SOFTWARE, "no memory for the neighbours");
+    if (keep && !listed) return failure_set(failure, EX_SOFTWARE, "no memory for the neighbours");
     s->listed = listed, s->list.bodies = p->n, s->list.reach = gap + (keep ? spare_reach(p) : 0);
-    if (seek_pairs(&s->list, p, x, edge, why)) {
+    if (seek_pairs(&s->list, p, x, edge, failure)) {
         s->list.bodies = 0; // such a list serves nobody
-        return why->status;
+        return failure->status;
     }
     if (keep && p->n) memcpy(s->listed, x, size);
-    return keep && images ? note_images(s, p, edge, why) : 0;
+    return keep && images ? note_images(s, p, edge, failure) : 0;
 }
 
-int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct why *why)
+int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct failure *failure)
 {
     if (!p->mesh.elements || s->surfaces == p->walls) return 0;
     surfaces_free(s);
     s->surface = calloc((size_t)p->walls + 1, sizeof *s->surface);
-    if (!s->surface) return why_set(why, EX_SOFTWARE, "no memory for the surfaces of meshes");
+    if (!s->surface) return failure_set(failure, EX_SOFTWARE, "no memory for the surfaces of meshes");
     s->surfaces = p->walls;
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         if (wall->shape == BOUNDARY_MESH &&
             surface_init(&s->surface[w], &p->mesh, wall->first_element, wall->elements, wall->weld,
-                         why))
-            return why->status;
+                         failure))
+            return failure->status;
     }
     return 0;
 }

@@ -31,12 +31,12 @@ struct neighbours {
  * own image, EX_DATAERR.
  */
 int neighbours_find(struct neighbours *s, const struct packing *p, const struct positions *at,
-                    double gap, bool keep, struct why *why);
+                    double gap, bool keep, struct failure *failure);
 /* The pair's shift now, bodies having been wrapped since the list was made */
 void neighbours_shift(const struct neighbours *s, const struct packing *p, const struct pair *pair,
                       int8_t shift[3]);
 /* Makes s->surface, if it is not there. Returns 0 or EX_SOFTWARE. */
-int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct why *why);
+int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct failure *failure);
 void neighbours_free(struct neighbours *s);
 
 #endif

@@ -258,7 +258,7 @@ static bool at_seam(const struct internal_edge_meeting *w, const struct internal
 /* Can it be one with the rim of a wall, or of a body? */
 static bool internal_edge_may_be(const struct situation *o, const struct contact *c)
 {
-    if (swift_ahead(c)) return false;
+    if (tunnelling_ahead(c)) return false;
     if (c->a >= 0) return !internal_edge_moves(o, c->a) || !internal_edge_moves(o, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];
@@ -297,7 +297,7 @@ static bool is_dropped(const struct situation *o, const struct contacts *all, co
     return at_seam(&w, l, c->b) || (c->a >= 0 && at_seam(&w, l, c->a));
 }
 
-int seams_drop(struct contacts *s, const struct situation *o, struct why *why)
+int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure)
 {
     struct internal_edge_lists lists = { 0 };
     bool *drop = NULL, good = true;
@@ -313,5 +313,5 @@ int seams_drop(struct contacts *s, const struct situation *o, struct why *why)
         if (!drop[i]) s->c[n++] = s->c[i];
     if (good && drop) s->n = n;
     free(lists.first), free(lists.of), free(drop);
-    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for the contacts at seams");
+    return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts at seams");
 }

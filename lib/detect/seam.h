@@ -22,6 +22,6 @@
 #include "detect/situation.h"
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
-int seams_drop(struct contacts *s, const struct situation *o, struct why *why);
+int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);
 
 #endif

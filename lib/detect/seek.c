@@ -294,18 +294,18 @@ static bool make_list(struct pairs *s, const struct packing *p, const vec3 *x,
 }
 
 int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const vec3 edge[3],
-               struct why *why)
+               struct failure *failure)
 {
     bool images = cell_repeats(&p->cell);
     struct seek_lattice c = { 0 };
     if (images) c = seek_lattice_of(p, x, edge);
     if (images && !is_wrapped(&c))
-        return why_set(
-            why, EX_DATAERR,
+        return failure_set(
+            failure, EX_DATAERR,
             "bodies are more than three cells apart: some move through the cell in a step");
     if (make_list(s, p, x, images ? &c : NULL)) return 0;
-    return s->n < crowd(s) ? why_set(why, EX_SOFTWARE, "no memory for the neighbours")
-                           : why_set(why, EX_DATAERR,
+    return s->n < crowd(s) ? failure_set(failure, EX_SOFTWARE, "no memory for the neighbours")
+                           : failure_set(failure, EX_DATAERR,
                                      "more than %lld pairs of neighbours: bodies in one place, or "
                                      "a wide gap",
                                      (long long)crowd(s));

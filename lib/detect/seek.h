@@ -30,6 +30,6 @@ struct pairs {
  * at edge[3] (m). Returns 0, EX_SOFTWARE, or EX_DATAERR where bodies crowd, or are more than three cells apart.
  */
 int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const vec3 edge[3],
-               struct why *why);
+               struct failure *failure);
 
 #endif

@@ -11,7 +11,7 @@ enum { STEPS_MOST = 4096 }; /* places of a way: what is faster goes without, and
 static const double CLOSING = 1e-3; /* of the thickness: less closes no gap in the step */
 static const double ALIKE = 1e-6;   /* 1 - cosine: of normals that are one */
 
-double swift_thickness(const struct packing *p, int64_t i)
+double tunnelling_thickness(const struct packing *p, int64_t i)
 {
     const struct shape *s = packing_shape(p, i);
     double least = INFINITY;
@@ -26,9 +26,9 @@ double swift_thickness(const struct packing *p, int64_t i)
     return p->radius[i] * (isfinite(least) ? least : s->round);
 }
 
-bool swift_is(const struct packing *p, int64_t i, double most)
+bool tunnelling_is(const struct packing *p, int64_t i, double most)
 {
-    double limit = swift_thickness(p, i) / p->dt - most;
+    double limit = tunnelling_thickness(p, i) / p->dt - most;
     return p->mass[i] > 0 && !(limit > 0 && v3_dot(p->v[i], p->v[i]) <= limit * limit);
 }
 
@@ -38,7 +38,7 @@ static double tunnelling_most_of(const struct packing *p, double speed)
     return speed + packing_most_fall(p);
 }
 
-double swift_beside(const struct packing *p, int32_t w)
+double tunnelling_beside(const struct packing *p, int32_t w)
 {
     return tunnelling_most_of(p, wall_top_speed(p, &p->wall[w]));
 }
@@ -59,7 +59,7 @@ static struct tunnelling_way tunnelling_way_of(const struct packing *p, int64_t 
     vec3 d = v3_scale(p->dt, v3_sub(v3_add(p->v[i], packing_fall(p, i)), v));
     double length = v3_norm(d);
     if (!(length > 0)) return y;
-    y.thick = swift_thickness(p, i);
+    y.thick = tunnelling_thickness(p, i);
     double n = ceil(length / y.thick);
     if (!(n > 1 && n <= STEPS_MOST)) return y;
     y.n = (int64_t)n - 1; // the last is where the next step looks
@@ -191,7 +191,7 @@ static bool tunnelling_look(struct tunnelling_beside *s, int64_t lo, int64_t hi)
     return tunnelling_look(s, lo, lo + (hi - lo) / 2) || tunnelling_look(s, lo + (hi - lo) / 2, hi);
 }
 
-bool swift_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
+bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
                       int64_t i)
 {
     const struct packing *p = o->p;
@@ -225,12 +225,12 @@ static int64_t first_fixed_hull(const struct packing *p, double *most)
     return first;
 }
 
-double swift_reach(const struct packing *p)
+double tunnelling_reach(const struct packing *p)
 {
     double reach = 0, most;
     first_fixed_hull(p, &most);
     for (int64_t i = 0; p->shape && i < p->n; i++)
-        if (swift_is(p, i, most)) reach = dmax(reach, p->dt * (v3_norm(p->v[i]) + most));
+        if (tunnelling_is(p, i, most)) reach = dmax(reach, p->dt * (v3_norm(p->v[i]) + most));
     return reach;
 }
 
@@ -284,13 +284,13 @@ static int tunnelling_by_key(const void *a, const void *b)
     return contact_compare(a, b);
 }
 
-bool swift_meet_hulls(struct contacts *out, const struct situation *o)
+bool tunnelling_meet_hulls(struct contacts *out, const struct situation *o)
 {
     const struct packing *p = o->p;
     double most;
     int64_t first = first_fixed_hull(p, &most), sorted = out->n;
     for (int64_t i = 0; first < p->n && i < p->n; i++) {
-        if (!swift_is(p, i, most)) continue;
+        if (!tunnelling_is(p, i, most)) continue;
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f) || !packing_may_meet(p, (int32_t)f, (int32_t)i)) continue;
             const struct tunnelling_way y = tunnelling_way_of(p, i, p->v[f]);
@@ -345,7 +345,7 @@ static bool through_wall(const struct packing *p, const struct surface *surface,
                                     a, b);
 }
 
-bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b)
+bool tunnelling_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b)
 {
     double in = 0, out = 1;
     a = quat_turn_back(q, a), b = quat_turn_back(q, b);
@@ -359,13 +359,13 @@ bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a
     return in > 0 && in < out && out < 1;
 }
 
-void swift_note(struct passed *s, int32_t id, int32_t through)
+void tunnelling_note(struct passed *s, int32_t id, int32_t through)
 {
     if (!s->n++ || id < s->id || (id == s->id && through > s->through))
         s->id = id, s->through = through;
 }
 
-bool swift_watches(const struct packing *p)
+bool tunnelling_watches(const struct packing *p)
 {
     double most;
     for (int32_t w = 0; w < p->walls; w++)
@@ -373,17 +373,17 @@ bool swift_watches(const struct packing *p)
     return first_fixed_hull(p, &most) < p->n;
 }
 
-void swift_passed(struct passed *s, const struct packing *p, const bool *of,
+void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,
                   const struct surface *surface, struct window window)
 {
     double most, speed = 0;
     int64_t first = first_fixed_hull(p, &most);
     *s = (struct passed){ 0 };
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape != BOUNDARY_PLANE) speed = dmax(speed, swift_beside(p, w));
-    if (!swift_watches(p)) return;
+        if (p->wall[w].shape != BOUNDARY_PLANE) speed = dmax(speed, tunnelling_beside(p, w));
+    if (!tunnelling_watches(p)) return;
     for (int64_t i = 0; i < p->n; i++) {
-        if ((of && !of[i]) || !swift_is(p, i, dmax(speed, most))) continue;
+        if ((of && !of[i]) || !tunnelling_is(p, i, dmax(speed, most))) continue;
         for (int32_t w = 0; w < p->walls; w++) {
             const struct wall *wall = &p->wall[w];
             if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t) ||
@@ -392,7 +392,7 @@ void swift_passed(struct passed *s, const struct packing *p, const bool *of,
             vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));
             vec3 from = v3_axpy(p->x[i], -window.back, v);
             vec3 to = v3_axpy(from, window.length, v);
-            if (through_wall(p, surface, w, from, to)) swift_note(s, p->id[i], -1 - w);
+            if (through_wall(p, surface, w, from, to)) tunnelling_note(s, p->id[i], -1 - w);
         }
         for (int64_t f = first; f < p->n; f++) {
             if (!is_fixed_hull(p, f) || !packing_may_meet(p, (int32_t)f, (int32_t)i)) continue;
@@ -400,8 +400,8 @@ void swift_passed(struct passed *s, const struct packing *p, const bool *of,
             vec3 from = v3_axpy(p->x[i], -window.back, v);
             vec3 to = v3_axpy(from, window.length, v);
             from = v3_sub(from, p->x[f]), to = v3_sub(to, p->x[f]);
-            if (swift_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from, to))
-                swift_note(s, p->id[i], p->id[f]);
+            if (tunnelling_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from, to))
+                tunnelling_note(s, p->id[i], p->id[f]);
         }
     }
 }

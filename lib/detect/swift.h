@@ -20,29 +20,29 @@
 
 /* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
 enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };
-static inline bool swift_ahead(const struct contact *c)
+static inline bool tunnelling_ahead(const struct contact *c)
 {
     return c->a < 0 ? c->feature >= AHEAD_OF_WALL && c->feature < AHEAD_OF_BODY
                     : c->feature >= AHEAD_OF_BODY;
 }
 
 /* m: of a ball inside the body, around its centre; of a clump the smallest ball */
-double swift_thickness(const struct packing *p, int64_t i);
+double tunnelling_thickness(const struct packing *p, int64_t i);
 /* Does body i go farther in a step than it is thick, relative to what has at most the velocity `most` (m/s)?
    The thickness is the radius of a ball inside the body, around its centre; of a clump that of the smallest ball. */
-bool swift_is(const struct packing *p, int64_t i, double most);
+bool tunnelling_is(const struct packing *p, int64_t i, double most);
 /* m/s: that of wall w, with what gravity adds to a body's */
-double swift_beside(const struct packing *p, int32_t w);
+double tunnelling_beside(const struct packing *p, int32_t w);
 /* m: how far any body goes in a step that may meet a fixed hull ahead; 0: none is so fast. Who has some of the bodies
    has to know of fixed hulls as far. */
-double swift_reach(const struct packing *p);
+double tunnelling_reach(const struct packing *p);
 
 /* Adds what body i meets ahead of wall w, which is no plane, besides the contacts out->c[first ...] of these two.
    False when memory is short. */
-bool swift_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
+bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
                       int64_t i);
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
-bool swift_meet_hulls(struct contacts *out, const struct situation *o);
+bool tunnelling_meet_hulls(struct contacts *out, const struct situation *o);
 
 /* Bodies that have gone through a boundary or another body without meeting it */
 struct passed {
@@ -50,9 +50,9 @@ struct passed {
     /* of the one with the lowest number: what it went through, a wall -1-w or a body's number; of several the last */
     int32_t id, through;
 };
-void swift_note(struct passed *s, int32_t id, int32_t through);
+void tunnelling_note(struct passed *s, int32_t id, int32_t through);
 /* Does the way from a to b (m, from the centre) enter a hull of radius r (m) from outside, and leave it? */
-bool swift_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b);
+bool tunnelling_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b);
 
 /* s: a part of a step in which a body goes, or went, from x - back v by length v */
 struct window {
@@ -69,9 +69,9 @@ static inline struct window window_after(const struct packing *p)
 }
 
 /* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
-bool swift_watches(const struct packing *p);
+bool tunnelling_watches(const struct packing *p);
 /* In the window, of bodies for which of[p->n] is true; NULL: all */
-void swift_passed(struct passed *s, const struct packing *p, const bool *of,
+void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,
                   const struct surface *surface, struct window window);
 
 #endif

@@ -110,7 +110,7 @@ static bool bond(struct packing *p, const struct contact *c, int64_t n, int64_t 
     if (wish.wets && !new.wet) new.wet = BOND_WETTED;
     if (bonds) new.beta = l->beta;
     if (contact_shaped(p, c) && bonds)
-        anchor_bond(&new, p, c, contact_laws_area(p, c) / (double)n, 0), new.feature = key;
+        bond_anchor(&new, p, c, contact_laws_area(p, c) / (double)n, 0), new.feature = key;
     new.gap = contact_shaped(p, c) ? c->gap : gap_ahead(p, c);
     if (!new.wet && !bonds) return true;
     if (row) *row = new;
@@ -136,14 +136,14 @@ static bool bond_all(struct two_places *y)
     return good;
 }
 
-int touching_bond(struct packing *p, struct why *why)
+int touching_bond(struct packing *p, struct failure *failure)
 {
     struct two_places y = { p, { 0 }, { 0 } };
     if (!wishes_any(p)) return 0;
     const double reach = contact_laws_touch_most(p);
-    if (!detect_contacts_at(&y.now, p, p->x, p->t, reach, why) &&
-        !detect_near(&y.then, p, reach, NULL, why) && !bond_all(&y))
-        why_set(why, EX_SOFTWARE, "no memory for the bonds");
+    if (!detect_contacts_at(&y.now, p, p->x, p->t, reach, failure) &&
+        !detect_near(&y.then, p, reach, NULL, failure) && !bond_all(&y))
+        failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     contacts_free(&y.now), contacts_free(&y.then);
-    return why->status;
+    return failure->status;
 }

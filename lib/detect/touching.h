@@ -10,6 +10,6 @@
 
 /* Adds to p->bonds those of such pairs, in the step that bonds are made in by their time, and in the first one of all.
    Bodies are where the step begins, in the cell. Returns 0 or EX_SOFTWARE. */
-int touching_bond(struct packing *p, struct why *why);
+int touching_bond(struct packing *p, struct failure *failure);
 
 #endif

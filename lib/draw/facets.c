@@ -40,12 +40,12 @@ static void divide(const struct facets_triangle *t, struct facets_triangle out[4
     out[3] = (struct facets_triangle){ { ab, bc, ca } };
 }
 
-int facets_init(struct facets *b, int detail, struct why *why)
+int facets_init(struct facets *b, int detail, struct failure *failure)
 {
     b->n = 20;
     for (int k = 0; k < detail; k++) b->n *= 4;
     b->t = malloc((size_t)b->n * sizeof *b->t);
-    if (!b->t) return why_set(why, EX_SOFTWARE, "no memory for triangles");
+    if (!b->t) return failure_set(failure, EX_SOFTWARE, "no memory for triangles");
     icosahedron(b->t);
     // from the last on, so that no triangle is overwritten before it is divided
     for (int64_t n = 20; n < b->n; n *= 4)
@@ -91,13 +91,13 @@ static void put_disc(const struct facets_sink *out, vec3 x, double r)
 /* Where a ray from the centre of a shape leaves it */
 static vec3 leaves(const struct shape *s, int dim, vec3 along)
 {
-    const struct sight ray = { { 0, 0, 0 }, along, INFINITY };
+    const struct ray ray = { { 0, 0, 0 }, along, INFINITY };
     vec3 n;
     double t = 0, lo = 0, hi = 1;
-    if (dim == 3) return sight_meets(s, &ray, &t, &n) ? v3_scale(t, along) : v3(0, 0, 0);
+    if (dim == 3) return ray_meets(s, &ray, &t, &n) ? v3_scale(t, along) : v3(0, 0, 0);
     for (int k = 0; k < 50; k++) {
         t = 0.5 * (lo + hi);
-        *(sight_depth(s, v3_scale(t, along)) > 0 ? &lo : &hi) = t;
+        *(ray_depth(s, v3_scale(t, along)) > 0 ? &lo : &hi) = t;
     }
     return v3_scale(t, along);
 }

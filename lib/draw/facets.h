@@ -20,7 +20,7 @@ struct facets {
 };
 
 /* Returns 0 or EX_SOFTWARE, with nothing to free. */
-int facets_init(struct facets *f, int detail, struct why *why);
+int facets_init(struct facets *f, int detail, struct failure *failure);
 void facets_free(struct facets *f);
 
 /* Each polygon of grain i to `put`, its corners (m) counterclockwise seen from outside */

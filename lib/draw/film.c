@@ -54,17 +54,17 @@ static void film_free(struct film *f)
     free(f);
 }
 
-int film_open(struct film **film, const char *path, int rate, struct why *why)
+int film_open(struct film **film, const char *path, int rate, struct failure *failure)
 {
     struct film *f = calloc(1, sizeof *f);
     if (f) f->path = strdup(path), f->rate = rate;
-    if (!f || !f->path) return film_free(f), why_set(why, EX_SOFTWARE, "no memory");
-    if (output_open(&f->output, f->path, why)) return film_free(f), why->status;
+    if (!f || !f->path) return film_free(f), failure_set(failure, EX_SOFTWARE, "no memory");
+    if (output_open(&f->output, f->path, failure)) return film_free(f), failure->status;
     if (!f->output.at) // a film is written back and forth
-        why_set(why, EX_IOERR, "%s: not a regular file", path);
+        failure_set(failure, EX_IOERR, "%s: not a regular file", path);
     else if (!(f->url = malloc(strlen(f->output.at) + 16)))
-        why_set(why, EX_SOFTWARE, "no memory");
-    if (why->status) return output_drop(&f->output), film_free(f), why->status;
+        failure_set(failure, EX_SOFTWARE, "no memory");
+    if (failure->status) return output_drop(&f->output), film_free(f), failure->status;
     sprintf(f->url, "file:%s", f->output.at);
     *film = f;
     return 0;
@@ -72,7 +72,7 @@ int film_open(struct film **film, const char *path, int rate, struct why *why)
 
 /* Starts ffmpeg, which reads pixels from a pipe. Its own words go to stderr, errors only; without -xerror it ends with 0 where
    the disk is full. */
-static int film_start(struct film *f, struct why *why)
+static int film_start(struct film *f, struct failure *failure)
 {
     char size[40], rate[16];
     bool webm = !strcmp(ending(f->path), ".webm");
@@ -95,7 +95,7 @@ static int film_start(struct film *f, struct why *why)
                                      f->url,     NULL };
     int end[2];
     posix_spawn_file_actions_t actions;
-    if (pipe2(end, O_CLOEXEC)) return why_set(why, EX_IOERR, "%s: %s", f->path, strerror(errno));
+    if (pipe2(end, O_CLOEXEC)) return failure_set(failure, EX_IOERR, "%s: %s", f->path, strerror(errno));
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, end[0], STDIN_FILENO);
     pid_t child;
@@ -104,25 +104,25 @@ static int film_start(struct film *f, struct why *why)
     close(end[0]);
     if (e) {
         close(end[1]);
-        return why_set(why, EX_IOERR, "%s: ffmpeg: %s", f->path, strerror(e));
+        return failure_set(failure, EX_IOERR, "%s: ffmpeg: %s", f->path, strerror(e));
     }
     f->output.child = child;
     f->pipe = fdopen(end[1], "w");
-    return f->pipe ? 0 : why_set(why, EX_SOFTWARE, "no memory");
+    return f->pipe ? 0 : failure_set(failure, EX_SOFTWARE, "no memory");
 }
 
-int film_add(struct film *f, const struct picture *p, struct why *why)
+int film_add(struct film *f, const struct picture *p, struct failure *failure)
 {
     if (!f->pipe) {
         f->width = p->width, f->height = p->height;
         signal(SIGPIPE, SIG_IGN); // ffmpeg that has failed is told from its status
-        if (film_start(f, why)) return why->status;
+        if (film_start(f, failure)) return failure->status;
     }
     size_t n = 3 * (size_t)p->width * (size_t)p->height;
     if (p->width != f->width || p->height != f->height)
-        return why_set(why, EX_SOFTWARE, "%s: pictures of two sizes", f->path);
+        return failure_set(failure, EX_SOFTWARE, "%s: pictures of two sizes", f->path);
     if (fwrite(p->rgb, 1, n, f->pipe) != n)
-        return why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
+        return failure_set(failure, EX_IOERR, "%s: ffmpeg failed", f->path);
     return 0;
 }
 
@@ -136,16 +136,16 @@ static bool has_ended_well(struct film *f)
     return !status && !fstat(f->output.fd, &st) && st.st_size > 0;
 }
 
-int film_close(struct film *f, struct why *why)
+int film_close(struct film *f, struct failure *failure)
 {
     bool written = f->pipe != NULL;
     bool good = !written || !fclose(f->pipe);
     if (f->output.child > 0 && !has_ended_well(f)) good = false;
-    if (!good) why_set(why, EX_IOERR, "%s: ffmpeg failed", f->path);
+    if (!good) failure_set(failure, EX_IOERR, "%s: ffmpeg failed", f->path);
     if (written)
-        output_close(&f->output, why);
+        output_close(&f->output, failure);
     else
         output_drop(&f->output);
     film_free(f);
-    return why->status;
+    return failure->status;
 }

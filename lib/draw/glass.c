@@ -27,13 +27,13 @@ static void wall_facets_add_planes(struct glass *g, const struct packing *p, con
     }
 }
 
-int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o, struct why *why)
+int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o, struct failure *failure)
 {
     const vec3 across = v3_sub(o->region.hi, o->region.lo);
     struct outline all;
     *g = (struct glass){ 0 };
     if (p->dim == 2) return 0;
-    if (outline_init(&all, p, v3_norm(across), why)) return why->status;
+    if (outline_init(&all, p, v3_norm(across), failure)) return failure->status;
     int64_t room = all.triangles + (int64_t)WALLS_PANELS * WALLS_CORNERS;
     g->facet = malloc((size_t)room * sizeof *g->facet);
     if (g->facet) {
@@ -44,9 +44,9 @@ int glass_init(struct glass *g, const struct packing *p, const struct glass_opt 
             if (own.r >= 0 || o->glass) wall_facets_add(g, own, x[0], x[1], x[2]);
         }
     } else
-        why_set(why, EX_SOFTWARE, "no memory for the facets of the boundaries");
+        failure_set(failure, EX_SOFTWARE, "no memory for the facets of the boundaries");
     outline_free(&all);
-    return why->status;
+    return failure->status;
 }
 
 void glass_free(struct glass *g)

@@ -36,7 +36,7 @@ struct glass_opt {
    as floors where the viewer sees them are left out, unless they are solid. Returns 0, or
    EX_SOFTWARE with nothing to free. */
 int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o,
-               struct why *why);
+               struct failure *failure);
 void glass_free(struct glass *g);
 
 /* The part of the light that a facet takes; z: the cosine between its normal and the line of sight */

@@ -55,23 +55,23 @@ static int64_t images_fill(struct packing *q, int64_t *of, const struct packing 
     return n;
 }
 
-int images_append(struct packing *p, int64_t **of, struct why *why)
+int images_append(struct packing *p, int64_t **of, struct failure *failure)
 {
     struct packing q;
     *of = NULL;
     if (!cell_repeats(&p->cell)) return 0;
     packing_wrap(p, NULL);
     int64_t n = images_fill(NULL, NULL, p);
-    if (packing_init(&q, p->dim, n, why)) return why->status;
+    if (packing_init(&q, p->dim, n, failure)) return failure->status;
     uint32_t optional = packing_optional(p) & ~(1u << BODY_image);
-    if (packing_alloc_optional(&q, optional, why)) {
+    if (packing_alloc_optional(&q, optional, failure)) {
         packing_free(&q);
-        return why->status;
+        return failure->status;
     }
     *of = malloc(((size_t)n + 1) * sizeof **of);
     if (!*of) {
         packing_free(&q);
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
     }
     images_fill(&q, *of, p);
     // all that a packing has beside its bodies changes hands

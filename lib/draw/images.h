@@ -12,7 +12,7 @@
  * as bodies; *of, to be freed, is whose they are [p->n], as many as p->n then. Does nothing where
  * nothing repeats. Returns 0 or EX_SOFTWARE.
  */
-int images_append(struct packing *p, int64_t **of, struct why *why);
+int images_append(struct packing *p, int64_t **of, struct failure *failure);
 
 /* Adds the cell's outline to the edges; along what does not repeat it is as long as the bodies reach. */
 void images_outline(struct walls *b, const struct packing *p);

@@ -195,7 +195,7 @@ static bool add_mesh(struct outline *o, const struct outline_placed *b)
     return good;
 }
 
-int outline_init(struct outline *o, const struct packing *p, double reach, struct why *why)
+int outline_init(struct outline *o, const struct packing *p, double reach, struct failure *failure)
 {
     bool good = true;
     *o = (struct outline){ 0 };
@@ -207,7 +207,7 @@ int outline_init(struct outline *o, const struct packing *p, double reach, struc
     }
     if (good) return 0;
     outline_free(o);
-    return why_set(why, EX_SOFTWARE, "no memory for the outlines of the boundaries");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the outlines of the boundaries");
 }
 
 void outline_free(struct outline *o)

@@ -32,7 +32,7 @@ struct outline {
 
 /* reach (m): as far as shapes without an end are followed from the point of reference, to both sides.
    Returns 0, or EX_SOFTWARE with nothing to free. */
-int outline_init(struct outline *o, const struct packing *p, double reach, struct why *why);
+int outline_init(struct outline *o, const struct packing *p, double reach, struct failure *failure);
 void outline_free(struct outline *o);
 
 #endif

@@ -334,11 +334,11 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
 /* ---- over pixels ---- */
 
 /* The picture with a strip of background below it */
-static int add_strip(struct picture *pic, const struct view *v, int strip, struct why *why)
+static int add_strip(struct picture *pic, const struct view *v, int strip, struct failure *failure)
 {
     struct picture whole;
     if (!strip) return 0;
-    if (picture_init(&whole, pic->width, pic->height + strip, why)) return why->status;
+    if (picture_init(&whole, pic->width, pic->height + strip, failure)) return failure->status;
     size_t n = 3 * (size_t)pic->width * (size_t)pic->height;
     memcpy(whole.rgb, pic->rgb, n);
     for (size_t i = n; i < n + 3 * (size_t)pic->width * (size_t)strip; i += 3) {
@@ -370,14 +370,14 @@ static void copy_pixels(struct picture *pic, unsigned char *data, int stride, bo
 }
 
 int overlay_draw(const struct overlay *o, const struct view *v, const struct packing *p,
-                 const struct contacts *s, struct picture *pic, struct why *why)
+                 const struct contacts *s, struct picture *pic, struct failure *failure)
 {
     int top = v->camera.height;
-    if (view_draw(v, p, pic, why)) return why->status;
+    if (view_draw(v, p, pic, failure)) return failure->status;
     if (!o->network && !o->contacts && !o->bonds && !o->legend) return 0;
-    if (add_strip(pic, v, overlay_strip(o, pic->width), why)) {
+    if (add_strip(pic, v, overlay_strip(o, pic->width), failure)) {
         picture_free(pic);
-        return why->status;
+        return failure->status;
     }
     cairo_surface_t *surface =
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, pic->width, pic->height);
@@ -385,7 +385,7 @@ int overlay_draw(const struct overlay *o, const struct view *v, const struct pac
     if (!data) {
         cairo_surface_destroy(surface);
         picture_free(pic);
-        return why_set(why, EX_SOFTWARE, "no memory for %d x %d pixels", pic->width, pic->height);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", pic->width, pic->height);
     }
     copy_pixels(pic, data, cairo_image_surface_get_stride(surface), false);
     cairo_surface_mark_dirty(surface);
@@ -399,5 +399,5 @@ int overlay_draw(const struct overlay *o, const struct view *v, const struct pac
     cairo_surface_destroy(surface);
     if (good) return 0;
     picture_free(pic);
-    return why_set(why, EX_SOFTWARE, "no memory for lines and words");
+    return failure_set(failure, EX_SOFTWARE, "no memory for lines and words");
 }

@@ -36,6 +36,6 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
 
 /* pic = the picture of view_draw() with all that o asks for. Returns 0, EX_DATAERR, EX_SOFTWARE. */
 int overlay_draw(const struct overlay *o, const struct view *v, const struct packing *p,
-                 const struct contacts *contacts, struct picture *pic, struct why *why);
+                 const struct contacts *contacts, struct picture *pic, struct failure *failure);
 
 #endif

@@ -24,25 +24,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int page_no_memory(struct why *why)
+static int page_no_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "no memory for the page");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the page");
 }
 
-static int not_written(const struct page *p, struct why *why)
+static int not_written(const struct page *p, struct failure *failure)
 {
-    return ferror(p->out) ? why_set(why, EX_IOERR, "%s: not written", p->name) : 0;
+    return ferror(p->out) ? failure_set(failure, EX_IOERR, "%s: not written", p->name) : 0;
 }
 
 static int write_chunk(struct page *p, char letter, int64_t number, const struct chunk *b,
-                       struct why *why)
+                       struct failure *failure)
 {
-    return chunk_write(p->out, letter, number, b) ? page_no_memory(why) : not_written(p, why);
+    return chunk_write(p->out, letter, number, b) ? page_no_memory(failure) : not_written(p, failure);
 }
 
 /* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
 static int write_changed(struct page *p, char letter, struct page_kept *kept, struct chunk *b,
-                         struct why *why)
+                         struct failure *failure)
 {
     if (kept->n && kept->size == b->n && !memcmp(kept->last, b->at, b->n)) {
         free(b->at);
@@ -50,28 +50,28 @@ static int write_changed(struct page *p, char letter, struct page_kept *kept, st
     }
     free(kept->last);
     kept->last = b->at, kept->size = b->n;
-    return write_chunk(p, letter, kept->n++, b, why);
+    return write_chunk(p, letter, kept->n++, b, failure);
 }
 
 /* ---- what does not change in every frame ---- */
 
-static int write_grains(struct page *p, const struct packing *k, struct why *why)
+static int write_grains(struct page *p, const struct packing *k, struct failure *failure)
 {
     struct chunk b = { malloc(20 * (size_t)k->n + 1), 0 };
-    if (!b.at) return page_no_memory(why);
+    if (!b.at) return page_no_memory(failure);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->radius[i]);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->mass[i]);
     chunk_put(&b, k->id, 4 * (size_t)k->n);
     chunk_put(&b, k->kind, 4 * (size_t)k->n);
     if (k->shape) chunk_put(&b, k->shape, 4 * (size_t)k->n);
-    return write_changed(p, 'g', &p->grains, &b, why);
+    return write_changed(p, 'g', &p->grains, &b, failure);
 }
 
-static int write_shapes(struct page *p, const struct packing *k, struct why *why)
+static int write_shapes(struct page *p, const struct packing *k, struct failure *failure)
 {
     struct chunk b;
-    if (page_shapes(&b, k->dim, &k->shapes, why)) return free(b.at), why->status;
-    return write_changed(p, 's', &p->shapes, &b, why);
+    if (page_shapes(&b, k->dim, &k->shapes, failure)) return free(b.at), failure->status;
+    return write_changed(p, 's', &p->shapes, &b, failure);
 }
 
 static void put_point(struct chunk *b, vec3 x)
@@ -103,12 +103,12 @@ static void put_walls(struct chunk *b, const struct walls *w, const struct outli
 }
 
 static int write_walls(struct page *p, const struct packing *k, const struct extent *r,
-                       struct why *why)
+                       struct failure *failure)
 {
     struct walls *w = malloc(sizeof *w);
     struct outline o;
-    if (!w) return page_no_memory(why);
-    int e = outline_init(&o, k, v3_norm(v3_sub(r->hi, r->lo)), why);
+    if (!w) return page_no_memory(failure);
+    int e = outline_init(&o, k, v3_norm(v3_sub(r->hi, r->lo)), failure);
     if (!e) {
         struct chunk b = {
             malloc(8 + 36 * ((size_t)WALLS_PANELS * WALLS_CORNERS + (size_t)o.triangles) +
@@ -118,7 +118,7 @@ static int write_walls(struct page *p, const struct packing *k, const struct ext
         walls_build(w, k, r);
         images_outline(w, k);
         if (b.at) put_walls(&b, w, &o);
-        e = b.at ? write_changed(p, 'b', &p->walls, &b, why) : page_no_memory(why);
+        e = b.at ? write_changed(p, 'b', &p->walls, &b, failure) : page_no_memory(failure);
         outline_free(&o);
     }
     free(w);
@@ -197,13 +197,13 @@ static void page_put_contacts(struct chunk *b, const struct page_moment *m, cons
 
 /* The ranges of the whole trajectory that colours are scaled by */
 static int widen(struct page *p, const struct page_moment *m, const struct packing *k,
-                 const struct contacts *s, struct why *why)
+                 const struct contacts *s, struct failure *failure)
 {
     double *push = calloc((size_t)k->n + 1, sizeof *push);
     int *count = calloc((size_t)k->n + 1, sizeof *count);
     if (!push || !count) {
         free(push), free(count);
-        return page_no_memory(why);
+        return page_no_memory(failure);
     }
     p->fastest = fmax(p->fastest, m->vmax), p->spin = fmax(p->spin, m->wmax);
     p->force = fmax(p->force, m->fmax);
@@ -223,13 +223,13 @@ static int widen(struct page *p, const struct page_moment *m, const struct packi
 }
 
 static int write_frame(struct page *p, const struct page_moment *m, const struct packing *k,
-                       const struct contacts *s, struct why *why)
+                       const struct contacts *s, struct failure *failure)
 {
     struct chunk b = { malloc(20 * (size_t)k->n + 16 * (size_t)m->contacts + 1), 0 };
-    if (!b.at) return page_no_memory(why);
+    if (!b.at) return page_no_memory(failure);
     put_motion(&b, m, k);
     if (m->contacts) page_put_contacts(&b, m, k, s);
-    int e = write_chunk(p, 'f', p->frames, &b, why);
+    int e = write_chunk(p, 'f', p->frames, &b, failure);
     free(b.at);
     return e;
 }
@@ -252,28 +252,28 @@ static struct page_moment *page_add_moment(struct page *p)
 }
 
 /* The first frame's kinds and dimension are the page's. */
-static int adopt(struct page *p, const struct packing *k, struct why *why)
+static int adopt(struct page *p, const struct packing *k, struct failure *failure)
 {
     p->dim = k->dim, p->up = walls_up(k);
     p->radius[0] = INFINITY;
     p->kind_name = calloc((size_t)k->kinds + 1, sizeof *p->kind_name);
     for (; p->kind_name && p->kinds < k->kinds; p->kinds++)
         if (!(p->kind_name[p->kinds] = strdup(k->kind_name[p->kinds]))) break;
-    return p->kind_name && p->kinds == k->kinds ? 0 : page_no_memory(why);
+    return p->kind_name && p->kinds == k->kinds ? 0 : page_no_memory(failure);
 }
 
-int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct why *why)
+int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct failure *failure)
 {
     struct extent r = { 0 };
     const struct contacts none = { 0 };
     if (!s || !s->found) s = &none;
     if (k->n > INT32_MAX || s->n > INT32_MAX)
-        return why_set(why, EX_DATAERR, "too many grains or contacts for a page");
+        return failure_set(failure, EX_DATAERR, "too many grains or contacts for a page");
     if (p->frames && k->dim != p->dim)
-        return why_set(why, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim, p->dim);
-    if (!p->frames && adopt(p, k, why)) return why->status;
+        return failure_set(failure, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim, p->dim);
+    if (!p->frames && adopt(p, k, failure)) return failure->status;
     struct page_moment *m = page_add_moment(p);
-    if (!m) return page_no_memory(why);
+    if (!m) return page_no_memory(failure);
     *m = (struct page_moment){
         .step = k->step, .t = k->t, .n = k->n, .contacts = s->n, .walls = -1, .shapes = -1
     };
@@ -287,29 +287,29 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     m->origin = k->cell.origin;
     bool any = region_of(&r, k), walls = k->walls || cell_repeats(&k->cell);
     if (any) p->seen = p->frames ? region_join(p->seen, r) : r;
-    if (any && walls && write_walls(p, k, &r, why)) return why->status;
-    if (k->shape && write_shapes(p, k, why)) return why->status;
+    if (any && walls && write_walls(p, k, &r, failure)) return failure->status;
+    if (k->shape && write_shapes(p, k, failure)) return failure->status;
     if (k->shape) m->shapes = p->shapes.n - 1;
-    if (write_grains(p, k, why) || widen(p, m, k, s, why) || write_frame(p, m, k, s, why))
-        return why->status;
+    if (write_grains(p, k, failure) || widen(p, m, k, s, failure) || write_frame(p, m, k, s, failure))
+        return failure->status;
     m->grains = p->grains.n - 1;
     if (any && walls) m->walls = p->walls.n - 1;
     p->frames++;
     return 0;
 }
 
-int page_value(struct page *p, const char *name, const char *unit, double value, struct why *why)
+int page_value(struct page *p, const char *name, const char *unit, double value, struct failure *failure)
 {
     int c = 0;
     while (c < p->curves && strcmp(p->curve[c].name, name) != 0) c++;
     if (c == p->curves) {
         struct page_curve *more = realloc(p->curve, (size_t)(c + 1) * sizeof *more), new;
-        if (!more) return page_no_memory(why);
+        if (!more) return page_no_memory(failure);
         p->curve = more;
         new = (struct page_curve){ strdup(name), strdup(unit),
                                    malloc((size_t)(p->room + 1) * sizeof(double)) };
         p->curve[p->curves++] = new;
-        if (!new.name || !new.unit || !new.value) return page_no_memory(why);
+        if (!new.name || !new.unit || !new.value) return page_no_memory(failure);
         for (int64_t k = 0; k < p->frames; k++) new.value[k] = NAN;
     }
     p->curve[c].value[p->frames - 1] = value;
@@ -329,7 +329,7 @@ static void write_text(FILE *out, const char *text) // as HTML
             fputc(*text, out);
 }
 
-int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct why *why)
+int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct failure *failure)
 {
     *p = (struct page){ .out = out, .name = name };
     fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
@@ -338,15 +338,15 @@ int page_begin(struct page *p, FILE *out, const char *name, const char *title, s
     write_text(out, title);
     fprintf(out, "</title>\n<style>\n%s</style>\n</head>\n<body>\n%s", page_part(PAGE_CSS),
             page_part(PAGE_HTML));
-    return not_written(p, why);
+    return not_written(p, failure);
 }
 
-int page_end(struct page *p, struct why *why)
+int page_end(struct page *p, struct failure *failure)
 {
     json_t *meta = page_meta(p);
     char *text = json_dumps(meta, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(meta);
-    if (!text) return page_no_memory(why);
+    if (!text) return page_no_memory(failure);
     fputs("<script type=\"application/json\" id=\"meta\">", p->out);
     for (const char *s = text; *s; s++) // "</script" in a name must not end it
         if (*s == '<')
@@ -359,7 +359,7 @@ int page_end(struct page *p, struct why *why)
         "</script>\n<!-- three.js\n%s-->\n<script type=\"text/plain\" id=\"three\">%s</script>\n"
         "<script type=\"module\">\n%s</script>\n</body>\n</html>\n",
         page_part(PAGE_LICENCE), page_part(PAGE_THREE), page_part(PAGE_JS));
-    return not_written(p, why);
+    return not_written(p, failure);
 }
 
 void page_free(struct page *p)

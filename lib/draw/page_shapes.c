@@ -31,7 +31,7 @@ static void page_data_put_fan(void *to, int corners, const vec3 *x)
     }
 }
 
-int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct why *why)
+int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct failure *failure)
 {
     struct facets f;
     double radius = 1;
@@ -41,7 +41,7 @@ int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct why *wh
     struct packing one = { .dim = dim, .n = 1, .radius = &radius, .x = &x, .q = &q };
     one.shape = &row, one.shapes = *t; // a grain of each shape, one after another
     *b = (struct chunk){ 0 };
-    if (facets_init(&f, DETAIL, why)) return why->status;
+    if (facets_init(&f, DETAIL, failure)) return failure->status;
     int64_t all = 0;
     for (row = 1; row < t->n; row++) all += facets_triangles(&f, &one, 0);
     b->at = malloc(4 * ((size_t)t->n + 1) + 37 * (size_t)all);
@@ -59,9 +59,9 @@ int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct why *wh
         }
         chunk_put(b, s.edges, (size_t)s.n);
     } else {
-        why_set(why, EX_SOFTWARE, "no memory for the shapes on a page");
+        failure_set(failure, EX_SOFTWARE, "no memory for the shapes on a page");
     }
     free(s.edges);
     facets_free(&f);
-    return why->status;
+    return failure->status;
 }

@@ -12,6 +12,6 @@
  *
  * b->at is to be freed in any case. Returns 0 or EX_SOFTWARE.
  */
-int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct why *why);
+int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct failure *failure);
 
 #endif

@@ -12,11 +12,11 @@
 #include <string.h>
 #include <unistd.h>
 
-int picture_init(struct picture *p, int width, int height, struct why *why)
+int picture_init(struct picture *p, int width, int height, struct failure *failure)
 {
     *p = (struct picture){ .width = width, .height = height };
     p->rgb = malloc((size_t)width * (size_t)height * 3);
-    return p->rgb ? 0 : why_set(why, EX_SOFTWARE, "no memory for %d x %d pixels", width, height);
+    return p->rgb ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", width, height);
 }
 
 void picture_free(struct picture *p)
@@ -57,13 +57,13 @@ static void fail_silently(png_structp png, png_const_charp text)
 }
 
 /* Without a date or a name, so that the same picture gives the same bytes. */
-static int encode(const struct picture *p, struct bytes_out *b, struct why *why)
+static int encode(const struct picture *p, struct bytes_out *b, struct failure *failure)
 {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, NULL, fail_silently, NULL);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     if (!info || setjmp(png_jmpbuf(png))) {
         png_destroy_write_struct(&png, &info);
-        return why_set(why, EX_SOFTWARE, "no memory for the PNG");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the PNG");
     }
     png_set_write_fn(png, b, picture_append, flush_nothing);
     png_set_IHDR(png, info, (png_uint_32)p->width, (png_uint_32)p->height, 8, PNG_COLOR_TYPE_RGB,
@@ -91,30 +91,30 @@ static bool picture_write_all(int fd, const struct bytes_out *b)
 }
 
 /* Writes to an open file; when that fails, a regular file is cut to the length that it had. */
-static int write_open(int fd, const struct bytes_out *b, const char *name, struct why *why)
+static int write_open(int fd, const struct bytes_out *b, const char *name, struct failure *failure)
 {
     off_t start = lseek(fd, 0, fcntl(fd, F_GETFL) & O_APPEND ? SEEK_END : SEEK_CUR);
     if (!picture_write_all(fd, b)) {
-        why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
+        failure_set(failure, EX_IOERR, "%s: %s", name, strerror(errno));
         if (start >= 0 && ftruncate(fd, start)) errno = 0; // there is nothing more that can be done
     }
-    if (close(fd)) why_set(why, EX_IOERR, "%s: %s", name, strerror(errno));
-    return why->status;
+    if (close(fd)) failure_set(failure, EX_IOERR, "%s: %s", name, strerror(errno));
+    return failure->status;
 }
 
-int bytes_write(const struct bytes_out *b, const char *path, struct why *why)
+int bytes_write(const struct bytes_out *b, const char *path, struct failure *failure)
 {
     struct output o;
-    if (!path) return write_open(STDOUT_FILENO, b, "standard output", why);
-    if (output_open(&o, path, why)) return why->status;
-    if (!picture_write_all(o.fd, b)) why_set(why, EX_IOERR, "%s: %s", path, strerror(errno));
-    return output_close(&o, why);
+    if (!path) return write_open(STDOUT_FILENO, b, "standard output", failure);
+    if (output_open(&o, path, failure)) return failure->status;
+    if (!picture_write_all(o.fd, b)) failure_set(failure, EX_IOERR, "%s: %s", path, strerror(errno));
+    return output_close(&o, failure);
 }
 
-int picture_write(const struct picture *p, const char *path, struct why *why)
+int picture_write(const struct picture *p, const char *path, struct failure *failure)
 {
     struct bytes_out b = { 0 };
-    if (!encode(p, &b, why)) bytes_write(&b, path, why);
+    if (!encode(p, &b, failure)) bytes_write(&b, path, failure);
     free(b.at);
-    return why->status;
+    return failure->status;
 }

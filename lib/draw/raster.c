@@ -37,17 +37,17 @@ static void raster_draw_shape(struct band *b, const struct raster *s, int64_t i)
         for (int x = t.x0; x < t.x1; x++) {
             size_t k = band_at(b, x, y);
             const double *side = s->cutting.side;
-            struct sight line = {
+            struct ray line = {
                 v3_axpy(v3_scale(x + 0.5 - o->x.x, right), y + 0.5 - o->x.y, down), toward, INFINITY
             };
             double beside = side[0] * (x + 0.5) + side[1] * (y + 0.5) + side[3], at, z = o->x.z;
             vec3 n = v3(0, 0, 1);
             if (s->cutting.cuts && side[2] > 0) line.before = unit * (-beside / side[2] - o->x.z);
             if (s->flat) {
-                n.x = o->r * sight_depth(o->shape, line.from);
+                n.x = o->r * ray_depth(o->shape, line.from);
                 if (n.x < 0) continue;
             } else {
-                if (!sight_meets(o->shape, &line, &at, &n)) continue;
+                if (!ray_meets(o->shape, &line, &at, &n)) continue;
                 z += o->r * at;
                 if (s->cutting.cuts && !(side[2] > 0) && beside + side[2] * z > 0) continue;
                 n = v3_dot(n, n) > 0 ? quat_turn(q, n) : v3(0, 0, 0);
@@ -233,10 +233,10 @@ static void draw_bands(void *arg, int me, int threads)
     band_free(&b);
 }
 
-int raster_draw(const struct raster *s, struct picture *p, struct why *why)
+int raster_draw(const struct raster *s, struct picture *p, struct failure *failure)
 {
     int rows = BAND_SAMPLES / (s->width * s->samples);
     struct bands d = { s, p, rows < 1 ? 1 : rows > p->height ? p->height : rows, 0, false };
     team_do(s->threads, draw_bands, &d);
-    return d.failed ? why_set(why, EX_SOFTWARE, "no memory for the picture") : 0;
+    return d.failed ? failure_set(failure, EX_SOFTWARE, "no memory for the picture") : 0;
 }

@@ -8,6 +8,6 @@
 #include "draw/band.h"
 
 /* Draws all pixels of p, which has been initialised. Returns 0 or EX_SOFTWARE. */
-int raster_draw(const struct raster *s, struct picture *p, struct why *why);
+int raster_draw(const struct raster *s, struct picture *p, struct failure *failure);
 
 #endif

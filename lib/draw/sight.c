@@ -12,7 +12,7 @@ static struct interval all_of_it(void)
 }
 
 /* What is left of it where n . x <= at */
-static void ray_cut(struct interval *k, const struct sight *l, vec3 n, double at)
+static void ray_cut(struct interval *k, const struct ray *l, vec3 n, double at)
 {
     double slope = v3_dot(n, l->along), rest = at - v3_dot(n, l->from);
     if (slope > 1e-12) {
@@ -24,7 +24,7 @@ static void ray_cut(struct interval *k, const struct sight *l, vec3 n, double at
     }
 }
 
-static struct interval ray_in_ball(const struct sight *l, vec3 c, double r)
+static struct interval ray_in_ball(const struct ray *l, vec3 c, double r)
 {
     vec3 d = v3_sub(c, l->from);
     double middle = v3_dot(d, l->along), h2 = r * r - v3_dot(d, d) + middle * middle;
@@ -35,7 +35,7 @@ static struct interval ray_in_ball(const struct sight *l, vec3 c, double r)
 }
 
 /* In the cylinder around a segment, without round ends */
-static struct interval ray_in_tube(const struct sight *l, vec3 a, vec3 b, double r)
+static struct interval ray_in_tube(const struct ray *l, vec3 a, vec3 b, double r)
 {
     vec3 d = v3_sub(b, a), u = v3_scale(1 / v3_norm(d), d), o = v3_sub(l->from, a);
     vec3 p = v3_axpy(l->along, -v3_dot(l->along, u), u), q = v3_axpy(o, -v3_dot(o, u), u);
@@ -47,7 +47,7 @@ static struct interval ray_in_tube(const struct sight *l, vec3 a, vec3 b, double
     return k;
 }
 
-static struct interval in_core(const struct shape *s, const struct sight *l)
+static struct interval in_core(const struct shape *s, const struct ray *l)
 {
     struct interval k = all_of_it();
     for (int32_t f = 0; f < s->faces; f++)
@@ -55,7 +55,7 @@ static struct interval in_core(const struct shape *s, const struct sight *l)
     return k;
 }
 
-static struct interval ray_over_face(const struct shape *s, const struct sight *l, int32_t f)
+static struct interval ray_over_face(const struct shape *s, const struct ray *l, int32_t f)
 {
     struct interval k = all_of_it();
     vec3 n = s->normal[f];
@@ -71,14 +71,14 @@ static struct interval ray_over_face(const struct shape *s, const struct sight *
 }
 
 /* The one that is nearest to the viewer, once what is cut away is */
-static void ray_take(struct interval *best, struct interval k, const struct sight *l)
+static void ray_take(struct interval *best, struct interval k, const struct ray *l)
 {
     if (!(k.lo < k.hi) || k.lo >= l->before) return;
     if (k.hi > l->before) k.hi = l->before, k.n = v3(0, 0, 0);
     if (k.hi > best->hi) *best = k;
 }
 
-bool sight_meets(const struct shape *s, const struct sight *l, double *t, vec3 *n)
+bool ray_meets(const struct shape *s, const struct ray *l, double *t, vec3 *n)
 {
     struct interval best = { INFINITY, -INFINITY, { 0, 0, 0 } };
     bool clump = s->form == SHAPE_CLUMP, hull = s->form == SHAPE_HULL;
@@ -102,7 +102,7 @@ static double to_segment(vec3 x, vec3 a, vec3 b)
     return v3_norm(v3_axpy(o, -t, d));
 }
 
-double sight_depth(const struct shape *s, vec3 x)
+double ray_depth(const struct shape *s, vec3 x)
 {
     double depth = -INFINITY, inside = INFINITY, near = INFINITY;
     for (int32_t i = 0; i < s->vertices && s->form == SHAPE_CLUMP; i++)

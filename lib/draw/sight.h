@@ -9,16 +9,16 @@
 
 #include "geometry/shape.h"
 
-struct sight {
+struct ray {
     vec3 from, along; /* the line: from + t along, a unit vector; the viewer is at t = infinity */
     double before;    /* what is beyond this t is cut away; infinite: nothing */
 };
 
 /* The largest t at which the line is in the shape, and the outward unit normal there, 0 where it is cut.
    False: it passes by. */
-bool sight_meets(const struct shape *s, const struct sight *line, double *t, vec3 *n);
+bool ray_meets(const struct shape *s, const struct ray *line, double *t, vec3 *n);
 
 /* In the plane: how deep a point lies inside, < 0: outside */
-double sight_depth(const struct shape *s, vec3 x);
+double ray_depth(const struct shape *s, vec3 x);
 
 #endif

@@ -38,7 +38,7 @@ static double value_of(const struct solid_walls *s, const struct packing *p, int
 }
 
 /* The name by which a face was chosen; else its own; NULL: none */
-static const char *wall_facets_name_of(const struct chosen *c, const struct packing *p, int32_t wall,
+static const char *wall_facets_name_of(const struct selection *c, const struct packing *p, int32_t wall,
                            int32_t face)
 {
     for (int32_t k = 0; c->any && k < p->names.rows; k++) {
@@ -50,7 +50,7 @@ static const char *wall_facets_name_of(const struct chosen *c, const struct pack
 }
 
 /* The row of the legend for a face, by its name, or the number of its wall */
-static int legend_row(struct solid_walls *s, const struct chosen *c, const struct packing *p,
+static int legend_row(struct solid_walls *s, const struct selection *c, const struct packing *p,
                       int32_t wall, int32_t face)
 {
     char name[NAME_BYTES + 12];
@@ -67,13 +67,13 @@ static int legend_row(struct solid_walls *s, const struct chosen *c, const struc
     return s->named++;
 }
 
-static void set_range(struct solid_walls *s, const struct packing *p, const struct chosen *c)
+static void set_range(struct solid_walls *s, const struct packing *p, const struct selection *c)
 {
     if (!isnan(s->lo)) return;
     s->lo = 0, s->hi = -INFINITY;
     for (int32_t w = 0; w < p->walls; w++)
         for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
-            double x = chosen_face(c, p, w, k) ? value_of(s, p, w, k) : NAN;
+            double x = selection_face(c, p, w, k) ? value_of(s, p, w, k) : NAN;
             if (isfinite(x)) s->lo = fmin(s->lo, x), s->hi = fmax(s->hi, x);
         }
 }
@@ -85,29 +85,29 @@ static struct rgb palette_colour(const struct solid_walls *s, const struct paint
     return paint->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 
-int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o, struct why *why)
+int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o, struct failure *failure)
 {
     const enum solid_by by = o->by;
-    struct chosen c;
+    struct selection c;
     *s = (struct solid_walls){ .by = by, .lo = o->lo, .hi = o->hi };
-    if (chosen_init(&c, p, "--solid", o->list, why)) return why->status;
+    if (selection_init(&c, p, "--solid", o->list, failure)) return failure->status;
     if (by != SURFACE_NAME && !p->sums.n)
-        why_set(why, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
-    if (!why->status && !face_of_init(&s->faces, p, false, why) &&
+        failure_set(failure, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
+    if (!failure->status && !face_of_init(&s->faces, p, false, failure) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
-        why_set(why, EX_SOFTWARE, "no memory for the colours of boundaries");
-    if (!why->status && by != SURFACE_NAME) set_range(s, p, &c);
-    for (int32_t w = 0; !why->status && w < p->walls; w++)
+        failure_set(failure, EX_SOFTWARE, "no memory for the colours of boundaries");
+    if (!failure->status && by != SURFACE_NAME) set_range(s, p, &c);
+    for (int32_t w = 0; !failure->status && w < p->walls; w++)
         for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
             struct rgb *to = &s->colour[s->faces.first[w] + k];
-            if (!chosen_face(&c, p, w, k))
+            if (!selection_face(&c, p, w, k))
                 to->r = -1;
             else if (by == SURFACE_NAME)
                 *to = s->shown[legend_row(s, &c, p, w, k)];
             else
                 *to = palette_colour(s, o->paint, value_of(s, p, w, k));
         }
-    chosen_free(&c);
-    if (why->status) solid_free(s);
-    return why->status;
+    selection_free(&c);
+    if (failure->status) solid_free(s);
+    return failure->status;
 }

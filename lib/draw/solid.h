@@ -37,7 +37,7 @@ struct solid_opt {
 
 /* Returns 0, EX_DATAERR (an unknown name, no sums) or EX_SOFTWARE with nothing to free. */
 int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o,
-               struct why *why);
+               struct failure *failure);
 void solid_free(struct solid_walls *s);
 
 #endif

@@ -137,11 +137,11 @@ static bool draw_all(cairo_t *cr, const struct overlay *o, const struct view *v,
 }
 
 int svg_draw(const struct overlay *o, const struct view *v, const struct packing *p,
-             const struct contacts *contacts, const char *path, struct why *why)
+             const struct contacts *contacts, const char *path, struct failure *failure)
 {
     const struct camera *c = &v->camera;
     struct bytes_out b = { 0 };
-    if (p->dim != 2) return why_set(why, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
+    if (p->dim != 2) return failure_set(failure, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
         svg_keep, &b, c->width, c->height + overlay_strip(o, c->width));
     cairo_t *cr = cairo_create(surface);
@@ -151,9 +151,9 @@ int svg_draw(const struct overlay *o, const struct view *v, const struct packing
     good &= cairo_surface_status(surface) == CAIRO_STATUS_SUCCESS;
     cairo_surface_destroy(surface);
     if (!good)
-        why_set(why, EX_SOFTWARE, "no memory for the SVG");
+        failure_set(failure, EX_SOFTWARE, "no memory for the SVG");
     else
-        bytes_write(&b, path, why);
+        bytes_write(&b, path, failure);
     free(b.at);
-    return why->status;
+    return failure->status;
 }

@@ -10,6 +10,6 @@
  * another name and renamed when complete. Returns 0, EX_DATAERR (balls), EX_IOERR or EX_SOFTWARE.
  */
 int svg_draw(const struct overlay *o, const struct view *v, const struct packing *p,
-             const struct contacts *contacts, const char *path, struct why *why);
+             const struct contacts *contacts, const char *path, struct failure *failure);
 
 #endif

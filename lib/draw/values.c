@@ -41,7 +41,7 @@ struct paint_columns {
 
 /* The first line: names. */
 static int paint_read_names(struct values *v, char *line, const char *path, const char *column,
-                      struct paint_columns *c, struct why *why)
+                      struct paint_columns *c, struct failure *failure)
 {
     int k = 0;
     *c = (struct paint_columns){ -1, -1, -1 };
@@ -53,19 +53,19 @@ static int paint_read_names(struct values *v, char *line, const char *path, cons
         if (column && strcmp(name, column) != 0) continue;
         c->x = k;
         free(v->name);
-        if (!(v->name = strdup(name))) return why_set(why, EX_SOFTWARE, "no memory");
+        if (!(v->name = strdup(name))) return failure_set(failure, EX_SOFTWARE, "no memory");
     }
-    if (c->id < 0) return why_set(why, EX_DATAERR, "%s:1: no column is named id", path);
-    if (c->x < 0) return why_set(why, EX_DATAERR, "%s:1: no column is named %s", path, column);
+    if (c->id < 0) return failure_set(failure, EX_DATAERR, "%s:1: no column is named id", path);
+    if (c->x < 0) return failure_set(failure, EX_DATAERR, "%s:1: no column is named %s", path, column);
     return 0;
 }
 
 static int read_row(struct values *v, char *line, const char *path, int64_t number,
-                    const struct paint_columns *c, struct why *why)
+                    const struct paint_columns *c, struct failure *failure)
 {
     int k = 0, found = 0;
     struct value *row = paint_add_row(v);
-    if (!row) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
     *row = (struct value){ .step = -1, .x = NAN };
     for (char *word = strtok(line, blank); word; word = strtok(NULL, blank), k++) {
         char *end;
@@ -73,7 +73,7 @@ static int read_row(struct values *v, char *line, const char *path, int64_t numb
         double x = strtod(word, &end);
         bool none = k == c->x && (!strcmp(word, "null") || !strcmp(word, "nan"));
         if ((*end || (k != c->x && !(fabs(x) < 1e15))) && !none)
-            return why_set(why, EX_DATAERR, "%s:%lld: '%s' is no number", path, (long long)number,
+            return failure_set(failure, EX_DATAERR, "%s:%lld: '%s' is no number", path, (long long)number,
                            word);
         found++;
         if (k == c->id) row->id = (int64_t)x;
@@ -81,37 +81,37 @@ static int read_row(struct values *v, char *line, const char *path, int64_t numb
         if (k == c->x) row->x = none ? NAN : x;
     }
     if (found < (c->step < 0 ? 2 : 3) && !(c->id == c->x && found))
-        return why_set(why, EX_DATAERR, "%s:%lld: too few columns", path, (long long)number);
+        return failure_set(failure, EX_DATAERR, "%s:%lld: too few columns", path, (long long)number);
     return 0;
 }
 
-int values_read(struct values *v, const char *path, const char *column, struct why *why)
+int values_read(struct values *v, const char *path, const char *column, struct failure *failure)
 {
     FILE *in = fopen(path, "r");
     struct paint_columns c = { -1, -1, -1 };
     char *line = malloc(LINE);
     struct stat st;
-    if (in && !line) why_set(why, EX_SOFTWARE, "no memory");
+    if (in && !line) failure_set(failure, EX_SOFTWARE, "no memory");
     if (!in) free(line);
-    if (!in) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!in) return failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
     bool file = !fstat(fileno(in), &st) && S_ISREG(st.st_mode);
-    for (int64_t number = 1; !why->status && fgets(line, LINE, in); number++) {
+    for (int64_t number = 1; !failure->status && fgets(line, LINE, in); number++) {
         if (strlen(line) == LINE - 1)
-            why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
+            failure_set(failure, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
                     (long long)number, LINE - 2);
         else if (!file && number > MOST_PIPED)
-            why_set(why, EX_DATAERR, "%s: too many lines for a pipe (endless?): put it into a file",
+            failure_set(failure, EX_DATAERR, "%s: too many lines for a pipe (endless?): put it into a file",
                     path);
         else if (number == 1)
-            paint_read_names(v, line, path, column, &c, why);
+            paint_read_names(v, line, path, column, &c, failure);
         else if (line[strspn(line, blank)] && *line != '#')
-            read_row(v, line, path, number, &c, why);
+            read_row(v, line, path, number, &c, failure);
     }
-    if (!why->status && ferror(in)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
-    if (!why->status && !v->name) why_set(why, EX_DATAERR, "%s: empty", path);
+    if (!failure->status && ferror(in)) failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!failure->status && !v->name) failure_set(failure, EX_DATAERR, "%s: empty", path);
     free(line), fclose(in);
     if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, paint_compare);
-    return why->status;
+    return failure->status;
 }
 
 void values_free(struct values *v)

@@ -23,7 +23,7 @@ struct values {
  * names the numbers wanted; NULL: the last column. Returns 0, EX_DATAERR with file and line, or
  * EX_NOINPUT, EX_SOFTWARE.
  */
-int values_read(struct values *v, const char *path, const char *column, struct why *why);
+int values_read(struct values *v, const char *path, const char *column, struct failure *failure);
 void values_free(struct values *v);
 
 /* out[p->n] = what colours of this meaning show; contacts, values may be NULL: NAN. */

@@ -10,7 +10,7 @@
 
 static bool view_is_wanted(const struct view *v, const struct packing *p, int64_t i)
 {
-    return !v->only || chosen_body(v->only, p, i);
+    return !v->only || selection_body(v->only, p, i);
 }
 
 bool view_joins(const struct view *v, const struct packing *p, int32_t a, int32_t b)
@@ -76,7 +76,7 @@ static bool view_within(const struct extent *r, vec3 x)
 
 /* The bodies that count, as a packing that borrows the walls and parameters of p, and has no other arrays of bodies. */
 static int gather_crowd(struct packing *crowd, const struct view *v, const struct packing *p,
-                        struct why *why)
+                        struct failure *failure)
 {
     struct extent r = { 0 };
     *crowd = *p;
@@ -84,7 +84,7 @@ static int gather_crowd(struct packing *crowd, const struct view *v, const struc
     crowd->radius = malloc((size_t)(p->n + 1) * sizeof *crowd->radius);
     if (!crowd->x || !crowd->radius) {
         free(crowd->x), free(crowd->radius);
-        why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
+        failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
         return EX_SOFTWARE;
     }
     bool some = !v->strays && find_crowd(&r, p);
@@ -102,22 +102,22 @@ void view_follow(struct view *v, const struct packing *p)
         if (p->id[i] == v->follow) v->moved = v3_sub(p->x[i], v->followed);
 }
 
-static int follow_first(struct view *v, const struct packing *p, struct why *why)
+static int follow_first(struct view *v, const struct packing *p, struct failure *failure)
 {
     for (int64_t i = 0; i < p->n; i++)
         if (p->id[i] == v->follow) {
             v->followed = p->x[i];
             return 0;
         }
-    return why_set(why, EX_DATAERR, "no body has the id %d", v->follow);
+    return failure_set(failure, EX_DATAERR, "no body has the id %d", v->follow);
 }
 
 /* Extends the region and the window to the bodies of this packing. */
-static int extend_window(struct view *v, const struct packing *p, struct why *why)
+static int extend_window(struct view *v, const struct packing *p, struct failure *failure)
 {
     struct extent r;
     if (!(v->strays ? region_of : region_near)(&r, p))
-        return why_set(why, EX_DATAERR, "neither bodies nor walls: nothing to see");
+        return failure_set(failure, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
     for (int64_t i = 0; i < p->n; i++)
         if (is_in_region(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);
@@ -125,29 +125,29 @@ static int extend_window(struct view *v, const struct packing *p, struct why *wh
 }
 
 /* The same, of the bodies that count. */
-static int extend_crowd(struct view *v, const struct packing *p, struct why *why)
+static int extend_crowd(struct view *v, const struct packing *p, struct failure *failure)
 {
     struct packing crowd;
-    if (gather_crowd(&crowd, v, p, why)) return why->status;
-    extend_window(v, &crowd, why);
+    if (gather_crowd(&crowd, v, p, failure)) return failure->status;
+    extend_window(v, &crowd, failure);
     free(crowd.x), free(crowd.radius);
-    return why->status;
+    return failure->status;
 }
 
-int view_extend(struct view *v, const struct packing *p, struct why *why)
+int view_extend(struct view *v, const struct packing *p, struct failure *failure)
 {
     if (v->started && v->dim != p->dim)
-        return why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
+        return failure_set(failure, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
     if (!v->started) {
         v->dim = p->dim, v->window = window_empty;
         vec3 up = v3_norm(v->up) > 0 ? v3_scale(1 / v3_norm(v->up), v->up) : walls_up(p);
         camera_turn(&v->camera, p->dim, up, v->azimuth, v->elevation);
         if (v->boxed && p->dim == 2) v->region.lo.z = v->region.hi.z = 0;
-        if (v->follows && follow_first(v, p, why)) return why->status;
+        if (v->follows && follow_first(v, p, failure)) return failure->status;
     }
     paint_range(&v->paint, p);
     bool whole = v->boxed || (v->started && v->follows); // a window that is given
-    if (!whole && extend_crowd(v, p, why)) return why->status;
+    if (!whole && extend_crowd(v, p, failure)) return failure->status;
     v->started = true;
     return 0;
 }
@@ -354,14 +354,14 @@ static bool place_pane(struct pane *g, const struct view *v, const struct facet 
 static int place_panes(struct raster *s, const struct view *v, const struct packing *p)
 {
     struct glass glass;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const struct glass_opt opt = { { v3_add(v->region.lo, v->moved),
                                      v3_add(v->region.hi, v->moved) },
                                    v->camera.toward,
                                    v->solid,
                                    v->glass };
     if (!v->glass && !v->solid) return 0;
-    if (glass_init(&glass, p, &opt, &why)) return -1;
+    if (glass_init(&glass, p, &opt, &failure)) return -1;
     s->pane = malloc((size_t)(glass.facets + 1) * sizeof *s->pane);
     for (int64_t i = 0; s->pane && i < glass.facets; i++)
         s->panes += place_pane(&s->pane[s->panes], v, &glass.facet[i]);
@@ -369,7 +369,7 @@ static int place_panes(struct raster *s, const struct view *v, const struct pack
     return s->pane ? 0 : -1;
 }
 
-int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why)
+int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct failure *failure)
 {
     const struct camera *c = &v->camera;
     int longer = c->width > c->height ? c->width : c->height;
@@ -391,11 +391,11 @@ int view_draw(const struct view *v, const struct packing *p, struct picture *pic
     if (v->cuts) place_cutting(&s.cutting, v);
     *pic = (struct picture){ 0 };
     if (v->dim != p->dim)
-        why_set(why, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
+        failure_set(failure, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
     else if (place_spots(&s, v, p) || place_walls(&s, v, p) || place_panes(&s, v, p))
-        why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
-    else if (!picture_init(pic, c->width, c->height, why) && raster_draw(&s, pic, why))
+        failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)p->n);
+    else if (!picture_init(pic, c->width, c->height, failure) && raster_draw(&s, pic, failure))
         picture_free(pic);
     free(s.spot), free(s.ground), free(s.edge), free(s.pane);
-    return why->status;
+    return failure->status;
 }

@@ -27,7 +27,7 @@ struct view {
     bool follows;   /* a body stays where it is in the picture: */
     int32_t follow; /* its id */
     bool glass;     /* boundaries are half-transparent, not lines alone [draw/glass.h] */
-    const struct chosen *only; /* bodies that are drawn, and what joins them; NULL: all */
+    const struct selection *only; /* bodies that are drawn, and what joins them; NULL: all */
     const struct solid_walls *solid; /* boundaries that are solid instead; NULL: none */
     float pale;                /* 0 to 1: how much bodies are mixed with the background */
     int width, height;         /* pixels; 0: chosen */
@@ -61,10 +61,10 @@ vec3 view_sees(const struct view *v, vec3 x, double *size);
  * Extends the window and the scale of colours to this packing. Returns 0, or EX_DATAERR when its
  * dim differs from that of those before or when it has neither bodies nor walls.
  */
-int view_extend(struct view *v, const struct packing *p, struct why *why);
+int view_extend(struct view *v, const struct packing *p, struct failure *failure);
 /* Fits the camera to all packings given to view_extend, and to the walls of this one. */
 void view_fit(struct view *v, const struct packing *p);
 /* pic = the picture, which the caller frees. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE. */
-int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct why *why);
+int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct failure *failure);
 
 #endif

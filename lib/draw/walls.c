@@ -134,8 +134,8 @@ static struct extent near_bodies(const struct extent *r, const struct packing *p
 static void add_finite(struct extent *r, const struct packing *p, const struct extent *in)
 {
     struct outline o;
-    struct why why = { 0 };
-    if (!any_finite(p) || outline_init(&o, p, 0, &why)) return;
+    struct failure failure = { 0 };
+    if (!any_finite(p) || outline_init(&o, p, 0, &failure)) return;
     for (int64_t i = 0; i < o.lines; i++) {
         vec3 *end = o.line[i].end;
         if (in && is_drawn(end[0]) && is_drawn(end[1]) && !extent_clip(in, &end[0], &end[1]))
@@ -285,8 +285,8 @@ static struct walls_polygon wall_cut(const struct packing *p, int i, const struc
 static void walls_add_outlines(struct walls *b, const struct packing *p, const struct extent *r)
 {
     struct outline o;
-    struct why why = { 0 };
-    if (outline_init(&o, p, v3_norm(v3_sub(r->hi, r->lo)), &why)) return;
+    struct failure failure = { 0 };
+    if (outline_init(&o, p, v3_norm(v3_sub(r->hi, r->lo)), &failure)) return;
     for (int64_t i = 0; i < o.lines && b->edges < WALLS_EDGES; i++)
         if (is_drawn(o.line[i].end[0]) && is_drawn(o.line[i].end[1]))
             b->edge[b->edges++] = (struct edge){ o.line[i].end[0], o.line[i].end[1] };

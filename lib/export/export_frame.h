@@ -19,7 +19,7 @@ struct export_frame {
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
     void **kept;                     /* what a format keeps from moment to moment of its file */
-    const struct chosen
+    const struct selection
         *only; /* boundaries, bodies and their contacts that are wanted; NULL: all */
     void (*tell)(int64_t done, int64_t of); /* how far it is, for who looks on; NULL: nobody does */
 };
@@ -33,7 +33,7 @@ static inline void moment_tell(const struct export_frame *m, int64_t done, int64
 /* Is body i wanted? */
 static inline bool export_frame_has(const struct export_frame *m, int64_t i)
 {
-    return !m->only || !m->only->bodies || chosen_body(m->only, m->packing, i);
+    return !m->only || !m->only->bodies || selection_body(m->only, m->packing, i);
 }
 
 /*

@@ -22,10 +22,10 @@ struct format {
      * EX_SOFTWARE when memory is short.
      */
     int (*write)(FILE *out, const struct export_frame *m, enum part part, bool first,
-                 struct why *why);
+                 struct failure *failure);
     /* What comes behind the last frame of a file, by what `write` has kept (*m->kept), which it frees; NULL:
        nothing does. */
-    int (*end)(FILE *out, void *kept, struct why *why);
+    int (*end)(FILE *out, void *kept, struct failure *failure);
 };
 
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,

@@ -102,7 +102,7 @@ static uint64_t hash_of(const unsigned char *b, size_t n)
 }
 
 static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t columns, const void *data,
-                     struct why *why)
+                     struct failure *failure)
 {
     const size_t size = (size_t)(rows * columns) * gsd_size_of(chunks[k].type);
     const uint64_t hash = hash_of(data, size);
@@ -115,7 +115,7 @@ static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t colu
     if (g->entries == g->room) {
         int64_t room = g->room ? 2 * g->room : 64;
         struct index_entry *more = realloc(g->entry, (size_t)room * sizeof *more);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for the index of a GSD file");
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the index of a GSD file");
         g->entry = more, g->room = room;
     }
     g->entry[g->entries++] = (struct index_entry){ .frame = (uint64_t)g->frames,
@@ -151,11 +151,11 @@ static struct kind gsd_kind_of(const struct packing *p, int64_t i)
 }
 
 /* The types, sorted; those of balls come first, one for each kind. To be freed. */
-static struct kind *gsd_list_types(const struct packing *p, int64_t *types, struct why *why)
+static struct kind *gsd_list_types(const struct packing *p, int64_t *types, struct failure *failure)
 {
     struct kind *t = malloc(((size_t)p->n + (size_t)p->kinds) * sizeof *t);
     int64_t n = 0, kept = 0;
-    if (!t) return why_set(why, EX_SOFTWARE, "no memory for the types of an export"), NULL;
+    if (!t) return failure_set(failure, EX_SOFTWARE, "no memory for the types of an export"), NULL;
     for (int32_t k = 0; k < p->kinds; k++) t[n++] = (struct kind){ k, 0, 0 };
     for (int64_t i = 0; i < p->n; i++)
         if (packing_shape(p, i)) t[n++] = gsd_kind_of(p, i);
@@ -163,7 +163,7 @@ static struct kind *gsd_list_types(const struct packing *p, int64_t *types, stru
     for (int64_t k = 0; k < n; k++)
         if (!kept || by_kind(&t[kept - 1], &t[k])) t[kept++] = t[k];
     if (kept - p->kinds > TYPES_MOST) {
-        why_set(why, EX_DATAERR,
+        failure_set(failure, EX_DATAERR,
                 "%lld sizes of grains that are no balls: GSD has a type for each, at most %d; "
                 "--to vtp --part surfaces takes any number",
                 (long long)(kept - p->kinds), TYPES_MOST);
@@ -221,47 +221,47 @@ static void gsd_put_name(FILE *out, const struct packing *p, const struct kind *
 }
 
 /* Texts as rows of one width, ended by zeros */
-static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int64_t n, struct why *why)
+static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int64_t n, struct failure *failure)
 {
     size_t width = 1;
     for (int64_t k = 0; k < n; k++)
         if (strlen(text[k]) >= width) width = strlen(text[k]) + 1;
     if ((double)width * (double)n > SHAPES_BYTES_MOST)
-        return why_set(why, EX_DATAERR, "the shapes of all types take more than %d MB",
+        return failure_set(failure, EX_DATAERR, "the shapes of all types take more than %d MB",
                        SHAPES_BYTES_MOST >> 20);
     char *rows = calloc((size_t)n + 1, width);
-    if (!rows) return why_set(why, EX_SOFTWARE, "no memory for the types of an export");
+    if (!rows) return failure_set(failure, EX_SOFTWARE, "no memory for the types of an export");
     for (int64_t k = 0; k < n; k++) strcpy(rows + (size_t)k * width, text[k]);
-    put_chunk(g, c, n, (int64_t)width, rows, why);
+    put_chunk(g, c, n, (int64_t)width, rows, failure);
     free(rows);
-    return why->status;
+    return failure->status;
 }
 
 static int put_types(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
-                     enum gsd_chunk c, struct why *why)
+                     enum gsd_chunk c, struct failure *failure)
 {
     char **text = calloc((size_t)types + 1, sizeof *text);
     struct text written;
     size_t size;
-    if (!text) why_set(why, EX_SOFTWARE, "no memory for the types of an export");
-    for (int64_t k = 0; !why->status && k < types; k++) {
+    if (!text) failure_set(failure, EX_SOFTWARE, "no memory for the types of an export");
+    for (int64_t k = 0; !failure->status && k < types; k++) {
         FILE *to = text_open(&written);
         if (to && c == TYPES) gsd_put_name(to, p, t, types, k);
         if (to && c == TYPE_SHAPES) put_shape(to, p, &t[k]);
         if (!(text[k] = text_close(&written, to, &size)))
-            why_set(why, EX_SOFTWARE, "no memory for the types of an export");
+            failure_set(failure, EX_SOFTWARE, "no memory for the types of an export");
     }
-    if (!why->status) gsd_put_texts(g, c, text, types, why);
+    if (!failure->status) gsd_put_texts(g, c, text, types, failure);
     for (int64_t k = 0; text && k < types; k++) free(text[k]);
     free(text);
-    return why->status;
+    return failure->status;
 }
 
 static int put_type_ids(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
-                        struct why *why)
+                        struct failure *failure)
 {
     uint32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
-    if (!id) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!id) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++) {
         struct kind k = gsd_kind_of(p, i);
         id[i] =
@@ -269,20 +269,20 @@ static int put_type_ids(struct gsd *g, const struct packing *p, const struct kin
                 ? (uint32_t)k.kind
                 : (uint32_t)((struct kind *)bsearch(&k, t, (size_t)types, sizeof k, by_kind) - t);
     }
-    put_chunk(g, TYPE_ID, p->n, 1, id, why);
+    put_chunk(g, TYPE_ID, p->n, 1, id, failure);
     free(id);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- particles ---- */
 
 /* The box of GSD: along x, in the plane of x and y, and above; tilts relative to the heights */
-static int gsd_box_of(float of[6], struct box *b, const struct packing *p, struct why *why)
+static int gsd_box_of(float of[6], struct box *b, const struct packing *p, struct failure *failure)
 {
     export_frame_box(b, p);
     const vec3 *e = b->edge;
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "the cell's first edge is not along x, or the second not in the plane of x "
                        "and y: GSD has no such box; --to lammps does");
     const double box[6] = { e[0].x,          e[1].y,          e[2].z,
@@ -340,7 +340,7 @@ static void numbers_of(const struct packing *p, const struct box *b, int64_t i, 
     if (c == DIAMETER) out[0] = (float)(2 * p->radius[i]);
 }
 
-static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b, struct why *why)
+static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b, struct failure *failure)
 {
     static const struct {
         enum gsd_chunk chunk;
@@ -348,32 +348,32 @@ static int put_numbers(struct gsd *g, const struct packing *p, const struct box 
     } of[] = { { MASS, 1 },        { DIAMETER, 1 }, { MOMENT, 3 }, { POSITION, 3 },
                { ORIENTATION, 4 }, { VELOCITY, 3 }, { ANGMOM, 4 } };
     float *x = malloc(((size_t)p->n + 1) * 4 * sizeof *x), one[4];
-    if (!x) return why_set(why, EX_SOFTWARE, "no memory for an export");
-    for (size_t k = 0; k < sizeof of / sizeof *of && !why->status; k++) {
+    if (!x) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
+    for (size_t k = 0; k < sizeof of / sizeof *of && !failure->status; k++) {
         for (int64_t i = 0; i < p->n; i++) {
             numbers_of(p, b, i, of[k].chunk, one);
             memcpy(x + i * of[k].width, one, (size_t)of[k].width * sizeof *x);
         }
-        put_chunk(g, of[k].chunk, p->n, of[k].width, x, why);
+        put_chunk(g, of[k].chunk, p->n, of[k].width, x, failure);
     }
     free(x);
-    return why->status;
+    return failure->status;
 }
 
-static int put_images(struct gsd *g, const struct packing *p, const struct box *b, struct why *why)
+static int put_images(struct gsd *g, const struct packing *p, const struct box *b, struct failure *failure)
 {
     int32_t(*image)[3] = calloc((size_t)p->n + 1, sizeof *image);
-    if (!image) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!image) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++) {
         if (p->image) memcpy(image[i], p->image[i], sizeof image[i]);
         gsd_within(b, p->x[i], image[i]);
     }
-    put_chunk(g, IMAGE, p->n, 3, image, why);
+    put_chunk(g, IMAGE, p->n, 3, image, failure);
     free(image);
-    return why->status;
+    return failure->status;
 }
 
-static int put_frame(struct gsd *g, const struct packing *p, struct why *why)
+static int put_frame(struct gsd *g, const struct packing *p, struct failure *failure)
 {
     const uint64_t step = p->step < 0 ? 0 : (uint64_t)p->step;
     const uint8_t dim = (uint8_t)p->dim;
@@ -381,27 +381,27 @@ static int put_frame(struct gsd *g, const struct packing *p, struct why *why)
     struct box b;
     float box[6];
     int64_t types = 0;
-    if (gsd_box_of(box, &b, p, why)) return why->status;
-    struct kind *t = gsd_list_types(p, &types, why);
-    if (t && !put_chunk(g, STEP, 1, 1, &step, why) && !put_chunk(g, DIMENSIONS, 1, 1, &dim, why) &&
-        !put_chunk(g, BOX, 6, 1, box, why) && !put_chunk(g, COUNT, 1, 1, &n, why) &&
-        !put_types(g, p, t, types, TYPES, why) && !put_types(g, p, t, types, TYPE_SHAPES, why) &&
-        !put_type_ids(g, p, t, types, why) && !put_numbers(g, p, &b, why) &&
-        !put_images(g, p, &b, why) && !put_chunk(g, TIME, 1, 1, &p->t, why))
-        put_chunk(g, ID, p->n, 1, p->id, why);
+    if (gsd_box_of(box, &b, p, failure)) return failure->status;
+    struct kind *t = gsd_list_types(p, &types, failure);
+    if (t && !put_chunk(g, STEP, 1, 1, &step, failure) && !put_chunk(g, DIMENSIONS, 1, 1, &dim, failure) &&
+        !put_chunk(g, BOX, 6, 1, box, failure) && !put_chunk(g, COUNT, 1, 1, &n, failure) &&
+        !put_types(g, p, t, types, TYPES, failure) && !put_types(g, p, t, types, TYPE_SHAPES, failure) &&
+        !put_type_ids(g, p, t, types, failure) && !put_numbers(g, p, &b, failure) &&
+        !put_images(g, p, &b, failure) && !put_chunk(g, TIME, 1, 1, &p->t, failure))
+        put_chunk(g, ID, p->n, 1, p->id, failure);
     free(t);
     g->frames++;
-    return why->status;
+    return failure->status;
 }
 
-static struct gsd *gsd_begin(FILE *out, struct why *why)
+static struct gsd *gsd_begin(FILE *out, struct failure *failure)
 {
     static const struct header empty;
     struct gsd *g = calloc(1, sizeof *g);
-    if (!g) return why_set(why, EX_SOFTWARE, "no memory for an export"), NULL;
+    if (!g) return failure_set(failure, EX_SOFTWARE, "no memory for an export"), NULL;
     if (fseek(out, 0, SEEK_END) || ftell(out) != 0) {
         free(g);
-        return why_set(why, EX_USAGE, "GSD goes into a file of its own: -o FILE.gsd"), NULL;
+        return failure_set(failure, EX_USAGE, "GSD goes into a file of its own: -o FILE.gsd"), NULL;
     }
     fwrite(&empty, sizeof empty, 1, out);
     g->out = out, g->at = sizeof empty;
@@ -409,15 +409,15 @@ static struct gsd *gsd_begin(FILE *out, struct why *why)
 }
 
 static int write_gsd(FILE *out, const struct export_frame *m, enum part part, bool first,
-                     struct why *why)
+                     struct failure *failure)
 {
     (void)part;
-    if (first && !(*m->kept = gsd_begin(out, why))) return why->status;
-    return put_frame(*m->kept, m->packing, why);
+    if (first && !(*m->kept = gsd_begin(out, failure))) return failure->status;
+    return put_frame(*m->kept, m->packing, failure);
 }
 
 /* The names and the index, and where they are */
-static int end_gsd(FILE *out, void *kept, struct why *why)
+static int end_gsd(FILE *out, void *kept, struct failure *failure)
 {
     struct gsd *g = kept;
     struct header h = { .magic = 0x65DF65DF65DF65DF,
@@ -435,7 +435,7 @@ static int end_gsd(FILE *out, void *kept, struct why *why)
     if (g->entries) fwrite(g->entry, sizeof *g->entry, (size_t)g->entries, out);
     if (!fseek(out, 0, SEEK_SET)) fwrite(&h, sizeof h, 1, out);
     free(g->entry), free(g);
-    (void)why;
+    (void)failure;
     return 0;
 }
 

@@ -55,10 +55,10 @@ static void lammps_put_box(FILE *out, const struct packing *p)
 }
 
 static int dump(FILE *out, const struct export_frame *m, enum part part, bool first,
-                struct why *why)
+                struct failure *failure)
 {
     const struct packing *p = m->packing;
-    (void)part, (void)first, (void)why;
+    (void)part, (void)first, (void)failure;
     fprintf(out, "ITEM: TIMESTEP\n%" PRId64 "\nITEM: NUMBER OF ATOMS\n%" PRId64 "\n", p->step,
             p->n);
     lammps_put_box(out, p);

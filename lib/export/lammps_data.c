@@ -8,31 +8,31 @@
 #include <inttypes.h>
 
 /* A data file has nothing but balls that move. */
-static int lammps_check(const struct packing *p, struct why *why)
+static int lammps_check(const struct packing *p, struct failure *failure)
 {
-    if (p->dim == 2) return why_set(why, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
+    if (p->dim == 2) return failure_set(failure, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
     for (int64_t i = 0; i < p->n; i++) {
         if (packing_shape(p, i))
-            return why_set(
-                why, EX_DATAERR,
+            return failure_set(
+                failure, EX_DATAERR,
                 "grain %" PRId32
                 " is not a ball: a LAMMPS data file holds only balls; --to gsd writes shapes",
                 p->id[i]);
         if (!(p->mass[i] > 0))
-            return why_set(why, EX_DATAERR,
+            return failure_set(failure, EX_DATAERR,
                            "grain %" PRId32 " is fixed: a LAMMPS data file needs a density of each",
                            p->id[i]);
     }
     return 0;
 }
 
-static int lammps_data_put_box(FILE *out, const struct packing *p, struct why *why)
+static int lammps_data_put_box(FILE *out, const struct packing *p, struct failure *failure)
 {
     struct box b;
     export_frame_box(&b, p);
     const vec3 *e = b.edge, o = b.origin;
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "the cell's first edge is not along x, or the second not in the plane of x "
                        "and y: a LAMMPS data file has no such box; --to lammps does");
     fprintf(out, "%.17g %.17g xlo xhi\n%.17g %.17g ylo yhi\n%.17g %.17g zlo zhi\n", o.x,
@@ -49,15 +49,15 @@ static int64_t id_of(const struct packing *p, int64_t i)
 }
 
 static int write_data(FILE *out, const struct export_frame *m, enum part part, bool first,
-                      struct why *why)
+                      struct failure *failure)
 {
     const struct packing *p = m->packing;
     (void)part, (void)first;
-    if (lammps_check(p, why)) return why->status;
+    if (lammps_check(p, failure)) return failure->status;
     fprintf(out,
             "# nsd, step %" PRId64 ": SI units\n\n%" PRId64 " atoms\n%" PRId32 " atom types\n\n",
             p->step, p->n, p->kinds);
-    if (lammps_data_put_box(out, p, why)) return why->status;
+    if (lammps_data_put_box(out, p, failure)) return failure->status;
     fputs("\nAtoms\n\n", out);
     for (int64_t i = 0; i < p->n; i++) {
         double mass, inertia;

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 
 static int write_ondem(FILE *out, const struct export_frame *m, enum part part, bool first,
-                       struct why *why)
+                       struct failure *failure)
 {
     size_t size = 0;
     (void)part, (void)first;
     if (m->packing->dim == 2) // which would come back as balls
-        return why_set(why, EX_DATAERR, "discs: ON-DEM's format is for 3D; --to gsd writes discs");
-    void *bytes = ondem_write(m->packing, m->contacts, &size, why);
-    if (!bytes) return why->status;
+        return failure_set(failure, EX_DATAERR, "discs: ON-DEM's format is for 3D; --to gsd writes discs");
+    void *bytes = ondem_write(m->packing, m->contacts, &size, failure);
+    if (!bytes) return failure->status;
     fwrite(bytes, 1, size, out);
     free(bytes);
     return 0;

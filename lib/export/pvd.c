@@ -8,26 +8,26 @@ static const char head[] =
     "<Collection>\n";
 static const char tail[] = "</Collection>\n</VTKFile>\n";
 
-int pvd_begin(struct pvd *l, const char *path, struct why *why)
+int pvd_begin(struct pvd *l, const char *path, struct failure *failure)
 {
-    l->out = output_stream(&l->file, path, why);
-    if (!l->out) return why->status;
+    l->out = output_stream(&l->file, path, failure);
+    if (!l->out) return failure->status;
     fprintf(l->out, "%s%s", head, tail);
     return 0;
 }
 
-int pvd_add(struct pvd *l, const char *name, double time, struct why *why)
+int pvd_add(struct pvd *l, const char *name, double time, struct failure *failure)
 {
     if (fseek(l->out, -(long)strlen(tail), SEEK_END))
-        return why_set(why, EX_IOERR, "%s.pvd: %s", name, strerror(errno));
+        return failure_set(failure, EX_IOERR, "%s.pvd: %s", name, strerror(errno));
     fprintf(l->out, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"%s\"/>\n%s", time, name, tail);
-    if (fflush(l->out)) return why_set(why, EX_IOERR, "%s: its list: %s", name, strerror(errno));
-    return output_place(&l->file, why); // there is something whole in it, with the first
+    if (fflush(l->out)) return failure_set(failure, EX_IOERR, "%s: its list: %s", name, strerror(errno));
+    return output_place(&l->file, failure); // there is something whole in it, with the first
 }
 
-int pvd_end(struct pvd *l, struct why *why)
+int pvd_end(struct pvd *l, struct failure *failure)
 {
-    if (l->out) output_stream_close(&l->file, l->out, why);
+    if (l->out) output_stream_close(&l->file, l->out, failure);
     l->out = NULL;
-    return why->status;
+    return failure->status;
 }

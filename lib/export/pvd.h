@@ -13,9 +13,9 @@ struct pvd {
 };
 
 /* Begins the list in a file of this name. EX_IOERR: it cannot be written. */
-int pvd_begin(struct pvd *list, const char *path, struct why *why);
+int pvd_begin(struct pvd *list, const char *path, struct failure *failure);
 /* A file of the series, of this time (s); the name is relative to the list's. */
-int pvd_add(struct pvd *list, const char *name, double time, struct why *why);
-int pvd_end(struct pvd *list, struct why *why);
+int pvd_add(struct pvd *list, const char *name, double time, struct failure *failure);
+int pvd_end(struct pvd *list, struct failure *failure);
 
 #endif

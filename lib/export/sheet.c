@@ -36,32 +36,32 @@ static void keep_cells(struct sheet *s, const bool *keep)
 
 /* Of grains and contacts, those that are wanted: others count in what is said of these. */
 static int keep_wanted(struct sheet *s, enum part part, const struct export_frame *m,
-                       struct why *why)
+                       struct failure *failure)
 {
     const struct packing *p = m->packing;
     struct wall_faces faces = { 0 };
     if (!m->only || (part != PART_GRAINS && part != PART_CONTACTS)) return 0;
     if (part == PART_GRAINS && !m->only->bodies) return 0;
     bool *keep = calloc((size_t)s->cells + 1, sizeof *keep);
-    if (!keep) return why_set(why, EX_SOFTWARE, "no memory for an export");
-    if (part == PART_CONTACTS && face_of_init(&faces, p, p->names.rows > 0, why))
-        return free(keep), why->status;
+    if (!keep) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
+    if (part == PART_CONTACTS && face_of_init(&faces, p, p->names.rows > 0, failure))
+        return free(keep), failure->status;
     for (int64_t k = 0; k < s->cells; k++)
         keep[k] = part == PART_GRAINS ? export_frame_has(m, k)
-                                      : chosen_contact(m->only, p, &faces, &m->contacts->c[k]);
+                                      : selection_contact(m->only, p, &faces, &m->contacts->c[k]);
     keep_cells(s, keep);
     wall_faces_free(&faces), free(keep);
     return 0;
 }
 
-int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why)
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure)
 {
     static int (*const fill[PART_COUNT])(
         struct sheet *, const struct export_frame *,
-        struct why *) = { sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces };
+        struct failure *) = { sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces };
     *s = (struct sheet){ .shape = SHEET_POINT };
-    if (fill[part](s, m, why) || keep_wanted(s, part, m, why)) sheet_free(s);
-    return why->status;
+    if (fill[part](s, m, failure) || keep_wanted(s, part, m, failure)) sheet_free(s);
+    return failure->status;
 }
 
 /* Room for so many points, and as many cells and corners */
@@ -81,9 +81,9 @@ static int sheet_grow(struct sheet *s, int64_t least)
     return 0;
 }
 
-int sheet_add(struct sheet *s, int corners, const vec3 *x, struct why *why)
+int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failure)
 {
-    if (sheet_grow(s, s->points + corners)) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (sheet_grow(s, s->points + corners)) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int k = 0; k < corners; k++) {
         s->corner[s->corners++] = s->points;
         s->x[s->points++] = x[k];
@@ -99,18 +99,18 @@ static struct sheet_column *sheet_add_column(struct sheet *s, const char *name, 
     return c;
 }
 
-double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct why *why)
+double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct failure *failure)
 {
     struct sheet_column *c = sheet_add_column(s, name, suffix);
     c->real = calloc((size_t)(sheet_rows(s) * c->width) + 1, sizeof *c->real);
-    if (!c->real) why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!c->real) failure_set(failure, EX_SOFTWARE, "no memory for an export");
     return c->real;
 }
 
-int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct why *why)
+int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct failure *failure)
 {
     struct sheet_column *c = sheet_add_column(s, name, suffix);
     c->whole = calloc((size_t)(sheet_rows(s) * c->width) + 1, sizeof *c->whole);
-    if (!c->whole) why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!c->whole) failure_set(failure, EX_SOFTWARE, "no memory for an export");
     return c->whole;
 }

@@ -33,7 +33,7 @@ struct sheet {
 };
 
 /* s = a part of a moment, of as many cells as there are such things that are wanted. Returns 0 or EX_SOFTWARE. */
-int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct why *why);
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure);
 void sheet_free(struct sheet *s);
 
 static inline int64_t sheet_rows(const struct sheet *s)
@@ -43,19 +43,19 @@ static inline int64_t sheet_rows(const struct sheet *s)
 
 /* ---- for those who fill one: export/sheet_*.c ---- */
 
-int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why);
-int sheet_contacts(struct sheet *s, const struct export_frame *m, struct why *why);
-int sheet_boundary(struct sheet *s, const struct export_frame *m, struct why *why);
-int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct why *why);
-int sheet_box(struct sheet *s, const struct export_frame *m, struct why *why);
+int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure);
+int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure);
+int sheet_boundary(struct sheet *s, const struct export_frame *m, struct failure *failure);
+int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure *failure);
+int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *failure);
 
 /* One cell more, of these corners. */
-int sheet_add(struct sheet *s, int corners, const vec3 *x, struct why *why);
+int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failure);
 /*
  * A column for all rows that there are: memory for its numbers, all zero, or NULL (EX_SOFTWARE).
  * Columns are added when the cells are there.
  */
-double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct why *why);
-int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct why *why);
+double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct failure *failure);
+int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct failure *failure);
 
 #endif

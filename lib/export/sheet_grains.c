@@ -4,13 +4,13 @@
 #include <string.h>
 
 /* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
-static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, struct why *why)
+static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
-    int32_t *count = sheet_whole(s, "contacts", "", why);
-    double *force = sheet_real(s, "contact_force", "xyz", why);
-    if (why->status) return why->status;
+    int32_t *count = sheet_whole(s, "contacts", "", failure);
+    double *force = sheet_real(s, "contact_force", "xyz", failure);
+    if (failure->status) return failure->status;
     for (int64_t i = 0; i < t->n; i++) {
         const struct contact *c = &t->c[i];
         vec3 f = v3_scale(1 / p->dt, contact_in_space(c, t->found[i].r));
@@ -25,22 +25,22 @@ static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, str
     return 0;
 }
 
-int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why)
+int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     const size_t n = (size_t)p->n;
     s->shape = SHEET_POINT, s->of_points = true;
     for (int64_t i = 0; i < p->n; i++)
-        if (sheet_add(s, 1, &p->x[i], why)) return why->status;
-    int32_t *id = sheet_whole(s, "id", "", why), *kind = sheet_whole(s, "kind", "", why);
-    double *radius = sheet_real(s, "radius", "", why), *mass = sheet_real(s, "mass", "", why);
-    double *v = sheet_real(s, "velocity", "xyz", why);
-    double *w = sheet_real(s, "angular_velocity", "xyz", why);
-    double *q = sheet_real(s, "orientation", "wxyz", why);
-    int32_t *shape = p->shape ? sheet_whole(s, "shape", "", why) : NULL;
-    int32_t *group = p->group ? sheet_whole(s, "group", "", why) : NULL;
-    int32_t *image = p->image ? sheet_whole(s, "image", "xyz", why) : NULL;
-    if (why->status) return why->status;
+        if (sheet_add(s, 1, &p->x[i], failure)) return failure->status;
+    int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure);
+    double *radius = sheet_real(s, "radius", "", failure), *mass = sheet_real(s, "mass", "", failure);
+    double *v = sheet_real(s, "velocity", "xyz", failure);
+    double *w = sheet_real(s, "angular_velocity", "xyz", failure);
+    double *q = sheet_real(s, "orientation", "wxyz", failure);
+    int32_t *shape = p->shape ? sheet_whole(s, "shape", "", failure) : NULL;
+    int32_t *group = p->group ? sheet_whole(s, "group", "", failure) : NULL;
+    int32_t *image = p->image ? sheet_whole(s, "image", "xyz", failure) : NULL;
+    if (failure->status) return failure->status;
     if (n && image) memcpy(image, p->image, n * sizeof *p->image);
     if (n && group) memcpy(group, p->group, n * sizeof *group);
     if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
@@ -50,5 +50,5 @@ int sheet_grains(struct sheet *s, const struct export_frame *m, struct why *why)
         memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
         memcpy(q, p->q, n * sizeof *p->q);
     }
-    return m->contacts && m->contacts->found ? sheet_add_contacts(s, m, why) : 0;
+    return m->contacts && m->contacts->found ? sheet_add_contacts(s, m, failure) : 0;
 }

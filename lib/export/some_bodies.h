@@ -12,8 +12,8 @@ struct some_bodies {
 };
 
 /* Bodies of groups and kinds that c names, in their order. Returns 0, or EX_SOFTWARE with nothing to free. */
-int some_bodies_init(struct some_bodies *s, const struct packing *p, const struct chosen *c,
-                     struct why *why);
+int some_bodies_init(struct some_bodies *s, const struct packing *p, const struct selection *c,
+                     struct failure *failure);
 void some_bodies_free(struct some_bodies *s);
 
 #endif

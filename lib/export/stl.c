@@ -54,31 +54,31 @@ static int64_t polygon_triangles(const struct sheet *s)
     return n;
 }
 
-static int stl(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int stl(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
 {
     const struct packing *p = m->packing;
     struct facets b;
     struct sheet walls;
     (void)first;
     if (part != PART_GRAINS && part != PART_BOUNDARY)
-        return why_set(why, EX_USAGE, "%s cannot be made of triangles", part_name[part]);
-    if (facets_init(&b, m->detail, why)) return why->status;
-    if (sheet_of(&walls, PART_BOUNDARY, m, why)) return facets_free(&b), why->status;
+        return failure_set(failure, EX_USAGE, "%s cannot be made of triangles", part_name[part]);
+    if (facets_init(&b, m->detail, failure)) return failure->status;
+    if (sheet_of(&walls, PART_BOUNDARY, m, failure)) return facets_free(&b), failure->status;
     const int64_t grains = part == PART_GRAINS ? p->n : 0;
     int64_t n = polygon_triangles(&walls);
     for (int64_t i = 0; i < grains; i++)
         if (export_frame_has(m, i)) n += facets_triangles(&b, p, i);
-    if (n > UINT32_MAX) why_set(why, EX_DATAERR, "more triangles than STL can count");
+    if (n > UINT32_MAX) failure_set(failure, EX_DATAERR, "more triangles than STL can count");
     fprintf(out, "%-80s", "nsd: balls and walls in m");
     for (int k = 0; k < 4; k++) putc((int)(n >> 8 * k & 255), out);
-    for (int64_t i = 0; i < grains && !why->status; i++) {
+    for (int64_t i = 0; i < grains && !failure->status; i++) {
         moment_tell(m, i, grains);
         if (export_frame_has(m, i)) facets_of(&b, p, i, stl_put_fan, out);
     }
     put_polygons(out, &walls);
     sheet_free(&walls);
     facets_free(&b);
-    return why->status;
+    return failure->status;
 }
 
 const struct format format_stl = {

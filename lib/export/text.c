@@ -40,10 +40,10 @@ static void put_row(FILE *out, const struct export_frame *m, const struct sheet 
 }
 
 static int text_put(FILE *out, const struct export_frame *m, enum part part, bool first, char by,
-               struct why *why)
+               struct failure *failure)
 {
     struct sheet s;
-    if (sheet_of(&s, part, m, why)) return why->status;
+    if (sheet_of(&s, part, m, failure)) return failure->status;
     if (first) text_put_names(out, &s, by);
     for (int64_t row = 0; row < sheet_rows(&s); row++) {
         moment_tell(m, row, sheet_rows(&s));
@@ -53,14 +53,14 @@ static int text_put(FILE *out, const struct export_frame *m, enum part part, boo
     return 0;
 }
 
-static int csv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int csv(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
 {
-    return text_put(out, m, part, first, ',', why);
+    return text_put(out, m, part, first, ',', failure);
 }
 
-static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
 {
-    return text_put(out, m, part, first, '\t', why);
+    return text_put(out, m, part, first, '\t', failure);
 }
 
 const struct format format_csv = {

@@ -102,13 +102,13 @@ static void write_poly(FILE *out, const struct export_frame *m, const struct she
 }
 
 static int write_cells(FILE *out, const struct export_frame *m, const struct sheet *s,
-                       struct why *why)
+                       struct failure *failure)
 {
     struct vtk_block b[BLOCKS];
     int blocks = list_blocks(b, s);
     uint64_t offset = 0;
     uint8_t *types = malloc((size_t)s->cells + 1);
-    if (!types) return why_set(why, EX_SOFTWARE, "no memory for an export");
+    if (!types) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int64_t k = 0; k < s->cells; k++) types[k] = (uint8_t)s->shape;
     b[blocks++] = (struct vtk_block){ "types", "UInt8", 1, (uint64_t)s->cells, types };
     open_file(out, "UnstructuredGrid", m);
@@ -123,24 +123,24 @@ static int write_cells(FILE *out, const struct export_frame *m, const struct she
     return 0;
 }
 
-static int vtp(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int vtp(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
 {
     struct sheet s;
     (void)first;
-    if (sheet_of(&s, part, m, why)) return why->status;
+    if (sheet_of(&s, part, m, failure)) return failure->status;
     write_poly(out, m, &s);
     sheet_free(&s);
     return 0;
 }
 
-static int vtu(FILE *out, const struct export_frame *m, enum part part, bool first, struct why *why)
+static int vtu(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
 {
     struct sheet s;
     (void)first;
-    if (sheet_of(&s, part, m, why)) return why->status;
-    write_cells(out, m, &s, why);
+    if (sheet_of(&s, part, m, failure)) return failure->status;
+    write_cells(out, m, &s, failure);
     sheet_free(&s);
-    return why->status;
+    return failure->status;
 }
 
 const struct format format_vtp = {

@@ -21,12 +21,12 @@ static bool vtk_is_wanted(const struct sheet_column *c)
 }
 
 static int vtk_make(struct vtkhdf_cells *cells, const struct packing *p, int k, void **made,
-                struct why *why)
+                struct failure *failure)
 {
     const struct export_frame m = { .packing = p, .detail = DETAIL };
     struct sheet *s = *made = calloc(1, sizeof *s);
-    if (!s) return why_set(why, EX_SOFTWARE, "no memory for an export");
-    if (sheet_of(s, part_of[k], &m, why)) return why->status;
+    if (!s) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
+    if (sheet_of(s, part_of[k], &m, failure)) return failure->status;
     *cells = (struct vtkhdf_cells){ .points = s->points,
                                     .cells = s->cells,
                                     .corners = s->corners,

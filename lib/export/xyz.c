@@ -25,10 +25,10 @@ static void xyz_put_cell(FILE *out, const struct packing *p)
 }
 
 static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bool first,
-                     struct why *why)
+                     struct failure *failure)
 {
     const struct packing *p = m->packing;
-    (void)part, (void)first, (void)why;
+    (void)part, (void)first, (void)failure;
     fprintf(out, "%" PRId64 "\n", p->n);
     xyz_put_cell(out, p);
     fprintf(out,

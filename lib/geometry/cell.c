@@ -116,17 +116,17 @@ static const char *cell_load_trouble(const struct cell *c, int dim)
     return NULL;
 }
 
-int cell_check(const struct cell *c, int dim, double least, struct why *why)
+int cell_check(const struct cell *c, int dim, double least, struct failure *failure)
 {
     double height[3];
     const char *trouble = edge_trouble(c, dim);
     if (!trouble) trouble = gradient_trouble(c, dim);
     if (!trouble) trouble = cell_load_trouble(c, dim);
-    if (trouble) return why_set(why, EX_DATAERR, "the cell: %s", trouble);
+    if (trouble) return failure_set(failure, EX_DATAERR, "the cell: %s", trouble);
     cell_heights(c, height);
     for (int k = 0; k < 3; k++)
         if (c->repeats[k] && !(height[k] >= least))
-            return why_set(why, EX_DATAERR,
+            return failure_set(failure, EX_DATAERR,
                            "the periodic cell is %.9g m wide across edge %d: less than the largest "
                            "body with its gap, %.9g m, which would touch itself",
                            height[k], k, least);

@@ -92,7 +92,7 @@ int cell_copy(struct cell *to, const struct cell *from);
  * order, masses not negative? Is each pair of opposite faces that repeat at least `least` (m) apart?
  * Less than the largest diameter, and a body would touch itself. Returns 0 or EX_DATAERR.
  */
-int cell_check(const struct cell *c, int dim, double least, struct why *why);
+int cell_check(const struct cell *c, int dim, double least, struct failure *failure);
 
 /* 1/m: rows of the inverse of the matrix whose columns are the edges: u_k = inverse[k] . (x - origin)
    counts edges */

@@ -4,14 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why)
+int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct failure *failure)
 {
     drives_free(d);
     d->drive = calloc((size_t)n + 1, sizeof *d->drive);
     d->row = calloc((size_t)rows + 1, sizeof *d->row);
     if (!d->drive || !d->row) {
         drives_free(d);
-        return why_set(why, EX_SOFTWARE, "no memory for %d drives", n);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %d drives", n);
     }
     d->n = n, d->rows = rows;
     return 0;
@@ -23,11 +23,11 @@ void drives_free(struct drives *d)
     *d = (struct drives){ 0 };
 }
 
-int drives_copy(struct drives *to, const struct drives *from, struct why *why)
+int drives_copy(struct drives *to, const struct drives *from, struct failure *failure)
 {
     *to = (struct drives){ 0 };
     if (!from->n) return 0;
-    if (drives_alloc(to, from->n, from->rows, why)) return why->status;
+    if (drives_alloc(to, from->n, from->rows, failure)) return failure->status;
     memcpy(to->drive, from->drive, (size_t)from->n * sizeof *to->drive);
     if (from->rows) memcpy(to->row, from->row, (size_t)from->rows * sizeof *to->row);
     return 0;
@@ -65,7 +65,7 @@ static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boun
 }
 
 int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
-                 struct why *why)
+                 struct failure *failure)
 {
     int64_t rows = 0; // of all tables: none is another's, too
     for (int32_t k = 0, of_one = 0; k < d->n; k++) {
@@ -75,7 +75,7 @@ int drives_check(const struct drives *d, int32_t boundaries, int dim, const char
         const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
                               : rows > d->rows     ? "its table is missing or another drive's"
                                                    : drive_trouble(d, k, boundaries, dim);
-        if (trouble) return why_set(why, EX_DATAERR, "%s %d: %s", what, k, trouble);
+        if (trouble) return failure_set(failure, EX_DATAERR, "%s %d: %s", what, k, trouble);
     }
     return 0;
 }

@@ -46,15 +46,15 @@ struct drives {
 };
 
 /* Room for so many, all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
-int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct why *why);
+int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct failure *failure);
 void drives_free(struct drives *d);
 /* to = a copy; EX_SOFTWARE with nothing to free */
-int drives_copy(struct drives *to, const struct drives *from, struct why *why);
+int drives_copy(struct drives *to, const struct drives *from, struct failure *failure);
 enum { DRIVES_MOST = 1000 }; /* of one boundary: each place of it asks them all */
 /* Are all of them drives, in a packing of so many boundaries? what: they are called in messages. Returns 0 or
    EX_DATAERR. */
 int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
-                 struct why *why);
+                 struct failure *failure);
 
 /* m, rad: the way at the packing's time t (s) */
 double drive_way(const struct drives *d, const struct drive *k, double t);

@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why)
+int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct failure *failure)
 {
     mesh_free(m);
     m->vertex = calloc((size_t)vertices + 1, sizeof *m->vertex);
     m->element = calloc((size_t)elements + 1, sizeof *m->element);
     if (!m->vertex || !m->element) {
         mesh_free(m);
-        return why_set(why, EX_SOFTWARE, "no memory for a mesh of %d elements", elements);
+        return failure_set(failure, EX_SOFTWARE, "no memory for a mesh of %d elements", elements);
     }
     m->vertices = vertices, m->elements = elements;
     return 0;
@@ -27,46 +27,46 @@ void mesh_free(struct mesh *m)
 }
 
 int mesh_grow(struct mesh *m, int32_t vertices, int32_t elements, vec3 **vertex,
-              int32_t (**element)[3], struct why *why)
+              int32_t (**element)[3], struct failure *failure)
 {
     if (vertices > INT32_MAX - m->vertices || elements > INT32_MAX - m->elements)
-        return why_set(why, EX_SOFTWARE, "no memory for so many triangles");
+        return failure_set(failure, EX_SOFTWARE, "no memory for so many triangles");
     vec3 *v = realloc(m->vertex, ((size_t)m->vertices + (size_t)vertices + 1) * sizeof *v);
     if (v) m->vertex = v;
     int32_t(*e)[3] = realloc(m->element, ((size_t)m->elements + (size_t)elements + 1) * sizeof *e);
     if (e) m->element = e;
-    if (!v || !e) return why_set(why, EX_SOFTWARE, "no memory for a mesh");
+    if (!v || !e) return failure_set(failure, EX_SOFTWARE, "no memory for a mesh");
     *vertex = v + m->vertices, *element = e + m->elements;
     memset(*vertex, 0, (size_t)vertices * sizeof **vertex);
     m->vertices += vertices, m->elements += elements;
     return 0;
 }
 
-int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why)
+int mesh_copy(struct mesh *to, const struct mesh *from, struct failure *failure)
 {
     *to = (struct mesh){ 0 };
     if (!from->elements) return 0;
-    if (mesh_alloc(to, from->vertices, from->elements, why)) return why->status;
+    if (mesh_alloc(to, from->vertices, from->elements, failure)) return failure->status;
     memcpy(to->vertex, from->vertex, (size_t)from->vertices * sizeof *to->vertex);
     memcpy(to->element, from->element, (size_t)from->elements * sizeof *to->element);
     return 0;
 }
 
-int mesh_check(const struct mesh *m, int dim, struct why *why)
+int mesh_check(const struct mesh *m, int dim, struct failure *failure)
 {
     for (int32_t i = 0; i < m->vertices; i++)
         if (!v3_finite(m->vertex[i]) || (dim == 2 && m->vertex[i].z != 0))
-            return why_set(why, EX_DATAERR,
+            return failure_set(failure, EX_DATAERR,
                            "vertex %d of the mesh: not finite, or not in the plane", i);
     for (int32_t i = 0; i < m->elements; i++) {
         const int32_t *e = m->element[i];
         for (int k = 0; k < 3; k++)
             if (e[k] < 0 || e[k] >= m->vertices)
-                return why_set(why, EX_DATAERR, "element %d of the mesh: no such vertex", i);
+                return failure_set(failure, EX_DATAERR, "element %d of the mesh: no such vertex", i);
         vec3 a = v3_sub(m->vertex[e[1]], m->vertex[e[0]]);
         vec3 b = v3_sub(m->vertex[e[2]], m->vertex[e[0]]);
         if ((dim == 2 && e[2] != e[1]) || !(v3_norm(dim == 2 ? a : v3_cross(a, b)) > 0))
-            return why_set(why, EX_DATAERR, "element %d of the mesh: without an extent", i);
+            return failure_set(failure, EX_DATAERR, "element %d of the mesh: without an extent", i);
     }
     return 0;
 }
@@ -203,7 +203,7 @@ static bool surface_alloc(struct surface *s)
 }
 
 int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, double weld_at,
-                 struct why *why)
+                 struct failure *failure)
 {
     *s = (struct surface){ .elements = n };
     struct keyed *room = malloc(((size_t)n + 1) * sizeof *room);
@@ -218,9 +218,9 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
     free(room);
     for (int32_t v = 0; good && v < 3 * n; v++)
         if (s->star[v + 1] - s->star[v] > STAR_MOST)
-            return why_set(why, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
+            return failure_set(failure, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
                            STAR_MOST);
-    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for a surface of %d elements", n);
+    return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for a surface of %d elements", n);
 }
 
 void surface_free(struct surface *s)

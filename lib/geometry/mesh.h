@@ -25,16 +25,16 @@ struct mesh {
 };
 
 /* Room for so many, all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
-int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct why *why);
+int mesh_alloc(struct mesh *m, int32_t vertices, int32_t elements, struct failure *failure);
 void mesh_free(struct mesh *m);
 /* Room for more at its end, where the caller fills it in; vertices are counted from the mesh's first.
    Returns 0 or EX_SOFTWARE. */
 int mesh_grow(struct mesh *m, int32_t vertices, int32_t elements, vec3 **vertex,
-              int32_t (**element)[3], struct why *why);
-int mesh_copy(struct mesh *to, const struct mesh *from, struct why *why);
+              int32_t (**element)[3], struct failure *failure);
+int mesh_copy(struct mesh *to, const struct mesh *from, struct failure *failure);
 /* Are vertices finite, and elements of vertices that are there, with an extent? Returns 0, or EX_DATAERR
    with the first that is not. */
-int mesh_check(const struct mesh *m, int dim, struct why *why);
+int mesh_check(const struct mesh *m, int dim, struct failure *failure);
 
 /* The elements of one boundary that have an extent, ordered so that those near a place are found at once */
 struct surface {
@@ -53,7 +53,7 @@ struct surface {
 /* weld: m; 0: WELD_USUAL. Returns 0, EX_SOFTWARE, or EX_DATAERR: too many elements at a corner;
    surface_free() in any case. */
 int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, double weld,
-                 struct why *why);
+                 struct failure *failure);
 void surface_free(struct surface *s);
 
 /* The tolerance relative to the diagonal of the box around a surface: ten roundings of single precision */

@@ -8,7 +8,7 @@
    single precision, and what overlaps at rest does so by 1e-4. */
 static const double FLAT = 1e-6;
 
-int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct why *why)
+int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct failure *failure)
 {
     s->vertices = vertices, s->faces = faces, s->corners = corners;
     s->vertex = calloc((size_t)vertices + 1, sizeof *s->vertex);
@@ -17,7 +17,7 @@ int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corner
     s->corner = calloc((size_t)corners + 1, sizeof *s->corner);
     if (s->vertex && s->ball && s->first && s->corner) return 0;
     shape_free(s);
-    return why_set(why, EX_SOFTWARE, "no memory for a shape");
+    return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
 }
 
 void shape_free(struct shape *s)
@@ -61,11 +61,11 @@ static bool shape_grow(struct shapes *t)
     return true;
 }
 
-static int shape_append(struct shapes *t, struct shape *s, struct why *why)
+static int shape_append(struct shapes *t, struct shape *s, struct failure *failure)
 {
     if (!s->name || !shape_grow(t)) {
         shape_free(s);
-        return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     }
     int32_t at = names_before(t, s->name, true);
     memmove(&t->sorted[at + 1], &t->sorted[at], (size_t)(t->n - at) * sizeof *t->sorted);
@@ -75,19 +75,19 @@ static int shape_append(struct shapes *t, struct shape *s, struct why *why)
     return 0;
 }
 
-int shapes_add(struct shapes *t, int dim, struct shape *s, struct why *why)
+int shapes_add(struct shapes *t, int dim, struct shape *s, struct failure *failure)
 {
     if (t->n >= SHAPES_MOST) {
         shape_free(s);
-        return why_set(why, EX_DATAERR, "more than %d shapes", SHAPES_MOST);
+        return failure_set(failure, EX_DATAERR, "more than %d shapes", SHAPES_MOST);
     }
     double volume = dim == 2 ? M_PI : 4 * M_PI / 3, k = dim == 2 ? 0.5 : 0.4;
     struct shape ball = { .volume = volume, .moment = { k, k, k } };
     if (!t->n) {
         ball.name = strdup("ball");
-        if (shape_append(t, &ball, why)) return shape_free(s), why->status;
+        if (shape_append(t, &ball, failure)) return shape_free(s), failure->status;
     }
-    return shape_append(t, s, why);
+    return shape_append(t, s, failure);
 }
 
 int32_t shapes_find(const struct shapes *t, const char *name)
@@ -109,17 +109,17 @@ bool shape_same(const struct shape *a, const struct shape *b)
     return same;
 }
 
-static int shape_copy_one(struct shape *to, const struct shape *from, struct why *why)
+static int shape_copy_one(struct shape *to, const struct shape *from, struct failure *failure)
 {
     *to = *from;
     to->name = strdup(from->name);
     to->normal = NULL, to->edge = NULL, to->edges = 0;
     if (!to->name) {
         to->vertex = NULL, to->ball = NULL, to->first = to->corner = NULL;
-        return why_set(why, EX_SOFTWARE, "no memory for a shape");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     }
     char *name = to->name;
-    if (shape_alloc(to, from->vertices, from->faces, from->corners, why)) return why->status;
+    if (shape_alloc(to, from->vertices, from->faces, from->corners, failure)) return failure->status;
     to->name = name;
     for (int32_t i = 0; i < from->vertices; i++)
         to->vertex[i] = from->vertex[i], to->ball[i] = from->ball[i];
@@ -129,14 +129,14 @@ static int shape_copy_one(struct shape *to, const struct shape *from, struct why
     if (!from->normal) return 0;
     to->normal = calloc(normals + 1, sizeof *to->normal);
     to->edge = calloc((size_t)from->edges + 1, sizeof *to->edge);
-    if (!to->normal || !to->edge) return why_set(why, EX_SOFTWARE, "no memory for a shape");
+    if (!to->normal || !to->edge) return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     memcpy(to->normal, from->normal, normals * sizeof *to->normal);
     to->edges = from->edges;
     for (int32_t i = 0; i < from->edges; i++) to->edge[i] = from->edge[i];
     return 0;
 }
 
-int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
+int shapes_copy(struct shapes *to, const struct shapes *from, struct failure *failure)
 {
     *to = (struct shapes){ 0 };
     if (!from->n) return 0;
@@ -145,15 +145,15 @@ int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why)
     if (!to->s || !to->sorted) {
         free(to->s), free(to->sorted);
         *to = (struct shapes){ 0 };
-        return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     }
     to->room = from->n;
     memcpy(to->sorted, from->sorted, (size_t)from->n * sizeof *to->sorted);
     for (; to->n < from->n; to->n++)
-        if (shape_copy_one(&to->s[to->n], &from->s[to->n], why)) {
+        if (shape_copy_one(&to->s[to->n], &from->s[to->n], failure)) {
             to->n++;
             shapes_free(to);
-            return why->status;
+            return failure->status;
         }
     return 0;
 }
@@ -304,20 +304,20 @@ static const char *index_trouble(const struct shape *s)
     return NULL;
 }
 
-int shape_finish(struct shape *s, int dim, struct why *why)
+int shape_finish(struct shape *s, int dim, struct failure *failure)
 {
     const char *trouble = s->vertices > SHAPE_VERTICES_MOST ? "has too many vertices" : NULL;
     if (!trouble) trouble = form_trouble(s);
     if (!trouble) trouble = shape_number_trouble(s, dim);
-    if (trouble) return why_set(why, EX_DATAERR, "%s", trouble);
+    if (trouble) return failure_set(failure, EX_DATAERR, "%s", trouble);
     if (s->form != SHAPE_HULL) return 0;
     if (s->faces < 1 || (trouble = count_trouble(s, dim)) || (trouble = index_trouble(s)))
-        return why_set(why, EX_DATAERR, "%s", trouble ? trouble : "has no faces");
+        return failure_set(failure, EX_DATAERR, "%s", trouble ? trouble : "has no faces");
     size_t normals = (size_t)(s->faces > s->vertices ? s->faces : s->vertices);
     free(s->normal), free(s->edge);
     s->normal = calloc(normals + 1, sizeof *s->normal);
     s->edge = calloc((size_t)s->corners + 1, sizeof *s->edge);
-    if (!s->normal || !s->edge) return why_set(why, EX_SOFTWARE, "no memory for a shape");
+    if (!s->normal || !s->edge) return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     trouble = dim == 2 ? polygon_trouble(s) : polyhedron_trouble(s);
-    return trouble ? why_set(why, EX_DATAERR, "%s", trouble) : 0;
+    return trouble ? failure_set(failure, EX_DATAERR, "%s", trouble) : 0;
 }

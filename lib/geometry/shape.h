@@ -59,10 +59,10 @@ struct shapes {
 
 void shapes_free(struct shapes *t);
 /* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int shapes_copy(struct shapes *to, const struct shapes *from, struct why *why);
+int shapes_copy(struct shapes *to, const struct shapes *from, struct failure *failure);
 /* A new last row, which takes what *s owns, also where it fails; before the first one comes the ball.
    Returns 0, EX_DATAERR where there are too many, or EX_SOFTWARE. */
-int shapes_add(struct shapes *t, int dim, struct shape *s, struct why *why);
+int shapes_add(struct shapes *t, int dim, struct shape *s, struct failure *failure);
 /* The row with this name; -1: none */
 int32_t shapes_find(const struct shapes *t, const char *name);
 /* Is it the same shape, whatever its name? */
@@ -70,13 +70,13 @@ bool shape_same(const struct shape *a, const struct shape *b);
 
 /* Arrays for so many vertices, faces and corners, all zero. Returns 0, or EX_SOFTWARE with nothing to
    free. */
-int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct why *why);
+int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct failure *failure);
 void shape_free(struct shape *s);
 /*
  * Checks that a shape is one, and makes normals and edges: numbers finite and in range, faces flat and
  * closed, all vertices behind every face, all within the ball of radius 1. Returns 0, EX_DATAERR with
  * what is wrong, or EX_SOFTWARE.
  */
-int shape_finish(struct shape *s, int dim, struct why *why);
+int shape_finish(struct shape *s, int dim, struct failure *failure);
 
 #endif

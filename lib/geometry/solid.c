@@ -196,14 +196,14 @@ static void solid_add_line(struct solid_sums *t, struct chord *in, int n, double
     }
 }
 
-static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim, struct why *why)
+static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim, struct failure *failure)
 {
     size_t room = (size_t)s->vertices + (size_t)s->corners + (size_t)s->faces + 2;
     struct chord *in = malloc(room * sizeof *in);
     vec3 *normal = malloc(((size_t)s->faces + 1) * sizeof *normal);
     if (!in || !normal) {
         free(in), free(normal);
-        return why_set(why, EX_SOFTWARE, "no memory for a shape");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     }
     for (int32_t f = 0; f < s->faces && dim == 3; f++) normal[f] = face_normal(s, f);
     double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
@@ -248,11 +248,11 @@ static void solid_add_faces(struct solid_sums *t, const struct shape *s, int dim
     }
 }
 
-static int integrate(struct solid *out, const struct shape *s, int dim, struct why *why)
+static int integrate(struct solid *out, const struct shape *s, int dim, struct failure *failure)
 {
     struct solid_sums t = { 0 };
     bool lines = s->form == SHAPE_CLUMP ? overlapping(s) : s->form == SHAPE_HULL && s->round > 0;
-    if (lines && solid_add_lines(&t, s, dim, why)) return why->status;
+    if (lines && solid_add_lines(&t, s, dim, failure)) return failure->status;
     if (!lines && s->form == SHAPE_HULL) solid_add_faces(&t, s, dim);
     if (s->form == SHAPE_CAPSULE) add_capsule(&t, dim, s->vertex[0], s->vertex[1], s->round);
     for (int32_t i = 0; i < s->vertices && !lines && s->form == SHAPE_CLUMP; i++)
@@ -276,17 +276,17 @@ static vec3 near_to(const struct shape *s)
     return v3_norm(middle) > 2 * v3_norm(v3_sub(hi, lo)) ? middle : v3(0, 0, 0);
 }
 
-int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why)
+int solid_of(struct solid *out, const struct shape *s, int dim, struct failure *failure)
 {
     struct shape near = *s;
     vec3 o = near_to(s);
     near.vertex = calloc((size_t)s->vertices + 1, sizeof *near.vertex);
-    if (!near.vertex) return why_set(why, EX_SOFTWARE, "no memory for a shape");
+    if (!near.vertex) return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     for (int32_t i = 0; i < s->vertices; i++) near.vertex[i] = v3_sub(s->vertex[i], o);
-    integrate(out, &near, dim, why);
+    integrate(out, &near, dim, failure);
     out->centre = v3_add(out->centre, o);
     free(near.vertex);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- principal axes ---- */
@@ -352,25 +352,25 @@ static void even_out(double m[3])
     }
 }
 
-int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct why *why)
+int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct failure *failure)
 {
     struct solid o = { 0 };
-    return solid_of(&o, s, dim, why) ? why->status : solid_settle_as(s, dim, &o, was, why);
+    return solid_of(&o, s, dim, failure) ? failure->status : solid_settle_as(s, dim, &o, was, failure);
 }
 
 int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
-                    struct why *why)
+                    struct failure *failure)
 {
     struct solid o = *of;
     double reach = 0;
-    if (!v3_finite(o.centre)) return why_set(why, EX_DATAERR, "has no volume");
+    if (!v3_finite(o.centre)) return failure_set(failure, EX_DATAERR, "has no volume");
     for (int32_t i = 0; i < s->vertices; i++) {
         double r = s->form == SHAPE_CLUMP ? s->ball[i] : s->round;
         reach = fmax(reach, v3_norm(v3_sub(s->vertex[i], o.centre)) + r);
     }
     double size = dim == 2 ? reach * reach : reach * reach * reach;
-    if (o.volume < 0) return why_set(why, EX_DATAERR, "is turned inside out");
-    if (!(o.volume > FLAT * size)) return why_set(why, EX_DATAERR, "is flat: it has no volume");
+    if (o.volume < 0) return failure_set(failure, EX_DATAERR, "is turned inside out");
+    if (!(o.volume > FLAT * size)) return failure_set(failure, EX_DATAERR, "is flat: it has no volume");
     *was = (struct solid_frame){ reach, o.centre, principal_axes(o.second, dim) };
     double unit = 1 / reach;
     for (int32_t i = 0; i < s->vertices; i++) {

@@ -21,7 +21,7 @@ struct solid {
 };
 
 /* Of a shape in any frame and any unit, its faces outward */
-int solid_of(struct solid *out, const struct shape *s, int dim, struct why *why);
+int solid_of(struct solid *out, const struct shape *s, int dim, struct failure *failure);
 
 /* What a shape was before it was brought to its own axes and unit */
 struct solid_frame {
@@ -35,11 +35,11 @@ struct solid_frame {
  * volume and moments. Axes that are principal ones already stay, so that a brick
  * described along x, y and z lies along them. Returns 0, EX_DATAERR or EX_SOFTWARE.
  */
-int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct why *why);
+int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct failure *failure);
 
 /* The same of a shape that has the volume, centre and moments of something else, such as the surface that its balls
    fill. */
 int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
-                    struct why *why);
+                    struct failure *failure);
 
 #endif

@@ -14,18 +14,18 @@ void budget_open(struct budget *b, uint64_t size, uint64_t allowed)
         BUDGET_ALL * (allowed > BUDGET_LEAST ? allowed : BUDGET_LEAST) + BUDGET_ALL_RATIO * size;
 }
 
-int budget_frame(struct budget *b, struct why *why)
+int budget_frame(struct budget *b, struct failure *failure)
 {
     b->frame = 0;
-    return budget_draw(b, BUDGET_FRAME, why);
+    return budget_draw(b, BUDGET_FRAME, failure);
 }
 
-int budget_draw(struct budget *b, uint64_t bytes, struct why *why)
+int budget_draw(struct budget *b, uint64_t bytes, struct failure *failure)
 {
     uint64_t left = b->most_frame - b->frame, left_of_all = b->most_document - b->all;
     if (bytes <= left && bytes <= left_of_all) return b->frame += bytes, b->all += bytes, 0;
-    return why_set(
-        why, EX_DATAERR,
+    return failure_set(
+        failure, EX_DATAERR,
         bytes > left ? "a frame of it takes more than %llu MB of memory or work, and it "
                        "has %llu kB (--unpack allows more)"
                      : "its frames take more than %llu MB of work, and it has %llu kB "

@@ -31,7 +31,7 @@ uint64_t budget_unpacked(uint64_t size, uint64_t allowed);
 
 void budget_open(struct budget *budget, uint64_t size, uint64_t allowed);
 /* Both return 0, or EX_DATAERR: it is too much for this document. Another frame is begun; */
-int budget_frame(struct budget *budget, struct why *why);
-int budget_draw(struct budget *budget, uint64_t bytes, struct why *why);
+int budget_frame(struct budget *budget, struct failure *failure);
+int budget_draw(struct budget *budget, uint64_t bytes, struct failure *failure);
 
 #endif

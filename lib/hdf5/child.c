@@ -71,9 +71,9 @@ void child_forget_all(void)
     running = NULL;
 }
 
-static int no_child(struct why *why, const char *trouble)
+static int no_child(struct failure *failure, const char *trouble)
 {
-    return why_set(why, EX_SOFTWARE, "no process to read with: %s", trouble);
+    return failure_set(failure, EX_SOFTWARE, "no process to read with: %s", trouble);
 }
 
 /* What the new process is to do */
@@ -113,7 +113,7 @@ static herr_t child_start_reader(hid_t plist, const char *name, void *data)
     s->trouble = errno;
     if (c->pid) return 1; // enough
     child_forget_all();   // they hang up when the tool does
-    if (guest_is()) leave_files(s);
+    if (embedded_is()) leave_files(s);
     close(s->line[0]);
     server_run(s->line[1], c->shared, s->files, s->file, s->limit, s->parent);
 }
@@ -125,27 +125,27 @@ static herr_t child_start_reader(hid_t plist, const char *name, void *data)
 static void start_beside_threads(struct child_start *s)
 {
     int from = 0;
-    if (!guest_is() || H5Piterate(H5P_FILE_ACCESS_DEFAULT, &from, child_start_reader, s) != 1)
+    if (!embedded_is() || H5Piterate(H5P_FILE_ACCESS_DEFAULT, &from, child_start_reader, s) != 1)
         child_start_reader(H5P_DEFAULT, "", s);
 }
 
-int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct why *why)
+int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct failure *failure)
 {
     struct child *c = *out = calloc(1, sizeof *c);
     struct child_start s = {
         .child = c, .files = files, .file = file, .limit = limit, .parent = getpid()
     };
     int *line = s.line;
-    if (!c) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!c) return failure_set(failure, EX_SOFTWARE, "no memory");
     c->line = -1;
     c->shared =
         mmap(NULL, sizeof *c->shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (c->shared == MAP_FAILED) {
         c->shared = NULL;
-        return no_child(why, strerror(errno));
+        return no_child(failure, strerror(errno));
     }
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, line))
-        return no_child(why, strerror(errno));
+        return no_child(failure, strerror(errno));
     pthread_mutex_lock(&lock);
     start_beside_threads(&s);
     close(line[1]);
@@ -154,7 +154,7 @@ int child_start(struct child **out, int files, char *const *file, uint64_t limit
     else
         c->line = line[0], child_enlist(c);
     pthread_mutex_unlock(&lock);
-    return c->pid < 0 ? (c->pid = 0, no_child(why, strerror(s.trouble))) : 0;
+    return c->pid < 0 ? (c->pid = 0, no_child(failure, strerror(s.trouble))) : 0;
 }
 
 void child_close(struct child *c)
@@ -178,7 +178,7 @@ bool child_lost(const struct child *c)
 }
 
 /* The child is gone: why. */
-static int child_gone(struct child *c, struct why *why)
+static int child_gone(struct child *c, struct failure *failure)
 {
     int status = 0;
     close(c->line); // should it live it ends now
@@ -188,36 +188,36 @@ static int child_gone(struct child *c, struct why *why)
     c->shared->where[sizeof c->shared->where - 1] = 0;
     const char *where = c->shared->where[0] ? c->shared->where : "input";
     if (signal == SIGBUS)
-        return why_set(why, EX_DATAERR, "%.250s: has become shorter while it was read", where);
-    if (limits_reason(signal, where, why)) return why->status;
-    return why_set(why, EX_DATAERR, "%.250s: libhdf5 breaks down over it (%s): damaged, or made to",
+        return failure_set(failure, EX_DATAERR, "%.250s: has become shorter while it was read", where);
+    if (limits_reason(signal, where, failure)) return failure->status;
+    return failure_set(failure, EX_DATAERR, "%.250s: libhdf5 breaks down over it (%s): damaged, or made to",
                    where, signal ? strsignal(signal) : "it ended");
 }
 
 /* All pieces of an answer, out of shared memory */
-static int child_take(struct child *c, struct taker *t, struct why *why)
+static int child_take(struct child *c, struct taker *t, struct failure *failure)
 {
     struct reply r;
     bool begun = false;
     for (uint64_t pieces = 0;; pieces++) {
-        if (line_receive(c->line, &r, sizeof r) != sizeof r) return child_gone(c, why);
+        if (line_receive(c->line, &r, sizeof r) != sizeof r) return child_gone(c, failure);
         r.text[sizeof r.text - 1] = 0;
-        if (r.status) return why_set(why, r.status, "%s", r.text);
-        if (!begun && t->sink.begin(&t->sink, &r)) return why->status;
+        if (r.status) return failure_set(failure, r.status, "%s", r.text);
+        if (!begun && t->sink.begin(&t->sink, &r)) return failure->status;
         begun = true;
         if (r.here > REQUEST_PIECE || r.here > t->size - t->done || (!r.here && t->done < t->size))
-            return why_set(why, EX_DATAERR, "%.250s: an answer of another size", c->shared->where);
+            return failure_set(failure, EX_DATAERR, "%.250s: an answer of another size", c->shared->where);
         const unsigned char *piece = c->shared->piece[pieces % 2];
-        if (t->pour ? t->pour(t->out, piece, (size_t)r.here, why) : 0) return why->status;
+        if (t->pour ? t->pour(t->out, piece, (size_t)r.here, failure) : 0) return failure->status;
         if (r.here && t->out && !t->pour) memcpy((char *)t->out + t->done, piece, (size_t)r.here);
         t->done += r.here;
         if (t->done == t->size) return 0;
-        if (!line_send(c->line, "", 1)) return child_gone(c, why);
+        if (!line_send(c->line, "", 1)) return child_gone(c, failure);
     }
 }
 
-int child_ask(struct child *c, const struct request *q, struct taker *t, struct why *why)
+int child_ask(struct child *c, const struct request *q, struct taker *t, struct failure *failure)
 {
-    if (!line_send(c->line, q, sizeof *q)) return child_gone(c, why);
-    return child_take(c, t, why);
+    if (!line_send(c->line, q, sizeof *q)) return child_gone(c, failure);
+    return child_take(c, t, failure);
 }

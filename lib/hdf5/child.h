@@ -12,7 +12,7 @@ struct child;
 
 /* A new process for the documents of these files. limit: as of served_open. */
 int child_start(struct child **child, int files, char *const *file, uint64_t limit,
-                struct why *why);
+                struct failure *failure);
 void child_close(struct child *child);
 /* In a new process by fork(): those that read for the old one are none of this one's, which neither asks nor ends them. */
 void child_forget_all(void);
@@ -20,6 +20,6 @@ void child_forget_all(void);
 bool child_lost(const struct child *child);
 /* Asks, and takes all pieces of the answer. EX_DATAERR also where the child broke down over it. */
 int child_ask(struct child *child, const struct request *request, struct taker *taker,
-              struct why *why);
+              struct failure *failure);
 
 #endif

@@ -46,30 +46,30 @@ void h5_fill_later(hid_t plist)
 }
 
 /* Makes the groups above an object. */
-static int make_parents(hid_t place, const char *path, struct why *why)
+static int make_parents(hid_t place, const char *path, struct failure *failure)
 {
     const char *slash = strrchr(path, '/');
     if (!slash || slash == path) return 0;
     char *parent = strndup(path, (size_t)(slash - path));
-    int e = parent ? h5_group(place, parent, why) : why_set(why, EX_SOFTWARE, "out of memory");
+    int e = parent ? h5_group(place, parent, failure) : failure_set(failure, EX_SOFTWARE, "out of memory");
     free(parent);
     return e;
 }
 
-int h5_group(hid_t place, const char *path, struct why *why)
+int h5_group(hid_t place, const char *path, struct failure *failure)
 {
     H5O_info_t info;
     hid_t group = -1;
     bool there = H5Oget_info_by_name2(place, path, &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0;
     if (!there) {
-        if (make_parents(place, path, why)) return why->status;
+        if (make_parents(place, path, failure)) return failure->status;
         hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
         H5Pset_obj_track_times(plist, false);
         group = H5Gcreate2(place, path, H5P_DEFAULT, plist, H5P_DEFAULT);
         H5Pclose(plist);
     }
     bool good = there ? info.type == H5O_TYPE_GROUP : group >= 0 && H5Gclose(group) >= 0;
-    return good ? 0 : why_set(why, EX_IOERR, "%s: cannot make the group", path);
+    return good ? 0 : failure_set(failure, EX_IOERR, "%s: cannot make the group", path);
 }
 
 /* A C string of just this length with its zero, as libfclib stores and expects it. To be closed. */
@@ -94,9 +94,9 @@ static hid_t space_of(const struct h5_data *data)
     return data->rank ? H5Screate_simple(data->rank, data->shape, NULL) : H5Screate(H5S_SCALAR);
 }
 
-int h5_write(hid_t place, const char *path, struct h5_data data, const char *units, struct why *why)
+int h5_write(hid_t place, const char *path, struct h5_data data, const char *units, struct failure *failure)
 {
-    if (make_parents(place, path, why)) return why->status;
+    if (make_parents(place, path, failure)) return failure->status;
     hid_t disk = disk_type(&data), space = space_of(&data), plist = h5_dataset_plist();
     bool any = H5Sget_simple_extent_npoints(space) > 0;
     if (!data.at && any) h5_fill_later(plist);
@@ -104,16 +104,16 @@ int h5_write(hid_t place, const char *path, struct h5_data data, const char *uni
     bool bad = set < 0;
     if (!bad && data.at && any)
         bad = H5Dwrite(set, data.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.at) < 0;
-    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, why);
+    if (!bad && units) bad = h5_attr_text(set, ".", "units", units, failure);
     if (set >= 0) bad |= H5Dclose(set) < 0;
     H5Pclose(plist), H5Sclose(space), H5Tclose(disk);
-    return bad ? why_set(why, EX_IOERR, "%s: cannot be written", path) : 0;
+    return bad ? failure_set(failure, EX_IOERR, "%s: cannot be written", path) : 0;
 }
 
-int h5_write_text(hid_t place, const char *path, const char *text, struct why *why)
+int h5_write_text(hid_t place, const char *path, const char *text, struct failure *failure)
 {
     hid_t type = text_type(text);
-    int e = h5_write(place, path, h5_scalar(type, text), NULL, why);
+    int e = h5_write(place, path, h5_scalar(type, text), NULL, failure);
     H5Tclose(type);
     return e;
 }
@@ -123,7 +123,7 @@ static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t di
     return H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 }
 
-int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct why *why)
+int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct failure *failure)
 {
     hid_t disk = disk_type(&data), space = space_of(&data);
     hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -133,16 +133,16 @@ int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data
     bool bad = attr < 0 || (count != 0 && H5Awrite(attr, data.type, data.at) < 0);
     if (attr >= 0) bad |= H5Aclose(attr) < 0;
     H5Sclose(space), H5Tclose(disk);
-    return bad ? why_set(why, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
+    return bad ? failure_set(failure, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
 }
 
-int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct why *why)
+int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct failure *failure)
 {
     if (strlen(text) > ATTRIBUTE_MOST)
-        return why_set(why, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
+        return failure_set(failure, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
                        name, strlen(text), ATTRIBUTE_MOST);
     hid_t type = text_type(text);
-    int e = h5_attr(place, path, name, h5_scalar(type, text), why);
+    int e = h5_attr(place, path, name, h5_scalar(type, text), failure);
     H5Tclose(type);
     return e;
 }

@@ -59,16 +59,16 @@ static inline struct h5_data h5_array(hid_t type, int rank, const hsize_t *shape
 /* A new dataset of fixed shape, little-endian on disk, with @units unless that is NULL. data.at NULL: room is
    made for the numbers, and nothing is written there. */
 int h5_write(hid_t place, const char *path, struct h5_data data, const char *units,
-             struct why *why);
-int h5_write_text(hid_t place, const char *path, const char *text, struct why *why);
+             struct failure *failure);
+int h5_write_text(hid_t place, const char *path, const char *text, struct failure *failure);
 /* Makes the group, and those above it, unless it is there. */
-int h5_group(hid_t place, const char *path, struct why *why);
+int h5_group(hid_t place, const char *path, struct failure *failure);
 
 /* An attribute, in place of one of this name */
-int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct why *why);
+int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct failure *failure);
 /* A text; EX_DATAERR: longer than HDF5 has room for */
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text,
-                 struct why *why);
+                 struct failure *failure);
 
 /* A property list for new datasets, without object times. To be closed. */
 hid_t h5_dataset_plist(void);

@@ -14,16 +14,16 @@ static int child_by_path(const void *one, const void *other, void *objects)
     return order ? order : (a > b) - (a < b);
 }
 
-static int sort(struct list *s, struct why *why)
+static int sort(struct list *s, struct failure *failure)
 {
     if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
-        return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
     for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
     qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, child_by_path, s->object);
     return 0;
 }
 
-int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct why *why)
+int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct failure *failure)
 {
     int64_t room = 0;
     struct listed l;
@@ -32,14 +32,14 @@ int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct why *w
         if (s->count == room) {
             room = room ? 2 * room : 128;
             struct listed *more = realloc(s->object, (size_t)room * sizeof *more);
-            if (!more) return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+            if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
             s->object = more;
         }
         if (!object_unpack(bytes, size, &at, &l))
-            return why_set(why, EX_DATAERR, "no list of objects");
+            return failure_set(failure, EX_DATAERR, "no list of objects");
         s->object[s->count] = l;
     }
-    return sort(s, why);
+    return sort(s, failure);
 }
 
 void list_free(struct list *s)

@@ -16,7 +16,7 @@ struct list {
 };
 
 /* Takes the bytes over, to be freed by list_free even after a failure. EX_DATAERR: no such sequence. */
-int list_open(struct list *list, unsigned char *bytes, uint64_t size, struct why *why);
+int list_open(struct list *list, unsigned char *bytes, uint64_t size, struct failure *failure);
 void list_free(struct list *list);
 
 /* The object under this path; NULL: there is none. */

@@ -25,13 +25,13 @@ static size_t object_size(const struct object *o)
 }
 
 int objects_add(struct objects *to, const struct object *o, const void *shape, const char *name,
-                const void *data, struct why *why)
+                const void *data, struct failure *failure)
 {
     size_t size = object_size(o) + padded(o->data);
     if (!to->bytes || to->size + size > to->room) {
         size_t room = 2 * to->room + size + 4096;
         unsigned char *more = realloc(to->bytes, room);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
         to->bytes = more, to->room = room;
     }
     memset(to->bytes + to->size, 0, size);

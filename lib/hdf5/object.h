@@ -47,7 +47,7 @@ struct objects {
 
 /* One more at the end: shape[rank] numbers of 8 bytes, and o->data bytes of data or NULL for zeros. */
 int objects_add(struct objects *objects, const struct object *object, const void *shape,
-                const char *name, const void *data, struct why *why);
+                const char *name, const void *data, struct failure *failure);
 
 /* The object at bytes[*at] of such a sequence; *at moves behind it. False at the end, and where the bytes are no such
    object. */

@@ -67,16 +67,16 @@ int sink_bytes(struct sink *sink, struct reply *reply, const void *bytes, size_t
  */
 struct taker {
     struct sink sink;
-    int (*pour)(void *to, const void *bytes, size_t size, struct why *why);
+    int (*pour)(void *to, const void *bytes, size_t size, struct failure *failure);
     void *out; /* or what pour() needs to know */
     uint64_t size, done;
     struct budget *budget; /* which the answer draws on; NULL: none */
     struct reply reply;
-    struct why *why;
+    struct failure *failure;
 };
 
 /* Sets the sink's functions; out and size are set already. */
-void taker_start(struct taker *taker, struct why *why);
+void taker_start(struct taker *taker, struct failure *failure);
 
 /* Messages over a socket, whatever signals come in between. False, or another size: it is closed. */
 bool line_send(int line, const void *message, size_t size);

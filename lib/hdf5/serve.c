@@ -46,11 +46,11 @@ static int serve_put_block(hid_t set, hid_t type, int rank, const hsize_t *first
 
 /* The numbers wanted: the dataset of a request, whose type suits it; else NULL and why */
 static const struct served_entry *find_numbers(const struct served *s, const struct request *q,
-                                               struct why *why)
+                                               struct failure *failure)
 {
-    const struct served_entry *e = served_find(s, q->path, why);
+    const struct served_entry *e = served_find(s, q->path, failure);
     if (!e || element_suits(&e->object, q->type)) return e;
-    why_set(why, EX_DATAERR, "%s: %s are needed, and it holds something else", q->path,
+    failure_set(failure, EX_DATAERR, "%s: %s are needed, and it holds something else", q->path,
             element_wanted(q->type));
     return NULL;
 }
@@ -62,28 +62,28 @@ struct serve_block {
 };
 
 static int answer_block(struct served *s, const struct served_entry *e, const struct request *q,
-                        const struct serve_block *b, struct sink *sink, struct why *why)
+                        const struct serve_block *b, struct sink *sink, struct failure *failure)
 {
     const struct object *o = &e->object;
     struct reply reply = { .there = true, .size = column_size(q->type) };
     for (uint32_t k = 0; k < o->rank; k++) reply.size *= b->count[k];
-    if (served_stored(e, b->stored * o->size, why)) return why->status;
-    hid_t set = served_set(s, e, why);
-    if (set < 0) return why->status;
+    if (served_stored(e, b->stored * o->size, failure)) return failure->status;
+    hid_t set = served_set(s, e, failure);
+    if (set < 0) return failure->status;
     if (set != e->set) reply.work = e->chunk;
     int bad = sink->begin(sink, &reply) ||
               serve_put_block(set, column_native(q->type), (int)o->rank, b->first, b->count, sink);
     if (set != e->set) H5Dclose(set);
-    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
+    return bad ? failure_set(failure, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
                          element_wanted(q->type))
                : 0;
 }
 
 static int answer_rows(struct served *s, const struct request *q, struct sink *sink,
-                       struct why *why)
+                       struct failure *failure)
 {
-    const struct served_entry *e = find_numbers(s, q, why);
-    if (!e) return why->status;
+    const struct served_entry *e = find_numbers(s, q, failure);
+    if (!e) return failure->status;
     const struct object *o = &e->object;
     struct serve_block b = { .first = { 0 } };
     hsize_t row = 1, rows = o->rank ? e->shape[0] : 1;
@@ -94,19 +94,19 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
     bool all = q->n < 0;
     if (!all && (!o->rank || q->start < 0 || rows < (hsize_t)q->start ||
                  rows - (hsize_t)q->start < (hsize_t)q->n || row != (hsize_t)q->width))
-        return why_set(why, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
+        return failure_set(failure, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
                        (long long)(q->start + q->n), (long long)q->width);
     if (!all) b.first[0] = (hsize_t)q->start, b.count[0] = (hsize_t)q->n, rows = b.count[0];
     b.stored = rows * row;
-    return answer_block(s, e, q, &b, sink, why);
+    return answer_block(s, e, q, &b, sink, failure);
 }
 
 /* Of one row some rows of the dimension within it */
 static int answer_part(struct served *s, const struct request *q, struct sink *sink,
-                       struct why *why)
+                       struct failure *failure)
 {
-    const struct served_entry *e = find_numbers(s, q, why);
-    if (!e) return why->status;
+    const struct served_entry *e = find_numbers(s, q, failure);
+    if (!e) return failure->status;
     const struct object *o = &e->object;
     struct serve_block b = { .first = { 0 } };
     hsize_t *first = b.first, *count = b.count, width = 1;
@@ -117,15 +117,15 @@ static int answer_part(struct served *s, const struct request *q, struct sink *s
     if (o->rank < 2 || q->start < 0 || q->from < 0 || q->n < 0 || count[0] <= (hsize_t)q->start ||
         count[1] < (hsize_t)q->from || count[1] - (hsize_t)q->from < (hsize_t)q->n ||
         width != (hsize_t)q->width)
-        return why_set(why, EX_DATAERR, "%s: has no such part", q->path);
+        return failure_set(failure, EX_DATAERR, "%s: has no such part", q->path);
     b.stored = count[1] * width;
     first[0] = (hsize_t)q->start, count[0] = 1;
     first[1] = (hsize_t)q->from, count[1] = (hsize_t)q->n;
-    return answer_block(s, e, q, &b, sink, why);
+    return answer_block(s, e, q, &b, sink, failure);
 }
 
 static int answer_text(struct served *s, const struct request *q, struct sink *sink,
-                       struct why *why)
+                       struct failure *failure)
 {
     struct reply reply = { 0 };
     const char *path = *q->path ? q->path : "/";
@@ -139,33 +139,33 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
         if (is_text) text = element_text(-1, attr, &length, &no_memory);
         H5Aclose(attr);
     } else {
-        struct why none = { 0 };
+        struct failure none = { 0 };
         const struct served_entry *e = served_find(s, q->path, &none);
         if (!e) return sink->begin(sink, &reply);
         is_text = e->object.kind == OBJECT_TEXT;
-        if (is_text && served_stored(e, e->object.size, why)) return why->status;
-        hid_t set = is_text ? served_set(s, e, why) : -1;
+        if (is_text && served_stored(e, e->object.size, failure)) return failure->status;
+        hid_t set = is_text ? served_set(s, e, failure) : -1;
         if (set >= 0)
             text = q->n ? element_lines(set, &length, &no_memory)
                         : element_text(set, -1, &length, &no_memory);
         if (set >= 0 && set != e->set) H5Dclose(set);
     }
-    if (no_memory) why_set(why, EX_SOFTWARE, "%s: no memory", path);
-    if (why->status) return free(text), why->status;
+    if (no_memory) failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
+    if (failure->status) return free(text), failure->status;
     if (!text)
-        return why_set(why, EX_DATAERR, "%s%s%s: %s", path, q->name[0] ? "@" : "", q->name,
+        return failure_set(failure, EX_DATAERR, "%s%s%s: %s", path, q->name[0] ? "@" : "", q->name,
                        is_text ? "cannot be read as a text (damaged?)" : "a text is needed");
-    if (sink_bytes(sink, &reply, text, length)) why_set(why, EX_SOFTWARE, "%s: not sent", path);
+    if (sink_bytes(sink, &reply, text, length)) failure_set(failure, EX_SOFTWARE, "%s: not sent", path);
     free(text);
-    return why->status;
+    return failure->status;
 }
 
 static int answer_attribute(struct served *s, const struct request *q, struct sink *sink,
-                            struct why *why)
+                            struct failure *failure)
 {
     const char *path = *q->path ? q->path : "/";
     hid_t attr = H5Aopen_by_name(s->file, path, q->name, H5P_DEFAULT, H5P_DEFAULT);
-    if (attr < 0) return why_set(why, EX_DATAERR, "%s@%s: no such attribute", path, q->name);
+    if (attr < 0) return failure_set(failure, EX_DATAERR, "%s@%s: no such attribute", path, q->name);
     hid_t disk = H5Aget_type(attr), space = H5Aget_space(attr);
     hssize_t points = space < 0 ? -1 : H5Sget_simple_extent_npoints(space),
              want = q->n < 0 ? 1 : q->n;
@@ -174,33 +174,33 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
     struct reply reply = { 0 };
     if (disk >= 0) element_describe(disk, &o);
     if (!element_suits(&o, q->type))
-        why_set(why, EX_DATAERR, "%s@%s: %s are needed", path, q->name, element_wanted(q->type));
+        failure_set(failure, EX_DATAERR, "%s@%s: %s are needed", path, q->name, element_wanted(q->type));
     else if (points != want || want > 16)
-        why_set(why, EX_DATAERR, "%s@%s: %lld values, %lld are needed", path, q->name,
+        failure_set(failure, EX_DATAERR, "%s@%s: %lld values, %lld are needed", path, q->name,
                 (long long)points, (long long)want);
     else if (want && H5Aread(attr, column_native(q->type), numbers) < 0)
-        why_set(why, EX_DATAERR, "%s@%s: cannot be read", path, q->name);
+        failure_set(failure, EX_DATAERR, "%s@%s: cannot be read", path, q->name);
     else if (sink_bytes(sink, &reply, numbers, (size_t)want * column_size(q->type)))
-        why_set(why, EX_SOFTWARE, "%s: not sent", path);
+        failure_set(failure, EX_SOFTWARE, "%s: not sent", path);
     if (space >= 0) H5Sclose(space);
     if (disk >= 0) H5Tclose(disk);
     H5Aclose(attr);
-    return why->status;
+    return failure->status;
 }
 
-static int answer_raw(struct served *s, const struct request *q, struct sink *sink, struct why *why)
+static int answer_raw(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
 {
-    const struct served_entry *e = served_find(s, q->path, why);
-    if (!e) return why->status;
+    const struct served_entry *e = served_find(s, q->path, failure);
+    if (!e) return failure->status;
     const struct object *o = &e->object;
     hsize_t first[OBJECT_RANK] = { 0 }, points = 1;
     for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) points *= e->shape[k];
     if (o->rank > OBJECT_RANK || !o->size || o->size > REQUEST_PIECE ||
         (o->kind != OBJECT_NUMBERS && o->kind != OBJECT_TEXT))
-        return why_set(why, EX_DATAERR, "%s: holds something that cannot be copied", q->path);
-    if (served_stored(e, points * o->size, why)) return why->status;
-    hid_t set = served_set(s, e, why), type = element_type(o);
-    if (set < 0) return why->status;
+        return failure_set(failure, EX_DATAERR, "%s: holds something that cannot be copied", q->path);
+    if (served_stored(e, points * o->size, failure)) return failure->status;
+    hid_t set = served_set(s, e, failure), type = element_type(o);
+    if (set < 0) return failure->status;
     struct reply reply = { .there = true, .size = points * o->size };
     hid_t disk = o->class == 's' ? H5Dget_type(set) : -1;
     if (disk >= 0) H5Tset_cset(type, H5Tget_cset(disk)), H5Tclose(disk);
@@ -208,25 +208,25 @@ static int answer_raw(struct served *s, const struct request *q, struct sink *si
         sink->begin(sink, &reply) || serve_put_block(set, type, (int)o->rank, first, e->shape, sink);
     if (o->class == 's') H5Tclose(type);
     if (set != e->set) H5Dclose(set);
-    return bad ? why_set(why, EX_DATAERR, "%s: cannot be read (damaged?)", q->path) : 0;
+    return bad ? failure_set(failure, EX_DATAERR, "%s: cannot be read (damaged?)", q->path) : 0;
 }
 
-int serve_answer(struct served *s, const struct request *q, struct sink *sink, struct why *why)
+int serve_answer(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
 {
     switch (q->op) {
     case REQUEST_ROWS:
-        return answer_rows(s, q, sink, why);
+        return answer_rows(s, q, sink, failure);
     case REQUEST_PART:
-        return answer_part(s, q, sink, why);
+        return answer_part(s, q, sink, failure);
     case REQUEST_RAW:
-        return answer_raw(s, q, sink, why);
+        return answer_raw(s, q, sink, failure);
     case REQUEST_TEXT:
-        return answer_text(s, q, sink, why);
+        return answer_text(s, q, sink, failure);
     case REQUEST_ATTRIBUTE:
-        return answer_attribute(s, q, sink, why);
+        return answer_attribute(s, q, sink, failure);
     case REQUEST_ATTRIBUTES:
-        return serve_attributes(s, q, sink, why);
+        return serve_attributes(s, q, sink, failure);
     default:
-        return why_set(why, EX_SOFTWARE, "no such request");
+        return failure_set(failure, EX_SOFTWARE, "no such request");
     }
 }

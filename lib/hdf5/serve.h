@@ -16,12 +16,12 @@ enum {
  * The objects of the document, as bytes; to be freed. Small ones come with their data, and groups with
  * their attributes: most documents are small, and a question takes longer than its answer.
  */
-void *serve_objects(struct served *served, size_t *size, struct why *why);
+void *serve_objects(struct served *served, size_t *size, struct failure *failure);
 /* Answers any request but those of the stream. */
 int serve_answer(struct served *served, const struct request *request, struct sink *sink,
-                 struct why *why);
+                 struct failure *failure);
 /* REQUEST_ATTRIBUTES (serve_objects.c) */
 int serve_attributes(struct served *served, const struct request *request, struct sink *sink,
-                     struct why *why);
+                     struct failure *failure);
 
 #endif

@@ -20,7 +20,7 @@ struct serve_gathered {
     const char *path; /* of the object whose attributes they are */
     bool group;       /* they go under "path@name" */
     int count;        /* that it has so far */
-    struct why *why;
+    struct failure *failure;
 };
 
 /* One attribute: what it is, and its data. */
@@ -60,16 +60,16 @@ static int serve_gather(struct serve_gathered *g, const char *name, hid_t attr)
     if (disk < 0 || space < 0 || (!from && o.kind != OBJECT_OTHER)) {
         free(text), free(data);
         return no_memory
-                   ? why_set(g->why, EX_SOFTWARE, "no memory for attributes")
-                   : why_set(g->why, EX_DATAERR, "%s@%s: cannot be read (damaged?)", g->path, name);
+                   ? failure_set(g->failure, EX_SOFTWARE, "no memory for attributes")
+                   : failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be read (damaged?)", g->path, name);
     }
     char under[OBJECT_PATH + OBJECT_NAME];
     snprintf(under, sizeof under, "%s@%s", g->path, name);
     if (g->group) name = under;
     o.name = (uint32_t)strlen(name) + 1, o.attribute = g->group;
-    objects_add(&g->objects, &o, shape, name, from, g->why);
+    objects_add(&g->objects, &o, shape, name, from, g->failure);
     free(text), free(data);
-    return g->why->status;
+    return g->failure->status;
 }
 
 static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *info, void *data)
@@ -77,38 +77,38 @@ static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *i
     (void)info;
     struct serve_gathered *g = data;
     if (g->count++ == MOST_ATTRIBUTES)
-        return why_set(g->why, EX_DATAERR, "%s: more than %d attributes", g->path, MOST_ATTRIBUTES),
+        return failure_set(g->failure, EX_DATAERR, "%s: more than %d attributes", g->path, MOST_ATTRIBUTES),
                -1;
     hid_t attr = H5Aopen(from, name, H5P_DEFAULT);
     if (attr < 0)
-        return why_set(g->why, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path, name), -1;
+        return failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path, name), -1;
     int e = serve_gather(g, name, attr);
     H5Aclose(attr);
     return e ? -1 : 0;
 }
 
-int serve_attributes(struct served *s, const struct request *q, struct sink *sink, struct why *why)
+int serve_attributes(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
 {
-    struct serve_gathered g = { .path = *q->path ? q->path : "/", .why = why };
+    struct serve_gathered g = { .path = *q->path ? q->path : "/", .failure = failure };
     struct reply reply = { 0 };
     hid_t object = H5Oopen(s->file, g.path, H5P_DEFAULT);
     if (object < 0 ||
         H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, gather_attribute, &g) < 0)
-        why_set(why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", g.path);
+        failure_set(failure, EX_DATAERR, "%s: attributes cannot be read (damaged?)", g.path);
     if (object >= 0) H5Oclose(object);
-    if (!why->status &&
+    if (!failure->status &&
         sink_bytes(sink, &reply, g.objects.bytes ? (const void *)g.objects.bytes : "",
                    g.objects.size))
-        why_set(why, EX_SOFTWARE, "%s: not sent", g.path);
+        failure_set(failure, EX_SOFTWARE, "%s: not sent", g.path);
     free(g.objects.bytes);
-    return why->status;
+    return failure->status;
 }
 
 /* The data of a small dataset, so that nobody needs to ask; NULL where that does not work out. */
 static void *small_data(const struct served *s, const struct served_entry *e, struct object *o,
                         size_t most)
 {
-    struct why none = { 0 };
+    struct failure none = { 0 };
     hsize_t points = 1;
     size_t length = 0;
     bool no_memory;
@@ -141,32 +141,32 @@ static int add_group_attributes(struct served *s, const char *path, struct serve
     hid_t group = H5Gopen2(s->file, *path ? path : "/", H5P_DEFAULT);
     g->path = path, g->group = true, g->count = 0;
     if (group < 0 || H5Aiterate2(group, H5_INDEX_NAME, H5_ITER_INC, NULL, gather_attribute, g) < 0)
-        why_set(g->why, EX_DATAERR, "%s: attributes cannot be read (damaged?)", path);
+        failure_set(g->failure, EX_DATAERR, "%s: attributes cannot be read (damaged?)", path);
     if (group >= 0) H5Gclose(group);
-    return g->why->status;
+    return g->failure->status;
 }
 
-void *serve_objects(struct served *s, size_t *size, struct why *why)
+void *serve_objects(struct served *s, size_t *size, struct failure *failure)
 {
-    struct serve_gathered g = { .why = why };
+    struct serve_gathered g = { .failure = failure };
     size_t sent = 0;
-    for (int64_t k = 0; k < s->count && !why->status; k++) {
+    for (int64_t k = 0; k < s->count && !failure->status; k++) {
         const struct served_entry *e = &s->entry[k];
         struct object o = e->object;
         size_t most = e->owner ? SMALL_DATA : SMALL_LINKED;
         o.name = (uint32_t)strlen(e->path) + 1;
         void *data = sent < MOST_SENT ? small_data(s, e, &o, most) : NULL;
-        objects_add(&g.objects, &o, e->shape, e->path, data, why);
+        objects_add(&g.objects, &o, e->shape, e->path, data, failure);
         free(data);
         sent += o.data;
-        if (o.kind == OBJECT_GROUP && !why->status && sent < MOST_SENT)
+        if (o.kind == OBJECT_GROUP && !failure->status && sent < MOST_SENT)
             add_group_attributes(s, e->path, &g);
     }
     *size = g.objects.size;
     void *bytes = g.objects.bytes;
-    if (!why->status && !bytes) bytes = calloc(1, 1); // there is nothing in it
-    if (!why->status && bytes) return bytes;
-    why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+    if (!failure->status && !bytes) bytes = calloc(1, 1); // there is nothing in it
+    if (!failure->status && bytes) return bytes;
+    failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
     free(bytes);
     return NULL;
 }

@@ -27,16 +27,16 @@ struct walk {
     struct served *served;
     const char *path; /* of the group in hand; "" is the root */
     int depth;
-    struct why *why;
+    struct failure *failure;
 };
 
 /* Refuses what would make libhdf5 open other files or load code. Is the data packed? */
-static int check_storage(hid_t plist, struct served_entry *e, struct why *why)
+static int check_storage(hid_t plist, struct served_entry *e, struct failure *failure)
 {
     if (H5Pget_layout(plist) == H5D_VIRTUAL)
-        return why_set(why, EX_DATAERR, "%s: a virtual dataset, of data in other files", e->path);
+        return failure_set(failure, EX_DATAERR, "%s: a virtual dataset, of data in other files", e->path);
     if (H5Pget_external_count(plist) != 0)
-        return why_set(why, EX_DATAERR, "%s: its data are in another file", e->path);
+        return failure_set(failure, EX_DATAERR, "%s: its data are in another file", e->path);
     int filters = H5Pget_nfilters(plist);
     for (int k = 0; k < filters; k++) {
         unsigned flags, config;
@@ -45,11 +45,11 @@ static int check_storage(hid_t plist, struct served_entry *e, struct why *why)
             H5Pget_filter2(plist, (unsigned)k, &flags, &values, NULL, 0, NULL, &config);
         if (f != H5Z_FILTER_DEFLATE && f != H5Z_FILTER_SHUFFLE && f != H5Z_FILTER_FLETCHER32 &&
             f != H5Z_FILTER_SZIP)
-            return why_set(why, EX_DATAERR, "%s: packed by a filter (%d) that is not built in",
+            return failure_set(failure, EX_DATAERR, "%s: packed by a filter (%d) that is not built in",
                            e->path, (int)f);
         e->packed |= f == H5Z_FILTER_DEFLATE || f == H5Z_FILTER_SZIP;
     }
-    return filters < 0 ? why_set(why, EX_DATAERR, "%s: damaged filters", e->path) : 0;
+    return filters < 0 ? failure_set(failure, EX_DATAERR, "%s: damaged filters", e->path) : 0;
 }
 
 /* A packed chunk has to stay in the cache while its pieces are handed out; other data bypass it. */
@@ -70,17 +70,17 @@ static hid_t open_again(hid_t set, hid_t plist, struct served_entry *e)
 }
 
 /* Under each of its names a dataset is read anew. */
-static int count_bytes(struct served *s, const struct served_entry *e, struct why *why)
+static int count_bytes(struct served *s, const struct served_entry *e, struct failure *failure)
 {
     if (__builtin_add_overflow(s->unpacked, e->bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
     if (s->unpacked <= s->limit) return 0;
-    return why_set(why, EX_DATAERR,
+    return failure_set(failure, EX_DATAERR,
                    "%s: with it the file declares %llu MB in %llu kB (--unpack allows more)",
                    e->path, (unsigned long long)(s->unpacked / 1000000),
                    (unsigned long long)(s->size / 1000 + 1));
 }
 
-static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, struct why *why)
+static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, struct failure *failure)
 {
     hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
     hsize_t shape[H5S_MAX_RANK] = { 0 };
@@ -90,7 +90,7 @@ static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, st
     if (disk >= 0) element_describe(disk, &e->object), H5Tclose(disk);
     if (space >= 0) H5Sclose(space);
     if (rank < 0 || class == H5S_NO_CLASS || !element)
-        return why_set(why, EX_DATAERR, "%s: its shape cannot be read (damaged?)", e->path);
+        return failure_set(failure, EX_DATAERR, "%s: its shape cannot be read (damaged?)", e->path);
     e->object.rank = rank > OBJECT_RANK ? OBJECT_RANK + 1 : (uint32_t)rank;
     if (class == H5S_NULL || rank > OBJECT_RANK) e->object.kind = OBJECT_OTHER;
     if (rank <= OBJECT_RANK) memcpy(e->shape, shape, (size_t)rank * sizeof *shape);
@@ -99,19 +99,19 @@ static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, st
         if (__builtin_mul_overflow(e->bytes, shape[k], &e->bytes)) e->bytes = UINT64_MAX;
     e->stored = H5Dget_storage_size(set);
     if (e->stored > s->size) e->stored = s->size;
-    return count_bytes(s, e, why);
+    return count_bytes(s, e, failure);
 }
 
-static int look_at_dataset(struct served *s, hid_t set, struct served_entry *e, struct why *why)
+static int look_at_dataset(struct served *s, hid_t set, struct served_entry *e, struct failure *failure)
 {
     hid_t plist = H5Dget_create_plist(set);
-    int status = plist < 0 ? why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
-                           : check_storage(plist, e, why);
+    int status = plist < 0 ? failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
+                           : check_storage(plist, e, failure);
     s->chunked |= plist >= 0 && H5Pget_layout(plist) == H5D_CHUNKED;
-    if (!status) status = look_at_shape(s, set, e, why);
+    if (!status) status = look_at_shape(s, set, e, failure);
     if (!status) set = open_again(set, plist, e);
     if (plist >= 0) H5Pclose(plist);
-    if (set < 0) return why_set(why, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
+    if (set < 0) return failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
     e->set = set, e->owner = true;
     if (s->count >= OPEN_SETS) H5Dclose(set), e->set = -1, e->owner = false;
     return status;
@@ -121,23 +121,23 @@ static struct served_entry *add_entry(struct walk *w, const char *name)
 {
     struct served *s = w->served;
     if (s->count == MOST_OBJECTS)
-        return why_set(w->why, EX_DATAERR, "%s: more than %d objects (a group in itself?)", w->path,
+        return failure_set(w->failure, EX_DATAERR, "%s: more than %d objects (a group in itself?)", w->path,
                        MOST_OBJECTS),
                NULL;
     if (s->count == s->room) {
         int64_t room = s->room ? 2 * s->room : 128;
         struct served_entry *more = realloc(s->entry, (size_t)room * sizeof *more);
-        if (!more) return why_set(w->why, EX_SOFTWARE, "no memory for a list of objects"), NULL;
+        if (!more) return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
         s->entry = more, s->room = room;
     }
     struct served_entry *e = &s->entry[s->count];
     size_t length = strlen(w->path) + strlen(name) + 2;
     *e = (struct served_entry){ .set = -1, .address = HADDR_UNDEF, .path = malloc(length) };
-    if (!e->path) return why_set(w->why, EX_SOFTWARE, "no memory for a list of objects"), NULL;
+    if (!e->path) return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
     snprintf(e->path, length, "%s/%s", w->path, name);
     s->count++;
     if (length > OBJECT_PATH)
-        return why_set(w->why, EX_DATAERR, "%.100s...: a name too long", e->path), NULL;
+        return failure_set(w->failure, EX_DATAERR, "%.100s...: a name too long", e->path), NULL;
     return e;
 }
 
@@ -146,11 +146,11 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
 static int look_into_group(struct walk *w, hid_t group, const char *path)
 {
     if (w->depth == MOST_DEPTH)
-        return why_set(w->why, EX_DATAERR, "%s: groups more than %d deep", path, MOST_DEPTH);
-    struct walk in = { w->served, path, w->depth + 1, w->why };
+        return failure_set(w->failure, EX_DATAERR, "%s: groups more than %d deep", path, MOST_DEPTH);
+    struct walk in = { w->served, path, w->depth + 1, w->failure };
     if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, look_at_link, &in) < 0)
-        why_set(w->why, EX_DATAERR, "%s: cannot be listed (damaged?)", *path ? path : "/");
-    return w->why->status;
+        failure_set(w->failure, EX_DATAERR, "%s: cannot be listed (damaged?)", *path ? path : "/");
+    return w->failure->status;
 }
 
 /* The same object under another name: nothing of it is looked at again. */
@@ -180,29 +180,29 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     struct walk *w = data;
     if (is_for_vtk(w, from, name)) return 0;
     if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT)
-        return why_set(w->why, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
+        return failure_set(w->failure, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
                -1;
     if (!*name || strchr(name, '/') || !strcmp(name, ".") || !strcmp(name, ".."))
-        return why_set(w->why, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
+        return failure_set(w->failure, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
     struct served_entry *e = add_entry(w, name);
     if (!e) return -1;
     if (info->type == H5L_TYPE_HARD) e->address = info->u.address;
     if (info->type == H5L_TYPE_HARD && known_already(w->served, e))
-        return count_bytes(w->served, e, w->why) ? -1 : 0;
+        return count_bytes(w->served, e, w->failure) ? -1 : 0;
     hid_t object = H5Oopen(from, name, H5P_DEFAULT);
     if (object < 0 && info->type == H5L_TYPE_SOFT) { // it leads nowhere
         free(e->path), w->served->count--;
         return 0;
     }
     H5I_type_t type = object < 0 ? H5I_BADID : H5Iget_type(object);
-    if (type == H5I_DATASET) return look_at_dataset(w->served, object, e, w->why) ? -1 : 0;
+    if (type == H5I_DATASET) return look_at_dataset(w->served, object, e, w->failure) ? -1 : 0;
     if (type == H5I_GROUP) look_into_group(w, object, e->path); // e may have moved
     if (type != H5I_GROUP && type != H5I_DATATYPE)
-        why_set(w->why, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
+        failure_set(w->failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
     else if (type == H5I_DATATYPE)
         e->object.kind = OBJECT_OTHER;
     if (object >= 0) H5Oclose(object);
-    return w->why->status ? -1 : 0;
+    return w->failure->status ? -1 : 0;
 }
 
 static int served_by_path(const void *one, const void *other, void *entries)
@@ -211,24 +211,24 @@ static int served_by_path(const void *one, const void *other, void *entries)
     return strcmp(e[*(const int64_t *)one].path, e[*(const int64_t *)other].path);
 }
 
-static int sort_entries(struct served *s, struct why *why)
+static int sort_entries(struct served *s, struct failure *failure)
 {
     if (!(s->sorted = malloc(((size_t)s->count + 1) * sizeof *s->sorted)))
-        return why_set(why, EX_SOFTWARE, "no memory for a list of objects");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
     for (int64_t k = 0; k < s->count; k++) s->sorted[k] = k;
     qsort_r(s->sorted, (size_t)s->count, sizeof *s->sorted, served_by_path, s->entry);
     return 0;
 }
 
-int served_open(struct served *s, hid_t file, uint64_t size, uint64_t limit, struct why *why)
+int served_open(struct served *s, hid_t file, uint64_t size, uint64_t limit, struct failure *failure)
 {
     *s = (struct served){ .file = file, .size = size, .limit = budget_unpacked(size, limit) };
-    struct walk root = { s, "", 0, why };
+    struct walk root = { s, "", 0, failure };
     hid_t group = H5Gopen2(file, "/", H5P_DEFAULT);
-    if (group < 0) return why_set(why, EX_DATAERR, "/: cannot be opened (damaged?)");
+    if (group < 0) return failure_set(failure, EX_DATAERR, "/: cannot be opened (damaged?)");
     look_into_group(&root, group, "");
     H5Gclose(group);
-    return why->status ? why->status : sort_entries(s, why);
+    return failure->status ? failure->status : sort_entries(s, failure);
 }
 
 void served_close(struct served *s)
@@ -242,7 +242,7 @@ void served_close(struct served *s)
     *s = (struct served){ .file = -1 };
 }
 
-struct served_entry *served_find(const struct served *s, const char *path, struct why *why)
+struct served_entry *served_find(const struct served *s, const char *path, struct failure *failure)
 {
     for (int64_t lo = 0, hi = s->sorted ? s->count : 0; lo < hi;) {
         int64_t k = lo + (hi - lo) / 2;
@@ -250,22 +250,22 @@ struct served_entry *served_find(const struct served *s, const char *path, struc
         if (!order) return &s->entry[s->sorted[k]];
         *(order < 0 ? &lo : &hi) = order < 0 ? k + 1 : k;
     }
-    return why_set(why, EX_DATAERR, "%s: no such dataset", path), NULL;
+    return failure_set(failure, EX_DATAERR, "%s: no such dataset", path), NULL;
 }
 
-hid_t served_set(const struct served *s, const struct served_entry *e, struct why *why)
+hid_t served_set(const struct served *s, const struct served_entry *e, struct failure *failure)
 {
     if (e->set >= 0) return e->set;
     hid_t set = H5Dopen2(s->file, e->path, H5P_DEFAULT);
-    if (set < 0) why_set(why, EX_DATAERR, "%s: no such dataset", e->path);
+    if (set < 0) failure_set(failure, EX_DATAERR, "%s: no such dataset", e->path);
     return set;
 }
 
 /* Is as much stored as is wanted of the dataset's first bytes? What filters packed is not counted. */
-int served_stored(const struct served_entry *e, uint64_t bytes, struct why *why)
+int served_stored(const struct served_entry *e, uint64_t bytes, struct failure *failure)
 {
     if (bytes <= FREE_FILL || bytes - FREE_FILL <= e->stored) return 0;
     if (e->packed && e->stored && bytes / 1100 <= e->stored) return 0; // gzip packs 1032 to 1
-    return why_set(why, EX_DATAERR, "%s: %llu bytes are declared, and %llu are stored", e->path,
+    return failure_set(failure, EX_DATAERR, "%s: %llu bytes are declared, and %llu are stored", e->path,
                    (unsigned long long)bytes, (unsigned long long)e->stored);
 }

@@ -119,7 +119,7 @@ static void look_back(unsigned char *end)
     if (end) madvise(end - skip, page, MADV_DONTNEED);
 }
 
-static int open_image(struct server *s, const struct image *im, struct why *why)
+static int open_image(struct server *s, const struct image *im, struct failure *failure)
 {
     unsigned char *end = NULL;
     size_t size = look_ahead(s, im, &end);
@@ -127,46 +127,46 @@ static int open_image(struct server *s, const struct image *im, struct why *why)
                                      H5LT_FILE_IMAGE_DONT_COPY | H5LT_FILE_IMAGE_DONT_RELEASE);
     look_back(end);
     if (file < 0)
-        return why_set(why, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
+        return failure_set(failure, EX_DATAERR, "not a readable HDF5 file (truncated or damaged)");
     // a writer shows a frame's step after all else: what is looked at later is there for each step that is
     hid_t step = im->unfinished ? H5Dopen2(file, "/particles/all/position/step", H5P_DEFAULT) : -1;
-    int status = served_open(&s->served, file, im->size, s->limit, why);
+    int status = served_open(&s->served, file, im->size, s->limit, failure);
     if (step >= 0) H5Dclose(step);
     return status;
 }
 
 /* A block that was read while it was being written contradicts its checksum: a moment later it does not. */
-static bool is_torn(const struct server *s, const struct image *im, const struct why *why)
+static bool is_torn(const struct server *s, const struct image *im, const struct failure *failure)
 {
-    if (why->status != EX_DATAERR || !im->unfinished || !stream_changed(s->stream)) return false;
+    if (failure->status != EX_DATAERR || !im->unfinished || !stream_changed(s->stream)) return false;
     usleep(PAUSE);
     return true;
 }
 
 /* The next document, and all that is in it */
-static int answer_next(struct server *s, struct why *why)
+static int answer_next(struct server *s, struct failure *failure)
 {
     struct image im;
     struct reply reply = { 0 };
     served_close(&s->served);
     s->image.bytes = NULL;
     limits_lift();
-    if (stream_next(s->stream, &im, why)) return why->status;
+    if (stream_next(s->stream, &im, failure)) return failure->status;
     if (!im.bytes) return s->sink.begin(&s->sink, &reply);
     snprintf(s->shared->where, sizeof s->shared->where,
              im.number > 1 ? "%.250s: document %lld" : "%.250s", im.name, (long long)im.number);
     bound_memory(im.size, s->limit), bound_time(im.size, s->limit);
     size_t size = 0;
-    void *objects = open_image(s, &im, why) ? NULL : serve_objects(&s->served, &size, why);
-    for (int try = 0; !objects && try < TRIES && is_torn(s, &im, why); try++) {
-        served_close(&s->served), *why = (struct why){ 0 };
-        objects = open_image(s, &im, why) ? NULL : serve_objects(&s->served, &size, why);
+    void *objects = open_image(s, &im, failure) ? NULL : serve_objects(&s->served, &size, failure);
+    for (int try = 0; !objects && try < TRIES && is_torn(s, &im, failure); try++) {
+        served_close(&s->served), *failure = (struct failure){ 0 };
+        objects = open_image(s, &im, failure) ? NULL : serve_objects(&s->served, &size, failure);
     }
     if (!objects) {
-        char text[sizeof why->text];
-        memcpy(text, why->text, sizeof text);
-        snprintf(why->text, sizeof why->text, "%.120s: %.270s", s->shared->where, text);
-        return why->status;
+        char text[sizeof failure->text];
+        memcpy(text, failure->text, sizeof text);
+        snprintf(failure->text, sizeof failure->text, "%.120s: %.270s", s->shared->where, text);
+        return failure->status;
     }
     reply.foreign = im.foreign, reply.unfinished = im.unfinished, reply.number = im.number;
     reply.document = im.size, reply.plain = !s->served.chunked;
@@ -174,26 +174,26 @@ static int answer_next(struct server *s, struct why *why)
     snprintf(reply.text, sizeof reply.text, "%s", im.name);
     int e = sink_bytes(&s->sink, &reply, objects, size);
     free(objects);
-    return e ? why_set(why, EX_SOFTWARE, "not sent") : 0;
+    return e ? failure_set(failure, EX_SOFTWARE, "not sent") : 0;
 }
 
-static int answer_image(struct server *s, struct why *why)
+static int answer_image(struct server *s, struct failure *failure)
 {
     struct reply reply = { 0 };
-    if (!s->image.bytes) return why_set(why, EX_SOFTWARE, "no document");
+    if (!s->image.bytes) return failure_set(failure, EX_SOFTWARE, "no document");
     return sink_bytes(&s->sink, &reply, s->image.bytes, s->image.size)
-               ? why_set(why, EX_SOFTWARE, "not sent")
+               ? failure_set(failure, EX_SOFTWARE, "not sent")
                : 0;
 }
 
-static int server_answer(struct server *s, const struct request *q, struct why *why)
+static int server_answer(struct server *s, const struct request *q, struct failure *failure)
 {
     struct reply done = { .there = true };
-    if (q->op == REQUEST_IMAGE) return answer_image(s, why);
-    if (q->op == REQUEST_NEXT) return answer_next(s, why);
+    if (q->op == REQUEST_IMAGE) return answer_image(s, failure);
+    if (q->op == REQUEST_NEXT) return answer_next(s, failure);
     bound_time(s->served.size, s->limit);
     if (q->op != REQUEST_UNLOAD && q->op != REQUEST_RELEASE)
-        return serve_answer(&s->served, q, &s->sink, why);
+        return serve_answer(&s->served, q, &s->sink, failure);
     if (q->op == REQUEST_RELEASE)
         served_close(&s->served), s->image.bytes = NULL, stream_release(s->stream);
     if (q->op == REQUEST_UNLOAD) stream_unload(s->stream);
@@ -206,12 +206,12 @@ static void serve(struct server *s)
     struct request q;
     ssize_t n;
     while ((n = line_receive(s->line, &q, sizeof q)) > 0) {
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         if (n == 1) continue; // the last pieces are not waited for
         if (n != sizeof q) break;
-        if (!server_answer(s, &q, &why)) continue;
-        s->reply = (struct reply){ .status = why.status ? why.status : EX_SOFTWARE };
-        snprintf(s->reply.text, sizeof s->reply.text, "%s", why.text);
+        if (!server_answer(s, &q, &failure)) continue;
+        s->reply = (struct reply){ .status = failure.status ? failure.status : EX_SOFTWARE };
+        snprintf(s->reply.text, sizeof s->reply.text, "%s", failure.text);
         if (!send_reply(s)) break;
     }
 }
@@ -229,10 +229,10 @@ void server_run(int line, struct server_memory *shared, int files, char *const *
                         .shared = shared,
                         .limit = limit,
                         .served.file = -1 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
 #ifndef NSD_COVERAGE
     // standard input is not kept open when the tool is gone; a program's threads may end before it does
-    if (!guest_is()) prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (!embedded_is()) prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(0);
 #else
     (void)parent;
@@ -242,7 +242,7 @@ void server_run(int line, struct server_memory *shared, int files, char *const *
     dup2(null, STDOUT_FILENO); // who reads our output shall not wait for this process
     if (!SANITIZED) dup2(null, STDERR_FILENO);
     served_start();
-    if (!stream_open(&s.stream, files, file, &why)) serve(&s);
+    if (!stream_open(&s.stream, files, file, &failure)) serve(&s);
 #ifdef NSD_COVERAGE
     // tells tests/support/preload/failing_allocations.c that what follows is not ours
     malloc_trim(0);

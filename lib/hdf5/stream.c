@@ -75,10 +75,10 @@ struct stream {
     size_t old_mapped;
 };
 
-int stream_open(struct stream **out, int files, char *const *file, struct why *why)
+int stream_open(struct stream **out, int files, char *const *file, struct failure *failure)
 {
     struct stream *s = *out = calloc(1, sizeof *s);
-    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!s) return failure_set(failure, EX_SOFTWARE, "no memory");
     static char *const standard[] = { "-" };
     s->files = files ? files : 1;
     s->file = files ? file : standard;
@@ -144,7 +144,7 @@ void stream_release(struct stream *s)
     if (s->room > LARGE) buffer_free(s); // else kept for the next document
 }
 
-static int file_open(struct stream *s, struct why *why)
+static int file_open(struct stream *s, struct failure *failure)
 {
     const char *path = s->file[s->next++];
     bool standard = !strcmp(path, "-");
@@ -153,11 +153,11 @@ static int file_open(struct stream *s, struct why *why)
     s->in_file = 0;
     struct stat st;
     if (s->fd < 0 || fstat(s->fd, &st))
-        return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+        return failure_set(failure, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
     if (isatty(s->fd))
-        return why_set(why, EX_USAGE, "%s is a terminal: give a FILE, or a pipe (see --help)",
+        return failure_set(failure, EX_USAGE, "%s is a terminal: give a FILE, or a pipe (see --help)",
                        s->name);
-    if (S_ISDIR(st.st_mode)) return why_set(why, EX_NOINPUT, "%s: is a directory", s->name);
+    if (S_ISDIR(st.st_mode)) return failure_set(failure, EX_NOINPUT, "%s: is a directory", s->name);
     if (S_ISFIFO(st.st_mode)) fcntl(s->fd, F_SETPIPE_SZ, PIPE); // or it stays as it is
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
     if (at < 0 || st.st_size <= at) return 0; // a pipe, or an empty file
@@ -166,21 +166,21 @@ static int file_open(struct stream *s, struct why *why)
     s->map = mmap(NULL, s->size, PROT_READ | PROT_WRITE, MAP_PRIVATE, s->fd, 0);
     if (s->map != MAP_FAILED) return 0;
     s->map = NULL;
-    return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+    return failure_set(failure, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
 }
 
 /* Reads from a pipe until the buffer holds `want` bytes; where it ends early, *have < want. */
-static int stream_fill(struct stream *s, size_t *have, size_t want, struct why *why)
+static int stream_fill(struct stream *s, size_t *have, size_t want, struct failure *failure)
 {
     while (*have < want) {
         if (*have == s->room) { // grows with what arrives: the header's length is not trusted
             if (!buffer_grow(s, s->room ? 2 * s->room : 1 << 16))
-                return why_set(why, EX_SOFTWARE, "%s: no memory for the document", s->name);
+                return failure_set(failure, EX_SOFTWARE, "%s: no memory for the document", s->name);
         }
         size_t most = (want < s->room ? want : s->room) - *have;
         ssize_t n = read(s->fd, s->buffer + *have, most);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return why_set(why, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
+        if (n < 0) return failure_set(failure, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
         if (n == 0) return 0;
         *have += (size_t)n;
     }
@@ -188,24 +188,24 @@ static int stream_fill(struct stream *s, size_t *have, size_t want, struct why *
 }
 
 /* The current document's first bytes: *have of the `want` that are asked for, at *bytes. */
-static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want, struct why *why)
+static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want, struct failure *failure)
 {
     if (s->map) {
         *bytes = s->map + s->at;
         *have = s->size - s->at < want ? s->size - s->at : want;
         return 0;
     }
-    int status = stream_fill(s, have, want, why);
+    int status = stream_fill(s, have, want, failure);
     *bytes = s->buffer;
     return status;
 }
 
-static int refuse(const struct stream *s, struct why *why, const char *trouble)
+static int refuse(const struct stream *s, struct failure *failure, const char *trouble)
 {
     if (s->in_file)
-        return why_set(why, EX_DATAERR, "%s: document %lld: %s", s->name, (long long)s->in_file + 1,
+        return failure_set(failure, EX_DATAERR, "%s: document %lld: %s", s->name, (long long)s->in_file + 1,
                        trouble);
-    return why_set(why, EX_DATAERR, "%s: %s", s->name, trouble);
+    return failure_set(failure, EX_DATAERR, "%s: %s", s->name, trouble);
 }
 
 /*
@@ -214,12 +214,12 @@ static int refuse(const struct stream *s, struct why *why, const char *trouble)
  * all stay.
  */
 static int read_all(struct stream *s, struct image *im, size_t *have, size_t want, uint32_t *crc,
-                    struct why *why)
+                    struct failure *failure)
 {
     size_t at = DOCUMENT_USERBLOCK, unloaded = 0;
     for (*crc = 0; at < want && at <= *have; at = *have) {
         size_t next = want - at < PIECE ? want : at + PIECE;
-        if (peek(s, &im->bytes, have, next, why)) return why->status;
+        if (peek(s, &im->bytes, have, next, failure)) return failure->status;
         *crc = document_crc(*crc, im->bytes + at, *have - at);
         if (*have - unloaded >= LARGE) stream_unload(s), unloaded = *have;
         if (*have < next) break;
@@ -237,43 +237,43 @@ static void let_grow(struct stream *s, struct image *im)
 }
 
 /* A document with our header: checks that and finds its size. */
-static int read_own(struct stream *s, struct image *im, size_t have, struct why *why)
+static int read_own(struct stream *s, struct image *im, size_t have, struct failure *failure)
 {
     const unsigned char *h = im->bytes;
-    if (have < DOCUMENT_USERBLOCK) return refuse(s, why, "truncated in its header");
+    if (have < DOCUMENT_USERBLOCK) return refuse(s, failure, "truncated in its header");
     if (stream_load(h + AT_HEADER_CRC, 4) != document_crc(0, h, AT_HEADER_CRC))
-        return refuse(s, why, "damaged header (its checksum is wrong)");
+        return refuse(s, failure, "damaged header (its checksum is wrong)");
     uint64_t version = stream_load(h + AT_VERSION, 4), length = stream_load(h + AT_LENGTH, 8);
     uint32_t crc = (uint32_t)stream_load(h + AT_CRC, 4);
     if (version > DOCUMENT_VERSION)
-        return why_set(why, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
+        return failure_set(failure, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
                        s->name, (unsigned long long)version, DOCUMENT_VERSION);
     im->unfinished = stream_load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
-    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, why, "damaged header");
+    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, failure, "damaged header");
     size_t want = im->unfinished ? SIZE_MAX : length;
     uint32_t is = 0;
-    if (im->unfinished ? peek(s, &im->bytes, &have, want, why)
-                       : read_all(s, im, &have, want, &is, why))
-        return why->status;
+    if (im->unfinished ? peek(s, &im->bytes, &have, want, failure)
+                       : read_all(s, im, &have, want, &is, failure))
+        return failure->status;
     im->size = im->room = have;
     if (im->unfinished) return let_grow(s, im), 0;
     if (have < want)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "%s: document %lld: %zu bytes, where its header says %zu: truncated, or "
                        "rewritten (h5repack?): then tail -c +513 makes it readable, see "
                        "nsd-format(5)",
                        s->name, (long long)s->in_file + 1, have, want);
     if (is != crc)
-        return refuse(s, why,
+        return refuse(s, failure,
                       "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
     return 0;
 }
 
 /* A foreign HDF5 file: all that the file or pipe still holds. */
-static int stream_read_foreign(struct stream *s, struct image *im, size_t have, struct why *why)
+static int stream_read_foreign(struct stream *s, struct image *im, size_t have, struct failure *failure)
 {
     im->foreign = true;
-    if (peek(s, &im->bytes, &have, SIZE_MAX, why)) return why->status;
+    if (peek(s, &im->bytes, &have, SIZE_MAX, failure)) return failure->status;
     im->size = im->room = have;
     return 0;
 }
@@ -285,7 +285,7 @@ static bool is_hdf5(const unsigned char *b, size_t have)
     return false;
 }
 
-int stream_next(struct stream *s, struct image *im, struct why *why)
+int stream_next(struct stream *s, struct image *im, struct failure *failure)
 {
     *im = (struct image){ 0 };
     swap_buffers(s);
@@ -294,20 +294,20 @@ int stream_next(struct stream *s, struct image *im, struct why *why)
         if (s->fd < 0) {
             im->bytes = NULL;
             if (s->next == s->files) return 0;
-            if (file_open(s, why)) return why->status;
+            if (file_open(s, failure)) return failure->status;
         }
         size_t have = 0;
-        if (peek(s, &im->bytes, &have, DOCUMENT_USERBLOCK, why)) return why->status;
-        if (!have && !s->in_file) return refuse(s, why, "empty, not an nsd document");
+        if (peek(s, &im->bytes, &have, DOCUMENT_USERBLOCK, failure)) return failure->status;
+        if (!have && !s->in_file) return refuse(s, failure, "empty, not an nsd document");
         if (have) {
             im->name = s->name;
             int status;
             if (have >= sizeof MAGIC && !memcmp(im->bytes, MAGIC, sizeof MAGIC))
-                status = read_own(s, im, have, why);
+                status = read_own(s, im, have, failure);
             else if (!s->in_file && is_hdf5(im->bytes, have))
-                status = stream_read_foreign(s, im, have, why);
+                status = stream_read_foreign(s, im, have, failure);
             else
-                status = refuse(s, why, "neither an nsd document nor an HDF5 file");
+                status = refuse(s, failure, "neither an nsd document nor an HDF5 file");
             s->at += im->size;
             s->in_file++;
             im->number = s->in_file;

@@ -45,12 +45,12 @@ struct stream;
  * The documents of these files, one file after another. No file, or the name "-", means standard
  * input. A file is opened when its turn comes.
  */
-int stream_open(struct stream **stream, int files, char *const *file, struct why *why);
+int stream_open(struct stream **stream, int files, char *const *file, struct failure *failure);
 /*
  * Finds the next document. EX_NOINPUT: a file cannot be opened; EX_USAGE: it is a terminal;
  * EX_DATAERR: it is empty or not a document, truncated, damaged or of a newer version.
  */
-int stream_next(struct stream *stream, struct image *image, struct why *why);
+int stream_next(struct stream *stream, struct image *image, struct failure *failure);
 /* Bytes that the current document has by now: more than its size, if another program writes it */
 size_t stream_grown(const struct stream *stream, const struct image *image);
 /* Has anybody written to the file in hand since it was opened? */

@@ -108,7 +108,7 @@ int import_check_columns(const struct import_columns *c, struct words *w, const 
 
 static int read_word(struct words *w, enum import_column c, struct word word, double *x)
 {
-    if (word_number(w, word, x)) return w->soup->why->status;
+    if (word_number(w, word, x)) return w->soup->failure->status;
     const bool positive =
         c == IMPORT_RADIUS || c == IMPORT_DIAMETER || c == IMPORT_MASS || c == IMPORT_DENSITY;
     if (positive && !(*x > 0)) return word_fault(w, word, "must be positive");
@@ -159,7 +159,7 @@ static int read_numbers(const struct import_columns *c, struct words *w, double 
         if (!words_next(w, &word))
             return soup_fault(w->soup, "%d numbers for %d columns (truncated?)", k, c->n);
         if (which == IMPORT_OTHER) continue;
-        if (read_word(w, which, word, &number)) return w->soup->why->status;
+        if (read_word(w, which, word, &number)) return w->soup->failure->status;
         if (had[which] && number != x[which])
             return soup_fault(w->soup, "two columns %s, with %.10g and %.10g: which one is meant?",
                               imported_name_of(which), x[which], number);
@@ -172,7 +172,7 @@ int import_line(const struct import_columns *c, struct words *w, const struct im
                 struct imported_ball *b)
 {
     double x[IMPORT_COLUMNS] = { 0 };
-    if (read_numbers(c, w, x) || check_ball(c, w, x)) return w->soup->why->status;
+    if (read_numbers(c, w, x) || check_ball(c, w, x)) return w->soup->failure->status;
     *b = imported_ball();
     b->x = v3(x[IMPORT_X], x[IMPORT_Y], x[IMPORT_Z]);
     if (!c->has[IMPORT_X]) {

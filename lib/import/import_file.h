@@ -24,10 +24,10 @@ struct import_wish {
  * it; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
  */
 int import_file(struct packing *p, const char *path, const struct import_wish *wish,
-                struct import_said *said, struct why *why);
+                struct import_said *said, struct failure *failure);
 
 /* Of n bytes with a 0 behind them, as of a file of this name, in this process: for who tests the readers */
 int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t n,
-                 const struct import_wish *wish, struct why *why);
+                 const struct import_wish *wish, struct failure *failure);
 
 #endif

@@ -103,7 +103,7 @@ static int read_head_line(struct data *d, struct word first)
         bool number = (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.';
         if (!number) break;
         if (n == 3) return word_fault(w, word, "is too much for a line of the head");
-        if (word_number(w, word, &x[n++])) return w->soup->why->status;
+        if (word_number(w, word, &x[n++])) return w->soup->failure->status;
     } while (words_next(w, &word));
     if (n == 1 && word_is(word, "atoms")) {
         if (!(x[0] >= 0 && x[0] <= IMPORTED_MOST && x[0] == (double)(int64_t)x[0]))
@@ -171,7 +171,7 @@ static int import_lammps_data_read_atoms(struct data *d)
     d->read = true;
     for (int64_t i = 0; i < d->atoms; i++) {
         struct imported_ball b;
-        if (import_lammps_data_next_line(d, i, "atoms", &word)) return d->w->soup->why->status;
+        if (import_lammps_data_next_line(d, i, "atoms", &word)) return d->w->soup->failure->status;
         unread(d->w, word);
         int n = import_lammps_data_count_words(*d->w);
         if (n != 7 && n != 10)
@@ -182,9 +182,9 @@ static int import_lammps_data_read_atoms(struct data *d)
                 n);
         if (c.n != n) c = (struct import_columns){ 0 };
         for (int k = c.n; k < n; k++)
-            if (import_add_column(&c, d->w, sphere[k])) return d->w->soup->why->status;
-        if (import_line(&c, d->w, &d->to->head, &b) || imported_add(d->to, &b, d->w->soup->why))
-            return d->w->soup->why->status;
+            if (import_add_column(&c, d->w, sphere[k])) return d->w->soup->failure->status;
+        if (import_line(&c, d->w, &d->to->head, &b) || imported_add(d->to, &b, d->w->soup->failure))
+            return d->w->soup->failure->status;
     }
     return 0;
 }
@@ -199,7 +199,7 @@ static int sort_balls(struct data *d)
 {
     d->sorted = malloc(((size_t)d->atoms + 1) * sizeof *d->sorted);
     if (!d->sorted)
-        return why_set(d->w->soup->why, EX_SOFTWARE, "no memory for the balls of a file");
+        return failure_set(d->w->soup->failure, EX_SOFTWARE, "no memory for the balls of a file");
     for (int64_t i = 0; i < d->atoms; i++)
         d->sorted[i] = (struct ref){ d->to->ball[i].id, &d->to->ball[i] };
     qsort(d->sorted, (size_t)d->atoms, sizeof *d->sorted, import_lammps_data_by_id);
@@ -211,17 +211,17 @@ static int read_velocities(struct data *d)
 {
     struct word word;
     if (!d->read) return soup_fault(d->w->soup, "Velocities before Atoms");
-    if (!d->sorted && sort_balls(d)) return d->w->soup->why->status;
+    if (!d->sorted && sort_balls(d)) return d->w->soup->failure->status;
     for (int64_t i = 0; i < d->atoms; i++) {
         double x[7] = { 0 };
-        if (import_lammps_data_next_line(d, i, "velocities", &word)) return d->w->soup->why->status;
+        if (import_lammps_data_next_line(d, i, "velocities", &word)) return d->w->soup->failure->status;
         unread(d->w, word);
         int n = import_lammps_data_count_words(*d->w);
         if (n != 4 && n != 7)
             return soup_fault(d->w->soup, "%d words, and 4 or 7 are needed: id vx vy vz wx wy wz",
                               n);
         for (int k = 0; k < n; k++)
-            if (words_number(d->w, &x[k])) return d->w->soup->why->status;
+            if (words_number(d->w, &x[k])) return d->w->soup->failure->status;
         bool whole = x[0] >= 0 && x[0] <= INT32_MAX && x[0] == (double)(int32_t)x[0];
         const struct ref key = { whole ? (int32_t)x[0] : -1, NULL };
         const struct ref *r = bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, import_lammps_data_by_id);
@@ -263,7 +263,7 @@ static int read_sections(struct data *d, struct word word)
         if (is_foreign(word))
             return word_fault(d->w, word, "are not of atom_style sphere, of which balls are read");
         if (atoms ? import_lammps_data_read_atoms(d) : velocities ? read_velocities(d) : 0)
-            return d->w->soup->why->status;
+            return d->w->soup->failure->status;
         more = skip_section(d->w, &word);
     }
     return 0;
@@ -273,15 +273,15 @@ static int read_data(struct data *d)
 {
     struct word word = { 0 };
     d->w->comments = true;
-    if (import_lammps_data_read_units(d)) return d->w->soup->why->status;
+    if (import_lammps_data_read_units(d)) return d->w->soup->failure->status;
     while (words_line(d->w)) { // behind the first line, a title
-        if (import_lammps_data_read_units(d)) return d->w->soup->why->status;
+        if (import_lammps_data_read_units(d)) return d->w->soup->failure->status;
         if (!words_next(d->w, &word)) continue;
         if (is_section(word)) {
             import_lammps_data_set_box(d);
             return read_sections(d, word);
         }
-        if (read_head_line(d, word)) return d->w->soup->why->status;
+        if (read_head_line(d, word)) return d->w->soup->failure->status;
     }
     return 0;
 }

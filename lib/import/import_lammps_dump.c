@@ -51,12 +51,12 @@ static int import_lammps_dump_read_box(struct imported_head *h, struct words *w)
     bool tilted, general;
     double x[3][4] = { { 0 } };
     struct word word;
-    if (read_ends(h, w, &tilted, &general)) return w->soup->why->status;
+    if (read_ends(h, w, &tilted, &general)) return w->soup->failure->status;
     const int width = general ? 4 : tilted ? 3 : 2;
     for (int k = 0; k < 3; k++) {
         if (!words_line(w)) return soup_fault(w->soup, "the box ends before its time (truncated?)");
         for (int j = 0; j < width; j++)
-            if (words_number(w, &x[k][j])) return w->soup->why->status;
+            if (words_number(w, &x[k][j])) return w->soup->failure->status;
         if (words_next(w, &word)) return word_fault(w, word, "is too much for a box");
     }
     h->boxed = true;
@@ -81,7 +81,7 @@ static int read_whole(struct words *w, int64_t least, const char *what, int64_t 
 {
     struct word word;
     if (!words_line(w)) return soup_fault(w->soup, "no %s after it (truncated?)", what);
-    if (words_whole(w, x)) return w->soup->why->status;
+    if (words_whole(w, x)) return w->soup->failure->status;
     if (*x < least) return soup_fault(w->soup, "no %s", what);
     return words_next(w, &word) ? word_fault(w, word, "is too much") : 0;
 }
@@ -93,16 +93,16 @@ static int import_lammps_dump_read_atoms(struct imported *to, struct words *w, i
     struct imported_ball b;
     struct word name;
     while (words_next(w, &name))
-        if (import_name_column(&c, w, name)) return w->soup->why->status;
-    if (kept && import_check_columns(&c, w, CURE)) return w->soup->why->status;
+        if (import_name_column(&c, w, name)) return w->soup->failure->status;
+    if (kept && import_check_columns(&c, w, CURE)) return w->soup->failure->status;
     if (kept && !c.has[IMPORT_X] && !to->head.boxed)
         return soup_fault(w->soup, "places in edges of a box, and no box");
     for (int64_t i = 0; i < n; i++) {
         if (!words_line(w))
             return soup_fault(w->soup, "%lld atoms of %lld (truncated?)", (long long)i,
                               (long long)n);
-        if (kept && (import_line(&c, w, &to->head, &b) || imported_add(to, &b, w->soup->why)))
-            return w->soup->why->status;
+        if (kept && (import_line(&c, w, &to->head, &b) || imported_add(to, &b, w->soup->failure)))
+            return w->soup->failure->status;
     }
     return 0;
 }
@@ -131,15 +131,15 @@ static int import_lammps_dump_read_frame(struct imported *to, struct words *w, b
         *more = true;
         if (item == ATOMS) {
             if (n < 0) return soup_fault(w->soup, "ATOMS before NUMBER OF ATOMS");
-            if (import_lammps_dump_read_atoms(to, w, n, kept)) return w->soup->why->status;
+            if (import_lammps_dump_read_atoms(to, w, n, kept)) return w->soup->failure->status;
             words_line(w);
             return 0;
         }
         if (item == STEP && read_whole(w, INT64_MIN, "step", &to->head.step))
-            return w->soup->why->status;
-        if (item == NUMBER && read_whole(w, 0, "number of atoms", &n)) return w->soup->why->status;
-        if (item == BOX && import_lammps_dump_read_box(&to->head, w)) return w->soup->why->status;
-        if (item == UNITS && import_lammps_dump_read_units(to, w)) return w->soup->why->status;
+            return w->soup->failure->status;
+        if (item == NUMBER && read_whole(w, 0, "number of atoms", &n)) return w->soup->failure->status;
+        if (item == BOX && import_lammps_dump_read_box(&to->head, w)) return w->soup->failure->status;
+        if (item == UNITS && import_lammps_dump_read_units(to, w)) return w->soup->failure->status;
         if (item == OTHER && !words_line(w)) break; // TIME: a line
     } while (words_line(w));
     return *more ? soup_fault(w->soup, "the frame ends before its atoms (truncated?)") : 0;
@@ -150,14 +150,14 @@ static int import_lammps_dump_count_frames(struct words w, int64_t *frames)
     struct imported none = { 0 };
     bool more = true;
     for (*frames = 0;; ++*frames)
-        if (import_lammps_dump_read_frame(&none, &w, false, &more) || !more) return w.soup->why->status;
+        if (import_lammps_dump_read_frame(&none, &w, false, &more) || !more) return w.soup->failure->status;
 }
 
 static int import_lammps_dump_read(struct imported *to, struct words *w, int64_t k)
 {
     int64_t frames = 0;
     bool more = true;
-    if (import_lammps_dump_count_frames(*w, &frames)) return w->soup->why->status;
+    if (import_lammps_dump_count_frames(*w, &frames)) return w->soup->failure->status;
     int64_t wanted = k < 0 ? frames + k : k;
     w->soup->at = 1; // the lines are counted again
     if (wanted < 0 || wanted >= frames) {
@@ -166,7 +166,7 @@ static int import_lammps_dump_read(struct imported *to, struct words *w, int64_t
                           (long long)frames);
     }
     for (int64_t f = 0; f <= wanted; f++)
-        if (import_lammps_dump_read_frame(to, w, f == wanted, &more)) return w->soup->why->status;
+        if (import_lammps_dump_read_frame(to, w, f == wanted, &more)) return w->soup->failure->status;
     import_to_si(to);
     return 0;
 }

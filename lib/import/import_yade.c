@@ -28,7 +28,7 @@ static int import_yade_read_format(struct import_columns *c, struct words *w, bo
         if (word_is(name, "attrs"))
             *attributes = true;
         else if (import_name_column(c, w, name))
-            return w->soup->why->status;
+            return w->soup->failure->status;
     }
     return import_check_columns(c, w, "export.textExt(..., format='x_y_z_r_matId')");
 }
@@ -39,7 +39,7 @@ static int read_comment(struct import_columns *c, struct words *w)
     struct import_columns named = { 0 };
     struct word name;
     while (words_next(w, &name))
-        if (import_name_column(&named, w, name)) return w->soup->why->status;
+        if (import_name_column(&named, w, name)) return w->soup->failure->status;
     if (named.n > 4 && named.of[0] == IMPORT_X && named.of[1] == IMPORT_Y &&
         named.of[2] == IMPORT_Z && named.of[3] == IMPORT_RADIUS)
         *c = named;
@@ -64,17 +64,17 @@ static int import_yade_read(struct imported *to, struct words *w, int64_t k)
         if (!words_next(w, &word)) continue;
         struct imported_ball b;
         if (word_is(word, "#format")) {
-            if (import_yade_read_format(&c, w, &attributes)) return w->soup->why->status;
+            if (import_yade_read_format(&c, w, &attributes)) return w->soup->failure->status;
         } else if (*word.s == '#') {
             if (word.n > 1) w->at = word.s + 1;
-            if (attributes && read_comment(&c, w)) return w->soup->why->status;
+            if (attributes && read_comment(&c, w)) return w->soup->failure->status;
         } else {
             w->at = word.s;
             // attributes without names are read over
             for (int n = attributes && c.n == 4 ? import_yade_count_words(*w) : 0; c.n < n;)
-                if (import_add_column(&c, w, IMPORT_OTHER)) return w->soup->why->status;
-            if (import_line(&c, w, &to->head, &b) || imported_add(to, &b, w->soup->why))
-                return w->soup->why->status;
+                if (import_add_column(&c, w, IMPORT_OTHER)) return w->soup->failure->status;
+            if (import_line(&c, w, &to->head, &b) || imported_add(to, &b, w->soup->failure))
+                return w->soup->failure->status;
         }
     } while (words_line(w));
     return 0;

@@ -35,7 +35,7 @@ struct file {
     const char *path;
     struct source *in;
     struct packing *p;
-    struct why *why;
+    struct failure *failure;
     int kinds_of_shape;
     enum shape_kind *shape; /* [kinds_of_shape] what shape_type means in this file */
     int materials;
@@ -48,7 +48,7 @@ struct file {
 
 static int ondem_read_fault(const struct file *f, const char *place, const char *trouble)
 {
-    return why_set(f->why, EX_DATAERR, "%.150s: %.100s: %.120s", f->path, place, trouble);
+    return failure_set(f->failure, EX_DATAERR, "%.150s: %.100s: %.120s", f->path, place, trouble);
 }
 
 bool ondem_looks(int fd)
@@ -63,12 +63,12 @@ bool ondem_looks(int fd)
 /* Which word is what; words end with newlines */
 static int read_shape_names(struct file *f)
 {
-    char *text = source_lines(f->in, "/ONDEM/Scene/shape_names", f->why);
-    if (f->why->status) return f->why->status;
+    char *text = source_lines(f->in, "/ONDEM/Scene/shape_names", f->failure);
+    if (f->failure->status) return f->failure->status;
     if (!text) return ondem_read_fault(f, "/ONDEM/Scene/shape_names", "no list of the names of shapes");
     for (const char *s = text; *s; s++) f->kinds_of_shape += *s == '\n';
     f->shape = calloc((size_t)f->kinds_of_shape + 1, sizeof *f->shape);
-    if (!f->shape) why_set(f->why, EX_SOFTWARE, "no memory for the shapes");
+    if (!f->shape) failure_set(f->failure, EX_SOFTWARE, "no memory for the shapes");
     char *at = text;
     for (int k = 0; f->shape && k < f->kinds_of_shape; k++) {
         char *end = strchr(at, '\n');
@@ -78,7 +78,7 @@ static int read_shape_names(struct file *f)
         at = end + 1;
     }
     free(text);
-    return f->why->status;
+    return f->failure->status;
 }
 
 /* A group NAME directly in another? Its name, else NULL */
@@ -94,7 +94,7 @@ static double scalar(struct file *f, const char *group, const char *name)
     char path[PATH];
     double x = NAN;
     snprintf(path, sizeof path, "%.200s/%s", group, name);
-    if (source_has(f->in, path)) source_read(f->in, path, COLUMN_F64, 1, &x, f->why);
+    if (source_has(f->in, path)) source_read(f->in, path, COLUMN_F64, 1, &x, f->failure);
     return x;
 }
 
@@ -106,8 +106,8 @@ static int ondem_read_material(struct file *f, const char *group)
     const double id = scalar(f, group, "id");
     m->friction = scalar(f, group, "shear_friction");
     snprintf(path, sizeof path, "%.200s/label", group);
-    m->label = source_text(f->in, path, NULL, f->why);
-    if (f->why->status) return f->why->status;
+    m->label = source_text(f->in, path, NULL, f->failure);
+    if (f->failure->status) return f->failure->status;
     if (!(id >= 0 && id <= INT32_MAX && id == floor(id)))
         return ondem_read_fault(f, group, "no id of a material");
     m->id = (int64_t)id;
@@ -118,7 +118,7 @@ static int ondem_read_material(struct file *f, const char *group)
     free(m->label);
     snprintf(path, sizeof path, "%" PRId64, m->id);
     m->label = strdup(path);
-    return m->label ? 0 : why_set(f->why, EX_SOFTWARE, "no memory for the materials");
+    return m->label ? 0 : failure_set(f->failure, EX_SOFTWARE, "no memory for the materials");
 }
 
 static int ondem_read_materials(struct file *f)
@@ -126,12 +126,12 @@ static int ondem_read_materials(struct file *f)
     const char *path;
     const uint64_t *shape;
     f->material = calloc(MATERIALS_MOST, sizeof *f->material);
-    if (!f->material) return why_set(f->why, EX_SOFTWARE, "no memory for the materials");
+    if (!f->material) return failure_set(f->failure, EX_SOFTWARE, "no memory for the materials");
     const struct object *o;
     for (int64_t k = 0; (o = source_object(f->in, k, &path, &shape)); k++)
         if (!o->attribute && o->kind == OBJECT_GROUP && child_of("/ONDEM/Materials", path) &&
             ondem_read_material(f, path))
-            return f->why->status;
+            return f->failure->status;
     return 0;
 }
 
@@ -166,7 +166,7 @@ static void *read_column(struct file *f, const struct ondem_read_block *b, const
     char path[PATH];
     uint64_t shape[4] = { 0 };
     snprintf(path, sizeof path, "%.200s/%s", b->path, name);
-    if (f->why->status) return NULL;
+    if (f->failure->status) return NULL;
     if (!source_has(f->in, path)) {
         if (needed) ondem_read_fault(f, path, "no such column");
         return NULL;
@@ -177,10 +177,10 @@ static void *read_column(struct file *f, const struct ondem_read_block *b, const
         return ondem_read_fault(f, path, "not a row for each body"), NULL;
     void *out = malloc((size_t)b->n * (size_t)width * 8 + 1);
     if (!out)
-        why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
+        failure_set(f->failure, EX_SOFTWARE, "no memory for the bodies");
     else if (b->n && source_rows(f->in, path,
                                  (struct slab){ whole ? COLUMN_I64 : COLUMN_F64, 0, b->n, width },
-                                 out, f->why))
+                                 out, f->failure))
         free(out), out = NULL;
     return out;
 }
@@ -206,12 +206,12 @@ static int ondem_read_columns(struct file *f, struct ondem_read_block *b)
     b->row = read_column(f, b, "PointData/nsd_shape", true, 1, false);
     b->reach = read_column(f, b, "PointData/nsd_radius", false, 1, false);
     b->mean = read_column(f, b, "PointData/nsd_inertia", false, 1, false);
-    return f->why->status;
+    return f->failure->status;
 }
 
 static int body_fault(const struct file *f, const struct ondem_read_block *b, int64_t i, const char *trouble)
 {
-    return why_set(f->why, EX_DATAERR, "%.150s: %.60s: body %" PRId64 ": %.140s", f->path, b->path,
+    return failure_set(f->failure, EX_DATAERR, "%.150s: %.60s: body %" PRId64 ": %.140s", f->path, b->path,
                    b->id[i], trouble);
 }
 
@@ -228,13 +228,13 @@ static int keep_shape(struct file *f, struct shape *s, const char *called, int32
     struct packing *p = f->p;
     char name[40];
     // to compare it with each takes some ns
-    if (source_draw(f->in, 4 * (uint64_t)p->shapes.n, f->why)) return shape_free(s), f->why->status;
+    if (source_draw(f->in, 4 * (uint64_t)p->shapes.n, f->failure)) return shape_free(s), f->failure->status;
     for (int32_t k = 1; k < p->shapes.n; k++)
         if (shape_same(&p->shapes.s[k], s)) return shape_free(s), *row = k, 0;
     snprintf(name, sizeof name, "%s %d", called, p->shapes.n ? p->shapes.n : 1);
-    if (!(s->name = strdup(name))) why_set(f->why, EX_SOFTWARE, "no memory for a shape");
-    if (f->why->status) return shape_free(s), f->why->status;
-    if (shapes_add(&p->shapes, 3, s, f->why)) return f->why->status;
+    if (!(s->name = strdup(name))) failure_set(f->failure, EX_SOFTWARE, "no memory for a shape");
+    if (f->failure->status) return shape_free(s), f->failure->status;
+    if (shapes_add(&p->shapes, 3, s, f->failure)) return f->failure->status;
     *row = p->shapes.n - 1;
     return 0;
 }
@@ -247,7 +247,7 @@ static int box_row(struct file *f, const double *sides, double *reach, int32_t *
                                       2, 6, 7, 3, 0, 2, 3, 1, 4, 5, 7, 6 };
     struct shape s = { 0 };
     *reach = r;
-    if (shape_alloc(&s, 8, 6, 24, f->why)) return f->why->status;
+    if (shape_alloc(&s, 8, 6, 24, f->failure)) return f->failure->status;
     s.form = SHAPE_HULL;
     for (int k = 0; k < 8; k++)
         s.vertex[k] = v3((k & 1 ? 0.5 : -0.5) * sides[0] / r, (k & 2 ? 0.5 : -0.5) * sides[1] / r,
@@ -259,7 +259,7 @@ static int box_row(struct file *f, const double *sides, double *reach, int32_t *
         double a = sides[(k + 1) % 3] / r, c = sides[(k + 2) % 3] / r;
         s.moment[k] = (a * a + c * c) / 12;
     }
-    if (shape_finish(&s, 3, f->why)) return shape_free(&s), f->why->status;
+    if (shape_finish(&s, 3, f->failure)) return shape_free(&s), f->failure->status;
     return keep_shape(f, &s, "box", row);
 }
 
@@ -280,7 +280,7 @@ static int ondem_read_add_members(struct file *f, const struct ondem_read_block 
         if (f->members == f->members_room) {
             int64_t room = f->members_room ? 2 * f->members_room : 256;
             struct ondem_read_member *more = realloc(f->member, (size_t)room * sizeof *more);
-            if (!more) return why_set(f->why, EX_SOFTWARE, "no memory for the clumps");
+            if (!more) return failure_set(f->failure, EX_SOFTWARE, "no memory for the clumps");
             f->member = more, f->members_room = room;
         }
         f->member[f->members++] =
@@ -319,7 +319,7 @@ static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i
         fabs(I[1]) + fabs(I[2]) + fabs(I[5]) > 1e-9 * (I[0] + I[4] + I[8]))
         return body_fault(f, b, i, "a clump without a mass and a diagonal inertia");
     for (int64_t k = 0; k < n; k++) *reach = fmax(*reach, v3_norm(m[k].x) + m[k].r);
-    if (shape_alloc(&s, (int32_t)n, 0, 0, f->why)) return f->why->status;
+    if (shape_alloc(&s, (int32_t)n, 0, 0, f->failure)) return f->failure->status;
     s.form = SHAPE_CLUMP;
     for (int64_t k = 0; k < n; k++)
         s.vertex[k] = v3_scale(1 / *reach, m[k].x), s.ball[k] = m[k].r / *reach;
@@ -327,10 +327,10 @@ static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i
     s.volume = b->volume ? b->volume[i] / (*reach * *reach * *reach) : 0;
     // else by lines through the balls, which takes some ms for each
     if (!(s.volume > 0) &&
-        (source_draw(f->in, 2000000 * (uint64_t)n, f->why) || solid_of(&balls, &s, 3, f->why)))
-        return shape_free(&s), f->why->status;
+        (source_draw(f->in, 2000000 * (uint64_t)n, f->failure) || solid_of(&balls, &s, 3, f->failure)))
+        return shape_free(&s), f->failure->status;
     if (!(s.volume > 0)) s.volume = balls.volume;
-    if (shape_finish(&s, 3, f->why)) return shape_free(&s), f->why->status;
+    if (shape_finish(&s, 3, f->failure)) return shape_free(&s), f->failure->status;
     return keep_shape(f, &s, "clump", row);
 }
 
@@ -398,13 +398,13 @@ static int ondem_read_add_body(struct file *f, const struct ondem_read_block *b,
     const int64_t k = f->n++;
     int32_t row;
     double reach = 0;
-    if (ondem_read_shape(f, b, i, is, &row, &reach)) return f->why->status;
+    if (ondem_read_shape(f, b, i, is, &row, &reach)) return f->failure->status;
     p->x[k] = v3(b->x[3 * i], b->x[3 * i + 1], b->x[3 * i + 2]), p->radius[k] = reach;
     if (b->v) p->v[k] = v3(b->v[3 * i], b->v[3 * i + 1], b->v[3 * i + 2]);
     if (b->w) p->w[k] = v3(b->w[3 * i], b->w[3 * i + 1], b->w[3 * i + 2]);
     if (b->q) p->q[k] = (quat){ b->q[4 * i], b->q[4 * i + 1], b->q[4 * i + 2], b->q[4 * i + 3] };
     p->id[k] = (int32_t)b->id[i], p->kind[k] = kind;
-    if (row && !p->shape && packing_alloc_shapes(p, f->why)) return f->why->status;
+    if (row && !p->shape && packing_alloc_shapes(p, f->failure)) return f->failure->status;
     if (p->shape) p->shape[k] = row;
     if (dofs == FIXED) return 0; // no mass
     const double *I = b->inertia ? b->inertia + 9 * i : NULL;
@@ -428,7 +428,7 @@ static int for_blocks(struct file *f, int (*each)(struct file *, const char *))
         const char *name = child_of("/VTKHDF", path);
         if (o->attribute || o->kind != OBJECT_GROUP || !name || !strcmp(name, "Assembly")) continue;
         if (++blocks > BLOCKS_MOST) return ondem_read_fault(f, path, "too many blocks");
-        if (each(f, path)) return f->why->status;
+        if (each(f, path)) return f->failure->status;
     }
     return blocks ? 0
                   : ondem_read_fault(f, "/VTKHDF", "no block of bodies (files before October 2026 have none)");
@@ -449,33 +449,33 @@ static int count_block(struct file *f, const char *path)
 {
     int64_t n = rows_of(f, path);
     f->n += n < 0 ? 0 : n;
-    if (!f->why->status && f->n > INT32_MAX) ondem_read_fault(f, path, "too many bodies");
-    return f->why->status;
+    if (!f->failure->status && f->n > INT32_MAX) ondem_read_fault(f, path, "too many bodies");
+    return f->failure->status;
 }
 
 static int read_members(struct file *f, const char *path)
 {
     struct ondem_read_block b = { .path = path, .n = rows_of(f, path) };
     double *at = NULL;
-    if (!f->why->status)
+    if (!f->failure->status)
         at = read_column(f, &b, "PointData/clump_relative_position", false, 3, false);
     if (at) {
         b.clump = read_column(f, &b, "PointData/clump_id", true, 1, true);
         b.id = read_column(f, &b, "PointData/body_id", true, 1, true);
         b.material = read_column(f, &b, "PointData/material_id", true, 1, true);
         b.radius = read_column(f, &b, "PointData/radius", false, 1, true);
-        if (!f->why->status) ondem_read_add_members(f, &b, at);
+        if (!f->failure->status) ondem_read_add_members(f, &b, at);
     }
     free(at);
     block_free(&b);
-    return f->why->status;
+    return f->failure->status;
 }
 
 static int read_block(struct file *f, const char *path)
 {
     struct ondem_read_block b = { .path = path, .n = rows_of(f, path) };
-    if (!f->why->status && !ondem_read_columns(f, &b))
-        for (int64_t i = 0; i < b.n && !f->why->status; i++) {
+    if (!f->failure->status && !ondem_read_columns(f, &b))
+        for (int64_t i = 0; i < b.n && !f->failure->status; i++) {
             const bool wall =
                 b.shape[i] >= 0 && b.shape[i] < f->kinds_of_shape && f->shape[b.shape[i]] == WALL;
             if (wall && f->walls == f->p->walls)
@@ -484,7 +484,7 @@ static int read_block(struct file *f, const char *path)
                 ondem_read_add_body(f, &b, i);
         }
     block_free(&b);
-    return f->why->status;
+    return f->failure->status;
 }
 
 /* ---- in the order of their ids ---- */
@@ -515,9 +515,9 @@ static int sort_bodies(struct file *f)
     const int64_t n = p->n;
     struct ondem_read_place *place = malloc(((size_t)n + 1) * sizeof *place);
     quat *room = malloc(((size_t)n + 1) * sizeof *room);
-    if (!place || !room) why_set(f->why, EX_SOFTWARE, "no memory for the bodies");
-    for (int64_t k = 0; !f->why->status && k < n; k++) place[k] = (struct ondem_read_place){ p->id[k], k };
-    if (!f->why->status) {
+    if (!place || !room) failure_set(f->failure, EX_SOFTWARE, "no memory for the bodies");
+    for (int64_t k = 0; !f->failure->status && k < n; k++) place[k] = (struct ondem_read_place){ p->id[k], k };
+    if (!f->failure->status) {
         qsort(place, (size_t)n, sizeof *place, ondem_read_by_id);
         ondem_read_gather(p->x, sizeof *p->x, place, n, room), ondem_read_gather(p->v, sizeof *p->v, place, n, room);
         ondem_read_gather(p->w, sizeof *p->w, place, n, room), ondem_read_gather(p->q, sizeof *p->q, place, n, room);
@@ -529,7 +529,7 @@ static int sort_bodies(struct file *f)
         ondem_read_gather(p->shape, sizeof *p->shape, place, n, room);
     }
     free(place), free(room);
-    return f->why->status;
+    return f->failure->status;
 }
 
 /* ---- the scene ---- */
@@ -540,13 +540,13 @@ static int read_cell(struct file *f)
     int32_t repeats[3] = { 0 };
     double edge[9];
     if (!source_has(f->in, "/nsd/cell/edges")) return 0;
-    if (source_read(f->in, "/nsd/cell/edges", COLUMN_F64, 9, edge, f->why) ||
-        source_read(f->in, "/nsd/cell/origin", COLUMN_F64, 3, &c->origin, f->why) ||
-        source_read(f->in, "/nsd/cell/repeats", COLUMN_I32, 3, repeats, f->why))
-        return f->why->status;
+    if (source_read(f->in, "/nsd/cell/edges", COLUMN_F64, 9, edge, f->failure) ||
+        source_read(f->in, "/nsd/cell/origin", COLUMN_F64, 3, &c->origin, f->failure) ||
+        source_read(f->in, "/nsd/cell/repeats", COLUMN_I32, 3, repeats, f->failure))
+        return f->failure->status;
     for (int k = 0; k < 3; k++)
         c->edge[k] = v3(edge[3 * k], edge[3 * k + 1], edge[3 * k + 2]), c->repeats[k] = repeats[k];
-    return packing_alloc_images(f->p, f->why);
+    return packing_alloc_images(f->p, f->failure);
 }
 
 static int ondem_read_laws(struct file *f, struct import_said *said)
@@ -564,82 +564,82 @@ static int ondem_read_laws(struct file *f, struct import_said *said)
         for (uint64_t k = 0; k < n; k++) p->mu[k] = 0;
     if (!source_has(f->in, "/nsd/material/mu")) return 0;
     said->laws = true;
-    return source_read(f->in, "/nsd/material/mu", COLUMN_F64, n, p->mu, f->why) ||
-           source_read(f->in, "/nsd/material/en", COLUMN_F64, n, p->en, f->why) ||
-           source_read(f->in, "/nsd/material/et", COLUMN_F64, n, p->et, f->why);
+    return source_read(f->in, "/nsd/material/mu", COLUMN_F64, n, p->mu, f->failure) ||
+           source_read(f->in, "/nsd/material/en", COLUMN_F64, n, p->en, f->failure) ||
+           source_read(f->in, "/nsd/material/et", COLUMN_F64, n, p->et, f->failure);
 }
 
 static int ondem_read_scene(struct file *f, struct import_said *said)
 {
     struct packing *p = f->p;
     double dt = 0, g[3] = { NAN, NAN, NAN };
-    struct why none = { 0 };
+    struct failure none = { 0 };
     source_attribute(f->in, "/ONDEM/Scene", "timestep", (struct numbers){ COLUMN_F64, -1, &dt },
                      &none);
     if (source_has(f->in, "/ONDEM/Scene/gravity"))
-        source_read(f->in, "/ONDEM/Scene/gravity", COLUMN_F64, 3, g, f->why);
+        source_read(f->in, "/ONDEM/Scene/gravity", COLUMN_F64, 3, g, f->failure);
     said->dt = dt > 0 && isfinite(dt), said->gravity = all_finite(g, 3), said->masses = true;
     p->dt = said->dt ? dt : 1;
     if (said->gravity) p->g = v3(g[0], g[1], g[2]);
-    return f->why->status;
+    return f->failure->status;
 }
 
 static int ondem_read_open(struct file *f, int dim, struct import_said *said)
 {
     if (!source_has(f->in, "/ONDEM"))
-        return why_set(
-            f->why, EX_DATAERR,
+        return failure_set(
+            f->failure, EX_DATAERR,
             "%s: an HDF5 file without the group /ONDEM: a document is read by \"document\"",
             f->path);
     if (dim != 3) return ondem_read_fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
     int64_t most;
     if (read_shape_names(f) || ondem_read_materials(f) || for_blocks(f, count_block) ||
         for_blocks(f, read_members))
-        return f->why->status;
+        return f->failure->status;
     if (f->members) qsort(f->member, (size_t)f->members, sizeof *f->member, by_clump);
     most = f->n, f->n = 0;
     struct packing *p = f->p;
-    if (packing_init(p, dim, most, f->why)) return f->why->status;
+    if (packing_init(p, dim, most, f->failure)) return f->failure->status;
     int32_t walls = most > 4096 ? 4096 : (int32_t)most;
-    if (packing_alloc_walls(p, walls, f->why) ||
-        packing_alloc_kinds(p, f->materials ? f->materials : 1, f->why) ||
-        shape_tables_read(f->in, p, f->why) || read_cell(f))
-        return f->why->status;
+    if (packing_alloc_walls(p, walls, f->failure) ||
+        packing_alloc_kinds(p, f->materials ? f->materials : 1, f->failure) ||
+        shape_tables_read(f->in, p, f->failure) || read_cell(f))
+        return f->failure->status;
     for (int k = 0; k < f->materials; k++) {
         free(p->kind_name[k]);
         p->kind_name[k] = f->material[k].label, f->material[k].label = NULL;
     }
     if (for_blocks(f, read_block) || ondem_read_scene(f, said) || ondem_read_laws(f, said))
-        return f->why->status;
+        return f->failure->status;
     p->walls = f->walls; // what was not needed stays empty behind them
-    return packing_resize(p, f->n, f->why) || sort_bodies(f) ? f->why->status : 0;
+    return packing_resize(p, f->n, f->failure) || sort_bodies(f) ? f->failure->status : 0;
 }
 
-static int next_document(struct source *in, const char *path, struct why *why)
+static int next_document(struct source *in, const char *path, struct failure *failure)
 {
     struct source_document document;
     bool more = false;
-    if (source_next(in, &document, &more, why)) return why->status;
-    return more ? 0 : why_set(why, EX_DATAERR, "%s: empty", path);
+    if (source_next(in, &document, &more, failure)) return failure->status;
+    return more ? 0 : failure_set(failure, EX_DATAERR, "%s: empty", path);
 }
 
 int ondem_read(struct packing *p, const char *path, int dim, struct import_said *said,
-               struct why *why)
+               struct failure *failure)
 {
     char *name = strdup(path);
-    struct file f = { .path = path, .p = p, .why = why };
+    struct file f = { .path = path, .p = p, .failure = failure };
     *p = (struct packing){ 0 };
-    if (!name) return why_set(why, EX_SOFTWARE, "no memory for a name");
-    if (!source_open(&f.in, 1, &name, why) && !next_document(f.in, path, why)) {
+    if (!name) return failure_set(failure, EX_SOFTWARE, "no memory for a name");
+    if (!source_open(&f.in, 1, &name, failure) && !next_document(f.in, path, failure)) {
         ondem_read_open(&f, dim, said);
-        struct why trouble = { 0 };
-        if (!why->status && packing_check(p, &trouble))
-            why_set(why, trouble.status, "%.200s: %.180s", path, trouble.text);
+        struct failure trouble = { 0 };
+        if (!failure->status && packing_check(p, &trouble))
+            failure_set(failure, trouble.status, "%.200s: %.180s", path, trouble.text);
     }
-    if (why->status) packing_free(p);
+    if (failure->status) packing_free(p);
     for (int k = 0; k < f.materials; k++) free(f.material[k].label);
     free(f.material), free(f.shape), free(f.member);
     if (f.in) source_close(f.in);
     free(name);
-    return why->status;
+    return failure->status;
 }

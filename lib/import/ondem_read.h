@@ -14,6 +14,6 @@ bool ondem_looks(int fd);
 /* p = its bodies and walls; kinds are called as its materials are labelled, else by their number. Returns 0,
    EX_DATAERR or EX_SOFTWARE. */
 int ondem_read(struct packing *p, const char *path, int dim, struct import_said *said,
-               struct why *why);
+               struct failure *failure);
 
 #endif

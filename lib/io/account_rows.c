@@ -20,16 +20,16 @@ static struct report_rows_columns columns(void)
 }
 
 /* Counts and steps that are some; ids are only shown */
-static int report_rows_check(const struct account *a, struct why *why)
+static int report_rows_check(const struct account *a, struct failure *failure)
 {
     const double most = 9007199254740992; // 2^53: integers beyond it are none that are exact
-    if (a->steps < 0) return why_set(why, EX_DATAERR, "%s/steps: is negative", home);
+    if (a->steps < 0) return failure_set(failure, EX_DATAERR, "%s/steps: is negative", home);
     for (int k = 0; k < ACCOUNT_ROWS; k++) {
         const struct account_entry *e = &a->worst[k];
         bool good = !(e->value < 0) && e->step >= 0 && e->step <= most &&
                     fabs(e->bodies[0]) <= most && fabs(e->bodies[1]) <= most;
         if (!good)
-            return why_set(why, EX_DATAERR, "%s/%s: a number is out of range", home,
+            return failure_set(failure, EX_DATAERR, "%s/%s: a number is out of range", home,
                            account_watched[k].name);
     }
     return 0;
@@ -48,7 +48,7 @@ int64_t account_rows_count(const struct source *source, int64_t n)
 }
 
 int account_rows_read(struct source *source, int64_t start, int64_t n, struct account *account,
-                      struct why *why)
+                      struct failure *failure)
 {
     struct report_rows_columns t = columns();
     char path[80];
@@ -56,22 +56,22 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
         const struct column one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (!source_has(source, path)) continue; // of a version that does not watch it
-        if (table_read_finite(source, home, "/value", start, RECORDS(one, n, account), why))
-            return why->status;
+        if (table_read_finite(source, home, "/value", start, RECORDS(one, n, account), failure))
+            return failure->status;
     }
     for (int64_t i = 0; i < n; i++)
-        if (report_rows_check(&account[i], why)) return why->status;
+        if (report_rows_check(&account[i], failure)) return failure->status;
     return 0;
 }
 
-int account_rows_write(struct table_write *s, const struct account *account, struct why *why)
+int account_rows_write(struct table_write *s, const struct account *account, struct failure *failure)
 {
     struct report_rows_columns t = columns();
     bool first = !table_write_grows(s, "/nsd/account/steps/value");
-    if (table_write_columns(s, home, "/value", RECORDS(t.c, 1, account), CHUNK_FRAMES, why))
-        return why->status;
-    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", home, t.c, why) ||
-                  table_write_link(s, LAYOUT_REPORT "/time", "time", home, t.c, why)))
-        return why->status;
+    if (table_write_columns(s, home, "/value", RECORDS(t.c, 1, account), CHUNK_FRAMES, failure))
+        return failure->status;
+    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", home, t.c, failure) ||
+                  table_write_link(s, LAYOUT_REPORT "/time", "time", home, t.c, failure)))
+        return failure->status;
     return 0;
 }

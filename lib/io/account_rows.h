@@ -15,9 +15,9 @@ int64_t account_rows_count(const struct source *source, int64_t n);
 /* Rows start .. start+n-1, into account[n]; what the document does not have is 0. Returns 0,
    EX_DATAERR or EX_SOFTWARE. */
 int account_rows_read(struct source *source, int64_t start, int64_t n, struct account *account,
-                      struct why *why);
+                      struct failure *failure);
 
 /* The next row, after that of the report */
-int account_rows_write(struct table_write *tables, const struct account *account, struct why *why);
+int account_rows_write(struct table_write *tables, const struct account *account, struct failure *failure);
 
 #endif

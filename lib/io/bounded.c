@@ -24,12 +24,12 @@ struct bounded {
     int fd;
 };
 
-int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why)
+int bounded_put(struct bounded *to, const void *bytes, size_t size, struct failure *failure)
 {
     for (size_t done = 0; done < size;) {
         ssize_t n = write(to->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return why_set(why, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
+        if (n < 0) return failure_set(failure, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
         done += (size_t)n;
     }
     return 0;
@@ -43,33 +43,33 @@ static void bound(uint64_t size)
 }
 
 /* The process has ended: with an answer, a reason, or broken down */
-static int bounded_judge(int status, const char *name, const struct why *said, struct why *why)
+static int bounded_judge(int status, const char *name, const struct failure *said, struct failure *failure)
 {
     if (WIFEXITED(status) && !WEXITSTATUS(status)) return 0;
-    if (WIFEXITED(status) && said->status) return why_set(why, said->status, "%s", said->text);
+    if (WIFEXITED(status) && said->status) return failure_set(failure, said->status, "%s", said->text);
     int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-    if (limits_reason(signal, name, why)) return why->status;
-    return why_set(why, EX_DATAERR, "%.250s: reading it breaks down (%s): damaged, or made to",
+    if (limits_reason(signal, name, failure)) return failure->status;
+    return failure_set(failure, EX_DATAERR, "%.250s: reading it breaks down (%s): damaged, or made to",
                    name, signal ? strsignal(signal) : "it ended");
 }
 
-static int bounded_take(int fd, void **answer, size_t *n, struct why *why)
+static int bounded_take(int fd, void **answer, size_t *n, struct failure *failure)
 {
     struct stat st;
     *answer = NULL, *n = 0;
-    if (fstat(fd, &st)) return why_set(why, EX_SOFTWARE, "the input is lost: %s", strerror(errno));
+    if (fstat(fd, &st)) return failure_set(failure, EX_SOFTWARE, "the input is lost: %s", strerror(errno));
     if (!st.st_size) return 0;
     void *map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
     if (map == MAP_FAILED)
-        return why_set(why, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
+        return failure_set(failure, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
     *answer = map, *n = (size_t)st.st_size;
     return 0;
 }
 
-int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct why *why)
+int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct failure *failure)
 {
     struct bounded to = { memfd_create("answer", MFD_CLOEXEC) };
-    struct why *said =
+    struct failure *said =
         mmap(NULL, sizeof *said, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     pid_t parent = getpid(), pid = to.fd < 0 || said == MAP_FAILED ? -1 : fork();
     if (!pid) {
@@ -80,15 +80,15 @@ int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struc
     }
     int status = 0;
     if (pid < 0)
-        why_set(why, EX_SOFTWARE, "no process to read with: %s", strerror(errno));
+        failure_set(failure, EX_SOFTWARE, "no process to read with: %s", strerror(errno));
     else {
         while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
         said->text[sizeof said->text - 1] = 0;
-        if (!bounded_judge(status, task->name, said, why)) bounded_take(to.fd, answer, n, why);
+        if (!bounded_judge(status, task->name, said, failure)) bounded_take(to.fd, answer, n, failure);
     }
     if (said != MAP_FAILED) munmap(said, sizeof *said);
     if (to.fd >= 0) close(to.fd);
-    return why->status;
+    return failure->status;
 }
 
 void bounded_free(void *answer, size_t n)

@@ -13,10 +13,10 @@
 struct bounded;
 
 /* The process's answer continues with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */
-int bounded_put(struct bounded *to, const void *bytes, size_t size, struct why *why);
+int bounded_put(struct bounded *to, const void *bytes, size_t size, struct failure *failure);
 
 struct bounded_task {
-    int (*work)(void *with, struct bounded *to, struct why *why);
+    int (*work)(void *with, struct bounded *to, struct failure *failure);
     void *with;
     const char *name; /* of the file that it works on, for messages; */
     uint64_t size;    /* and its bytes */
@@ -27,7 +27,7 @@ struct bounded_task {
  * 10 MB. *answer: what it has put, *n bytes; to be given
  * back by bounded_free. Returns 0, the work's own reason, or EX_DATAERR.
  */
-int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct why *why);
+int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct failure *failure);
 void bounded_free(void *answer, size_t n);
 
 #endif

@@ -9,14 +9,14 @@
 #include "io/table_write.h"
 
 /* Which edges of a document's box are periodic */
-int cell_tables_open(struct source *source, bool repeats[3], struct why *why);
+int cell_tables_open(struct source *source, bool repeats[3], struct failure *failure);
 /* The cell of frame k, and the images; p has its bodies and its time. */
 int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
-                     struct why *why);
+                     struct failure *failure);
 
 /* What all frames share; where nothing is periodic the box has no edges. */
-int cell_tables_write_box(hid_t file, const struct cell *c, struct why *why);
+int cell_tables_write_box(hid_t file, const struct cell *c, struct failure *failure);
 /* A frame's part: nothing where nothing repeats */
-int cell_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+int cell_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 #endif

@@ -17,12 +17,12 @@ struct contact_rows {
     int64_t blocks;
 };
 
-int contact_rows_open(struct contact_rows *rows, struct source *source, struct why *why);
+int contact_rows_open(struct contact_rows *rows, struct source *source, struct failure *failure);
 void contact_rows_close(struct contact_rows *rows);
 /* The contacts of the frame's packing, if the document keeps them; checked (EX_DATAERR) */
-int contact_rows_read(struct contact_rows *rows, struct frame *frame, struct why *why);
+int contact_rows_read(struct contact_rows *rows, struct frame *frame, struct failure *failure);
 
 /* The frame's contacts, as the next block */
-int contact_rows_write(struct table_write *tables, const struct frame *frame, struct why *why);
+int contact_rows_write(struct table_write *tables, const struct frame *frame, struct failure *failure);
 
 #endif

@@ -27,18 +27,18 @@ struct source;
 /* Does the document hold a problem, /fclib_local or /fclib_global? */
 bool fclib_in(const struct source *source);
 /* There is none: which other FCLIB group there is. Returns EX_DATAERR. */
-int fclib_none(const struct source *source, struct why *why);
-int fclib_read(struct fclib *problem, struct source *source, struct why *why);
+int fclib_none(const struct source *source, struct failure *failure);
+int fclib_read(struct fclib *problem, struct source *source, struct failure *failure);
 /* r[n d] of the stored /solution; zeros where there is none. */
 int fclib_load_solution(const struct fclib *problem, struct source *source, double *r,
-                        struct why *why);
+                        struct failure *failure);
 void fclib_free(struct fclib *problem);
 
 /* Writes /solution: u and r [n d], of a global problem also v and l. Replaces what is there. */
 int fclib_store_solution(const struct fclib *problem, int64_t file, const double *u,
-                         const double *r, struct why *why);
+                         const double *r, struct failure *failure);
 
 /* Writes a packing's contact problem with its info. Replaces any problem and solution there. */
-int fclib_write_problem(const struct problem *problem, bool global, int64_t file, struct why *why);
+int fclib_write_problem(const struct problem *problem, bool global, int64_t file, struct failure *failure);
 
 #endif

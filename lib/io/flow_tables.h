@@ -9,13 +9,13 @@
 #include "io/table_write.h"
 
 /* A frame's part; nothing where bodies stay. */
-int flow_write(struct table_write *tables, const struct packing *p, struct why *why);
+int flow_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 /* After the first frame's step: the hard links to the step and time of the particles. */
-int flow_link(struct table_write *tables, const struct packing *p, struct why *why);
+int flow_link(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 /* What frame k says; nothing where there is no such group. */
-int flow_tables_read(struct source *source, int64_t k, struct packing *p, struct why *why);
+int flow_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
 /* The number of the next body that is poured, where bodies were added besides; p has its step. */
-int flow_tables_read_numbers(struct source *source, struct packing *p, struct why *why);
+int flow_tables_read_numbers(struct source *source, struct packing *p, struct failure *failure);
 
 #endif

@@ -15,11 +15,11 @@ void frame_free(struct frame *f)
     *f = (struct frame){ 0 };
 }
 
-int frame_note(struct frame *f, const char *line, struct why *why)
+int frame_note(struct frame *f, const char *line, struct failure *failure)
 {
     size_t had = f->history ? strlen(f->history) : 0, n = strlen(line);
     char *h = realloc(f->history, had + n + 2);
-    if (!h) return why_set(why, EX_SOFTWARE, "no memory for the history");
+    if (!h) return failure_set(failure, EX_SOFTWARE, "no memory for the history");
     memcpy(h + had, line, n);
     memcpy(h + had + n, "\n", 2);
     f->history = h;

@@ -40,6 +40,6 @@ struct frame {
 /* Frees what the frame owns and leaves it empty. */
 void frame_free(struct frame *frame);
 /* Adds a command's line to the history. */
-int frame_note(struct frame *frame, const char *line, struct why *why);
+int frame_note(struct frame *frame, const char *line, struct failure *failure);
 
 #endif

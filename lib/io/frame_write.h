@@ -7,9 +7,9 @@
 
 #include "io/table_write.h"
 
-int frame_write_static(struct table_write *tables, const struct frame *frame, struct why *why);
-int frame_write_moment(struct table_write *tables, const struct frame *frame, struct why *why);
+int frame_write_static(struct table_write *tables, const struct frame *frame, struct failure *failure);
+int frame_write_moment(struct table_write *tables, const struct frame *frame, struct failure *failure);
 /* /particles/all/position/step, to be written last: with its step a frame counts as there. */
-int frame_write_step(struct table_write *tables, const struct frame *frame, struct why *why);
+int frame_write_step(struct table_write *tables, const struct frame *frame, struct failure *failure);
 
 #endif

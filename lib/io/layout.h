@@ -337,13 +337,13 @@ static const struct column layout_velocity[] = {
 
 /* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
 static const struct column layout_poured[] = {
-    { "poured", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
-    { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
+    { "poured", "1", COLUMN_I64, 1, offsetof(struct flow_count, bodies) },
+    { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct flow_count, mass) },
     { 0 },
 };
 static const struct column layout_removed[] = {
-    { "removed", "1", COLUMN_I64, 1, offsetof(struct passage, bodies) },
-    { "removed_mass", "kg", COLUMN_F64, 1, offsetof(struct passage, mass) },
+    { "removed", "1", COLUMN_I64, 1, offsetof(struct flow_count, bodies) },
+    { "removed_mass", "kg", COLUMN_F64, 1, offsetof(struct flow_count, mass) },
     { 0 },
 };
 

@@ -12,14 +12,14 @@ static bool features(const struct packing *p)
     return p->mesh.elements || p->shape;
 }
 
-int memory_rows_open(struct memory_rows *r, struct source *source, struct why *why)
+int memory_rows_open(struct memory_rows *r, struct source *source, struct failure *failure)
 {
     int64_t n, m;
     uint64_t shape[4];
     *r = (struct memory_rows){ .source = source };
     if (!source_has(source, group)) return 0;
-    r->step = table_read_steps(source, "/nsd/memory/step", &r->blocks, why);
-    if (why->status) return why->status;
+    r->step = table_read_steps(source, "/nsd/memory/step", &r->blocks, failure);
+    if (failure->status) return failure->status;
     n = source_shape(source, "/nsd/memory/start", shape) == 1 ? (int64_t)shape[0] : 0;
     m = source_shape(source, "/nsd/memory/count", shape) == 1 ? (int64_t)shape[0] : 0;
     if (r->blocks > n) r->blocks = n; // a killed writer may have extended only some columns
@@ -28,34 +28,34 @@ int memory_rows_open(struct memory_rows *r, struct source *source, struct why *w
     return 0;
 }
 
-int memory_rows_read(struct memory_rows *r, struct packing *p, struct why *why)
+int memory_rows_read(struct memory_rows *r, struct packing *p, struct failure *failure)
 {
     int64_t at = table_read_row(r->step, r->blocks, p->step);
     struct span span = { 0, 0 };
     // before its first contact a document has no rows
     bool any = source_has(r->source, "/nsd/memory/body");
     if (at < 0) return 0;
-    if (any && table_read_span(r->source, (struct table_spans){ group, "body", 2 }, at, &span, why))
-        return why->status;
+    if (any && table_read_span(r->source, (struct table_spans){ group, "body", 2 }, at, &span, failure))
+        return failure->status;
     const int64_t start = span.start, count = span.count;
     struct memory *m = &p->memory;
     m->recall = calloc((size_t)count + 1, sizeof *m->recall);
-    if (!m->recall) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    if (!m->recall) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     m->on = true, m->n = count, m->room = count + 1;
     if (!any) return 0;
     struct source *s = r->source;
-    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall), why) ||
+    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall), failure) ||
         (features(p) &&
          table_read_columns(s, group, "", start, RECORDS(layout_memory_features, count, m->recall),
-                            why)) ||
+                            failure)) ||
         (cell_repeats(&p->cell) &&
          table_read_columns(s, group, "", start, RECORDS(layout_memory_shifts, count, m->recall),
-                            why)) ||
+                            failure)) ||
         (packing_rolls(p) &&
          table_read_columns(s, group, "", start, RECORDS(layout_memory_moments, count, m->recall),
-                            why)))
-        return why->status;
-    return memory_check(m, p->n, p->walls, why);
+                            failure)))
+        return failure->status;
+    return memory_check(m, p->n, p->walls, failure);
 }
 
 void memory_rows_close(struct memory_rows *r)
@@ -66,24 +66,24 @@ void memory_rows_close(struct memory_rows *r)
 
 /* ---- to a document ---- */
 
-int memory_rows_write(struct table_write *s, const struct packing *p, struct why *why)
+int memory_rows_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const struct memory *m = &p->memory;
     if (!m->on) return 0;
-    if (table_write_span(s, "/nsd/memory", s->memory, m->n, why) ||
+    if (table_write_span(s, "/nsd/memory", s->memory, m->n, failure) ||
         table_write_columns(s, group, "", RECORDS(layout_memory, m->n, m->recall), CHUNK_CONTACTS,
-                            why) ||
+                            failure) ||
         (features(p) &&
          table_write_columns(s, group, "", RECORDS(layout_memory_features, m->n, m->recall),
-                             CHUNK_CONTACTS, why)) ||
+                             CHUNK_CONTACTS, failure)) ||
         (cell_repeats(&p->cell) &&
          table_write_columns(s, group, "", RECORDS(layout_memory_shifts, m->n, m->recall),
-                             CHUNK_CONTACTS, why)) ||
+                             CHUNK_CONTACTS, failure)) ||
         (packing_rolls(p) &&
          table_write_columns(s, group, "", RECORDS(layout_memory_moments, m->n, m->recall),
-                             CHUNK_CONTACTS, why)) ||
-        table_write_number(s, "/nsd/memory/step", COLUMN_I64, &p->step, NULL, why))
-        return why->status;
+                             CHUNK_CONTACTS, failure)) ||
+        table_write_number(s, "/nsd/memory/step", COLUMN_I64, &p->step, NULL, failure))
+        return failure->status;
     if (s->growing) s->memory += m->n;
     return 0;
 }

@@ -15,11 +15,11 @@ struct memory_rows {
     int64_t blocks;
 };
 
-int memory_rows_open(struct memory_rows *rows, struct source *source, struct why *why);
+int memory_rows_open(struct memory_rows *rows, struct source *source, struct failure *failure);
 void memory_rows_close(struct memory_rows *rows);
 /* That of the packing, whose bodies are there; checked (EX_DATAERR). Nothing where the frame has none */
-int memory_rows_read(struct memory_rows *rows, struct packing *p, struct why *why);
+int memory_rows_read(struct memory_rows *rows, struct packing *p, struct failure *failure);
 /* The packing's, as the next block; nothing where solves do not start from it */
-int memory_rows_write(struct table_write *tables, const struct packing *p, struct why *why);
+int memory_rows_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 #endif

@@ -9,8 +9,8 @@
 #include "io/table_write.h"
 
 /* Into a packing; packing_check() sees whether they are of its boundaries. Returns 0, EX_DATAERR or EX_SOFTWARE. */
-int name_tables_read(struct source *source, struct packing *p, struct why *why);
+int name_tables_read(struct source *source, struct packing *p, struct failure *failure);
 /* What all frames share */
-int name_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+int name_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 #endif

@@ -14,6 +14,6 @@
 
 /* The file as bytes, to be freed; contacts may be NULL. NULL: EX_SOFTWARE. */
 void *ondem_write(const struct packing *p, const struct contacts *contacts, size_t *size,
-                  struct why *why);
+                  struct failure *failure);
 
 #endif

@@ -19,7 +19,7 @@ static struct dataset external_force_tables_row_of(const char *path, int rank, c
     return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
 }
 
-static int write_boundaries(struct table_write *s, const struct packing *p, struct why *why)
+static int write_boundaries(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const hsize_t shape[3] = { 1, (hsize_t)p->walls, 3 };
     size_t n = (size_t)p->walls;
@@ -27,57 +27,57 @@ static int write_boundaries(struct table_write *s, const struct packing *p, stru
     double *push = calloc(n + 1, sizeof *push);
     if (!x || !push) {
         free(x), free(push);
-        return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
     }
     for (size_t w = 0; w < n; w++) {
         x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
         if (p->outside.push) push[w] = p->outside.push[w];
     }
-    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), why) &&
-        !table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), why))
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), why);
+    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), failure) &&
+        !table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), failure))
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), failure);
     free(x), free(push);
-    return why->status;
+    return failure->status;
 }
 
 /* Of bodies, without which a column has 0 */
-static int external_force_tables_write_forces(struct table_write *s, const struct packing *p, bool any, struct why *why)
+static int external_force_tables_write_forces(struct table_write *s, const struct packing *p, bool any, struct failure *failure)
 {
     int64_t n = any ? p->n : 0;
     const hsize_t shape[2] = { (hsize_t)n, 3 };
     vec3 *none = calloc((size_t)n + 1, sizeof *none);
-    if (!none) return why_set(why, EX_SOFTWARE, "no memory for forces");
+    if (!none) return failure_set(failure, EX_SOFTWARE, "no memory for forces");
     const vec3 *force = any && p->outside.force ? p->outside.force : none;
     const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
-    if (!table_write_span(s, EXTERNAL_HOME "/body", s->forces, n, why) &&
+    if (!table_write_span(s, EXTERNAL_HOME "/body", s->forces, n, failure) &&
         !table_write_rows(s,
                           (struct dataset){ EXTERNAL_HOME "/body/force", COLUMN_F64, 2, shape,
                                             CHUNK_CONTACTS, force, "N" },
-                          why))
+                          failure))
         table_write_rows(s,
                          (struct dataset){ EXTERNAL_HOME "/body/torque", COLUMN_F64, 2, shape,
                                            CHUNK_CONTACTS, torque, "N m" },
-                         why);
+                         failure);
     free(none);
     if (s->growing) s->forces += n;
-    return why->status;
+    return failure->status;
 }
 
-static int external_force_tables_write_words(struct table_write *s, const struct outside *o, struct why *why)
+static int external_force_tables_write_words(struct table_write *s, const struct external_force *o, struct failure *failure)
 {
     const hsize_t length = (hsize_t)o->length;
-    if (table_write_span(s, EXTERNAL_HOME "/answer", s->words, o->length, why) ||
+    if (table_write_span(s, EXTERNAL_HOME "/answer", s->words, o->length, failure) ||
         table_write_rows(s,
                          (struct dataset){ EXTERNAL_HOME "/answer/text", COLUMN_I8, 1, &length,
                                            CHUNK_CONTACTS, o->length ? o->words : "", NULL },
-                         why))
-        return why->status;
+                         failure))
+        return failure->status;
     if (s->growing) s->words += o->length;
     return 0;
 }
 
 /* Forces that last, of frames that have them; they have their own steps. */
-static int write_lasting(struct table_write *s, const struct packing *p, struct why *why)
+static int write_lasting(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const struct lasting *o = &p->outside.lasts;
     const hsize_t walls[2] = { 1, (hsize_t)p->walls };
@@ -87,99 +87,99 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
     vec3 *none = calloc((size_t)n + 1, sizeof *none);
     double *rest = calloc((size_t)p->walls + 1, sizeof *rest);
     if (!none || !rest)
-        why_set(why, EX_SOFTWARE, "no memory for forces that last");
-    else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, why) &&
+        failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
+    else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, failure) &&
              !table_write_rows(
-                 s, external_force_tables_row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), why) &&
-             !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, why) &&
+                 s, external_force_tables_row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), failure) &&
+             !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, failure) &&
              !table_write_rows(s,
                                (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
                                                  CHUNK_CONTACTS, o->force ? o->force : none, "N" },
-                               why))
+                               failure))
         table_write_rows(s,
                          (struct dataset){ LASTS "/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
                                            o->torque ? o->torque : none, "N m" },
-                         why);
+                         failure);
     free(none), free(rest);
     if (s->growing) s->lasting += n;
-    return why->status;
+    return failure->status;
 }
 
-int outside_tables_write(struct table_write *s, const struct frame *f, struct why *why)
+int external_force_tables_write(struct table_write *s, const struct frame *f, struct failure *failure)
 {
     const struct packing *p = &f->packing;
-    const struct outside *o = &p->outside;
+    const struct external_force *o = &p->outside;
     const hsize_t row[2] = { 1, 3 }, pairs[2] = { 1, (hsize_t)p->kinds * (hsize_t)p->kinds };
     const double g[3] = { p->g.x, p->g.y, p->g.z };
-    if (!f->distributed && write_lasting(s, p, why)) return why->status;
+    if (!f->distributed && write_lasting(s, p, failure)) return failure->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
-    if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, why) ||
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), why) ||
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), why) ||
-        write_boundaries(s, p, why) || external_force_tables_write_forces(s, p, forces, why))
-        return why->status;
-    return external_force_tables_write_words(s, o, why);
+    if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, failure) ||
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), failure) ||
+        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), failure) ||
+        write_boundaries(s, p, failure) || external_force_tables_write_forces(s, p, forces, failure))
+        return failure->status;
+    return external_force_tables_write_words(s, o, failure);
 }
 
 /* ---- from a document ---- */
 
-static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct why *why)
+static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct failure *failure)
 {
     size_t n = (size_t)p->walls;
     vec3 *x = calloc(2 * n + 1, sizeof *x);
-    if (!x) return why_set(why, EX_SOFTWARE, "no memory for the boundaries");
-    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, why) &&
+    if (!x) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
+    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, failure) &&
         !source_rows(s, EXTERNAL_HOME "/velocity", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n,
-                     why) &&
-        !outside_alloc_push(&p->outside, p->walls, why))
+                     failure) &&
+        !external_force_alloc_push(&p->outside, p->walls, failure))
         source_rows(s, EXTERNAL_HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, p->outside.push,
-                    why);
+                    failure);
     bool any = false;
-    for (size_t w = 0; w < n && !why->status; w++) {
+    for (size_t w = 0; w < n && !failure->status; w++) {
         if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
-            why_set(why, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite", w);
+            failure_set(failure, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite", w);
         p->wall[w].x = x[w], p->wall[w].v = x[n + w];
         any = any || p->outside.push[w] != 0;
     }
     if (!any) free(p->outside.push), p->outside.push = NULL;
     free(x);
-    return why->status;
+    return failure->status;
 }
 
 /* The span of the frame, which is to be within what is stored and at most `most` long */
 static int read_span(struct source *s, const char *name, int64_t row, int64_t most,
-                     struct span *span, struct why *why)
+                     struct span *span, struct failure *failure)
 {
     const struct slab number = { COLUMN_I64, row, 1, 1 };
     char path[80];
     snprintf(path, sizeof path, EXTERNAL_HOME "/%s/start", name);
-    if (source_rows(s, path, number, &span->start, why)) return why->status;
+    if (source_rows(s, path, number, &span->start, failure)) return failure->status;
     snprintf(path, sizeof path, EXTERNAL_HOME "/%s/count", name);
-    if (source_rows(s, path, number, &span->count, why)) return why->status;
+    if (source_rows(s, path, number, &span->count, failure)) return failure->status;
     if (span->start >= 0 && span->count >= 0 && span->count <= most) return 0;
-    return why_set(why, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
+    return failure_set(failure, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
                    (long long)span->count, (long long)span->start);
 }
 
-static int read_forces(struct source *s, int64_t row, struct packing *p, struct why *why)
+static int read_forces(struct source *s, int64_t row, struct packing *p, struct failure *failure)
 {
     struct span span = { 0, 0 };
-    if (read_span(s, "body", row, p->n, &span, why) || !span.count) return why->status;
+    if (read_span(s, "body", row, p->n, &span, failure) || !span.count) return failure->status;
     const int64_t start = span.start, count = span.count;
     if (count != p->n)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        EXTERNAL_HOME "/body/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
-    if (outside_alloc(&p->outside.force, p->n, why) ||
-        outside_alloc(&p->outside.torque, p->n, why) ||
+    if (external_force_alloc(&p->outside.force, p->n, failure) ||
+        external_force_alloc(&p->outside.torque, p->n, failure) ||
         source_rows(s, EXTERNAL_HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
-                    p->outside.force, why))
-        return why->status;
+                    p->outside.force, failure))
+        return failure->status;
     if (source_rows(s, EXTERNAL_HOME "/body/torque", (struct slab){ COLUMN_F64, start, count, 3 },
-                    p->outside.torque, why))
-        return why->status;
-    outside_measure(&p->outside, p->mass, p->n);
+                    p->outside.torque, failure))
+        return failure->status;
+    external_force_measure(&p->outside, p->mass, p->n);
     return 0;
 }
 
@@ -199,67 +199,67 @@ static void drop_vectors(vec3 **x, int64_t n)
     if (!at) *x = NULL;
 }
 
-static int read_lasting(struct source *s, struct packing *p, struct why *why)
+static int read_lasting(struct source *s, struct packing *p, struct failure *failure)
 {
     struct lasting *o = &p->outside.lasts;
     struct span span = { 0, 0 };
-    int64_t row = table_read_row_at(s, LASTS "/step", p->step, why);
-    if (why->status || row < 0 || read_span(s, "lasting", row, p->n, &span, why))
-        return why->status;
+    int64_t row = table_read_row_at(s, LASTS "/step", p->step, failure);
+    if (failure->status || row < 0 || read_span(s, "lasting", row, p->n, &span, failure))
+        return failure->status;
     const int64_t start = span.start, count = span.count;
     if (count && count != p->n)
-        return why_set(why, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
+        return failure_set(failure, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
                        (long long)count, (long long)p->n);
     if (!(o->push = calloc((size_t)p->walls + 1, sizeof *o->push)))
-        return why_set(why, EX_SOFTWARE, "no memory for forces that last");
-    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push, why))
-        return why->status;
+        return failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
+    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push, failure))
+        return failure->status;
     drop_zeros(&o->push, p->walls);
     if (!count) return 0;
-    if (outside_alloc(&o->force, p->n, why) || outside_alloc(&o->torque, p->n, why) ||
+    if (external_force_alloc(&o->force, p->n, failure) || external_force_alloc(&o->torque, p->n, failure) ||
         source_rows(s, LASTS "/force", (struct slab){ COLUMN_F64, start, count, 3 }, o->force,
-                    why) ||
+                    failure) ||
         source_rows(s, LASTS "/torque", (struct slab){ COLUMN_F64, start, count, 3 }, o->torque,
-                    why))
-        return why->status;
+                    failure))
+        return failure->status;
     drop_vectors(&o->force, p->n), drop_vectors(&o->torque, p->n);
     return 0;
 }
 
-static int read_words(struct source *s, int64_t row, struct outside *o, struct why *why)
+static int read_words(struct source *s, int64_t row, struct external_force *o, struct failure *failure)
 {
     uint64_t shape[4];
     struct span span = { 0, 0 };
     if (source_shape(s, EXTERNAL_HOME "/answer/text", shape) != 1)
-        return why_set(why, EX_DATAERR, EXTERNAL_HOME "/answer/text: not of one dimension");
-    if (read_span(s, "answer", row, (int64_t)shape[0], &span, why) || !span.count)
-        return why->status;
+        return failure_set(failure, EX_DATAERR, EXTERNAL_HOME "/answer/text: not of one dimension");
+    if (read_span(s, "answer", row, (int64_t)shape[0], &span, failure) || !span.count)
+        return failure->status;
     const int64_t start = span.start, count = span.count;
     if (!(o->words = malloc((size_t)count)))
-        return why_set(why, EX_SOFTWARE, "no memory for the answer");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the answer");
     o->length = o->room = count;
     return source_rows(s, EXTERNAL_HOME "/answer/text", (struct slab){ COLUMN_I8, start, count, 1 },
-                       o->words, why);
+                       o->words, failure);
 }
 
-int outside_tables_read(struct source *s, struct packing *p, struct why *why)
+int external_force_tables_read(struct source *s, struct packing *p, struct failure *failure)
 {
     double g[3];
-    if (read_lasting(s, p, why)) return why->status;
-    int64_t row = table_read_row_at(s, EXTERNAL_HOME "/step", p->step, why);
-    if (why->status || row < 0) return why->status;
-    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, why) ||
+    if (read_lasting(s, p, failure)) return failure->status;
+    int64_t row = table_read_row_at(s, EXTERNAL_HOME "/step", p->step, failure);
+    if (failure->status || row < 0) return failure->status;
+    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, failure) ||
         source_rows(s, EXTERNAL_HOME "/friction",
                     (struct slab){ COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds }, p->mu,
-                    why) ||
-        read_boundaries(s, row, p, why) || read_forces(s, row, p, why) ||
-        read_words(s, row, &p->outside, why))
-        return why->status;
+                    failure) ||
+        read_boundaries(s, row, p, failure) || read_forces(s, row, p, failure) ||
+        read_words(s, row, &p->outside, failure))
+        return failure->status;
     p->g = v3(g[0], g[1], g[2]);
     p->outside.steered = true;
     for (int32_t a = 0; a < p->kinds; a++)
         for (int32_t b = 0; b < a; b++)
             if (p->mu[a * p->kinds + b] != p->mu[b * p->kinds + a])
-                return why_set(why, EX_DATAERR, EXTERNAL_HOME "/friction: not symmetric");
+                return failure_set(failure, EX_DATAERR, EXTERNAL_HOME "/friction: not symmetric");
     return 0;
 }

@@ -11,8 +11,8 @@
 #include "io/table_write.h"
 
 /* Into a packing that has all else of its frame, its step too. Returns 0, EX_DATAERR or EX_SOFTWARE. */
-int outside_tables_read(struct source *source, struct packing *p, struct why *why);
+int external_force_tables_read(struct source *source, struct packing *p, struct failure *failure);
 /* A frame's part */
-int outside_tables_write(struct table_write *tables, const struct frame *frame, struct why *why);
+int external_force_tables_write(struct table_write *tables, const struct frame *frame, struct failure *failure);
 
 #endif

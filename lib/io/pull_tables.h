@@ -7,7 +7,7 @@
 
 /* Nothing where there is no such group. packing_check() looks at them. Each returns 0, EX_DATAERR or EX_SOFTWARE; to
    write, EX_IOERR. */
-int pull_tables_read(struct source *source, struct packing *p, struct why *why);
-int pull_tables_write(struct table_write *tables, const struct packing *p, struct why *why);
+int pull_tables_read(struct source *source, struct packing *p, struct failure *failure);
+int pull_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 #endif

@@ -12,7 +12,7 @@
 struct reader;
 
 /* The files are read one after another; no file, or the name "-", means standard input. */
-int reader_open(struct reader **reader, int files, char *const *file, struct why *why);
+int reader_open(struct reader **reader, int files, char *const *file, struct failure *failure);
 
 /*
  * All readers from now on take documents whose datasets hold so many bytes when unpacked; 0: 64
@@ -33,9 +33,9 @@ const char *reader_loses(const struct reader *reader);
  * Opens the next document and tells in *frames how many it holds: 1 for an FCLIB problem, -1 when
  * there is no further document. All that is read from a file is checked first (EX_DATAERR).
  */
-int reader_document(struct reader *reader, int64_t *frames, struct why *why);
+int reader_document(struct reader *reader, int64_t *frames, struct failure *failure);
 /* Reads frame k of the open document. *frame is freed first; the caller frees it in the end. */
-int reader_frame(struct reader *reader, int64_t k, struct frame *frame, struct why *why);
+int reader_frame(struct reader *reader, int64_t k, struct frame *frame, struct failure *failure);
 
 /*
  * Is frame k of the open document one of these steps? Answered without reading the frame. An FCLIB
@@ -47,21 +47,21 @@ bool reader_has(const struct reader *reader, int64_t k, const struct range *step
  * Goes to the next frame of these steps (NULL: of all), across documents. *more becomes false when there
  * is none.
  */
-int reader_find(struct reader *reader, const struct range *steps, bool *more, struct why *why);
+int reader_find(struct reader *reader, const struct range *steps, bool *more, struct failure *failure);
 /* Reads it. */
-int reader_take(struct reader *reader, struct frame *frame, struct why *why);
+int reader_take(struct reader *reader, struct frame *frame, struct failure *failure);
 /*
  * Or may it go on as it is, of a reader that copies? A document of nsd's own with one packing and nothing else, as
  * nsd writes it into a stream, and so large that it matters: a small one is decoded, and thereby checked, as fast.
  */
 bool reader_whole(const struct reader *reader);
 /* All bytes of its document, in pieces, to pour(to, ...); none of its numbers has been looked at. */
-int reader_pour(struct reader *reader, source_sink pour, void *to, struct why *why);
+int reader_pour(struct reader *reader, source_sink pour, void *to, struct failure *failure);
 /* Both: the next frame of these steps, and *more */
 int reader_next(struct reader *reader, const struct range *steps, struct frame *frame, bool *more,
-                struct why *why);
+                struct failure *failure);
 /* The very last frame of all documents; *more becomes false when there is no frame at all. */
-int reader_last(struct reader *reader, struct frame *frame, bool *more, struct why *why);
+int reader_last(struct reader *reader, struct frame *frame, bool *more, struct failure *failure);
 
 /* "a.h5" or "a.h5: document 3": where the current frame comes from, for messages. */
 const char *reader_where(const struct reader *reader);

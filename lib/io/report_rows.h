@@ -27,13 +27,13 @@ struct report_rows {
     } ahead;
 };
 
-int report_rows_open(struct report_rows *rows, struct source *source, struct why *why);
+int report_rows_open(struct report_rows *rows, struct source *source, struct failure *failure);
 void report_rows_close(struct report_rows *rows);
 /* The report on the solve that led to this step, if there is one, and the account up to there */
 int report_rows_read(struct report_rows *rows, int64_t step, struct report *report,
-                     struct account *account, bool *there, struct why *why);
+                     struct account *account, bool *there, struct failure *failure);
 
 /* The next row; texts and history are written with the first. */
-int report_rows_write(struct table_write *tables, const struct report *report, struct why *why);
+int report_rows_write(struct table_write *tables, const struct report *report, struct failure *failure);
 
 #endif

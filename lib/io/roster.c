@@ -21,12 +21,12 @@ static double roster_most_of(const struct scene_pour *o)
     return fmin(o->count, by_time);
 }
 
-void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct why *why)
+void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct failure *failure)
 {
     struct flow flow;
     double bound = (double)p->n;
     *most = *chunk = 0;
-    if (flow_read(&flow, p, why)) return;
+    if (flow_read(&flow, p, failure)) return;
     for (int32_t k = 0; k < flow.scene.pours; k++) bound += roster_most_of(&flow.scene.pour[k]);
     flow_free(&flow);
     if (isinf(bound)) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
@@ -42,7 +42,7 @@ void roster_free(struct roster *r)
     *r = (struct roster){ 0 };
 }
 
-static int roster_grow(struct roster *r, struct why *why)
+static int roster_grow(struct roster *r, struct failure *failure)
 {
     if (r->rows < r->room) return 0;
     size_t room = r->room ? 2 * (size_t)r->room : 256;
@@ -52,24 +52,24 @@ static int roster_grow(struct roster *r, struct why *why)
     if (radius) r->radius = radius;
     double *mass = realloc(r->mass, room * sizeof *mass);
     if (mass) r->mass = mass;
-    if (!id || !radius || !mass) return why_set(why, EX_SOFTWARE, "no memory for the roster");
+    if (!id || !radius || !mass) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     r->room = (int64_t)room;
     return 0;
 }
 
 /* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
 static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
-                      struct why *why)
+                      struct failure *failure)
 {
     while (from < r->rows && r->id[from] != p->id[i]) from++;
     if (from < r->rows) {
         if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
-        return why_set(why, EX_DATAERR, "other bodies than the trajectory's"), -1;
+        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's"), -1;
     }
-    if (roster_grow(r, why)) return -1;
+    if (roster_grow(r, failure)) return -1;
     for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
         if (r->id[k] == p->id[i])
-            return why_set(why, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
+            return failure_set(failure, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
     r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
     return r->rows++;
 }
@@ -81,7 +81,7 @@ static bool roster_moves(const struct body_column *b)
 }
 
 /* The tables of bodies go on with those from `first` on, the last ones of the packing. */
-static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct why *why)
+static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct failure *failure)
 {
     const hsize_t n = (hsize_t)(p->n - first);
     for (const struct body_column *b = body_columns; b->column.name; b++) {
@@ -93,33 +93,33 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
         if (table_write_rows(s,
                              (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
                                                s->chunk_bodies, column_row(c, p, first), c->units },
-                             why))
-            return why->status;
+                             failure))
+            return failure->status;
     }
     return 0;
 }
 
 int roster_enter(struct roster *r, struct table_write *s, const struct packing *p, int64_t **row,
-                 struct why *why)
+                 struct failure *failure)
 {
     int64_t had = r->rows, first = p->n, at = 0;
     *row = malloc(((size_t)p->n + 1) * sizeof **row);
-    if (!*row) return why_set(why, EX_SOFTWARE, "no memory for the roster");
+    if (!*row) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     for (int64_t i = 0; i < p->n; i++) {
-        (*row)[i] = roster_row_of(r, p, i, at, why);
-        if (why->status) return why->status;
+        (*row)[i] = roster_row_of(r, p, i, at, failure);
+        if (failure->status) return failure->status;
         if ((*row)[i] >= had && first == p->n) first = i;
         at = (*row)[i] + 1;
     }
     if (r->rows > (int64_t)s->most_bodies)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "the trajectory has rows for %lld bodies, and more were poured: give the "
                        "pour a count, or "
                        "begin a new trajectory",
                        (long long)s->most_bodies);
     int64_t chunk = (int64_t)s->chunk_bodies;
     while (r->width < r->rows || !r->width) r->width += chunk;
-    if (first < p->n || !had) return write_new(s, p, first, why);
+    if (first < p->n || !had) return write_new(s, p, first, failure);
     return 0;
 }
 
@@ -130,7 +130,7 @@ static void moving_path(const struct body_column *b, char path[80])
 
 /* A column of bodies that move, of body i in row[i] */
 static int write_spread(struct roster *r, struct table_write *s, const struct body_column *b,
-                        const struct packing *p, const int64_t *row, struct why *why)
+                        const struct packing *p, const int64_t *row, struct failure *failure)
 {
     const struct column *c = &b->column;
     const char *data = column_array(c, p);
@@ -138,7 +138,7 @@ static int write_spread(struct roster *r, struct table_write *s, const struct bo
     moving_path(b, path);
     size_t number = column_size(c->type), bytes = column_bytes(c);
     char *all = malloc((size_t)r->width * bytes);
-    if (!all) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+    if (!all) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
     const double none = NAN;
     const int32_t nobody = -1;
     const void *empty = c->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
@@ -148,52 +148,52 @@ static int write_spread(struct roster *r, struct table_write *s, const struct bo
         memcpy(all + (size_t)row[i] * bytes, data + (size_t)i * bytes, bytes);
     const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
     int e = table_write_rows(
-        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, why);
+        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, failure);
     free(all);
     return e;
 }
 
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
-                 const int64_t *row, struct why *why)
+                 const int64_t *row, struct failure *failure)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
         if (!roster_moves(b) || !column_array(&b->column, p)) continue;
-        if (write_spread(r, s, b, p, row, why)) return why->status;
+        if (write_spread(r, s, b, p, row, failure)) return failure->status;
     }
     return 0;
 }
 
 /* ---- from a document ---- */
 
-int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct why *why)
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure)
 {
     uint64_t shape[4];
     const char *ids = "/particles/all/id/value";
     *row = NULL;
     if (source_shape(source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
-        return why_set(why, EX_DATAERR, "/particles/all/radius: not a list of numbers");
+        return failure_set(failure, EX_DATAERR, "/particles/all/radius: not a list of numbers");
     *n = (int64_t)shape[0];
     if (!source_has(source, ids)) return 0;
     if (source_shape(source, ids, shape) != 2 || shape[1] > INT32_MAX)
-        return why_set(why, EX_DATAERR, "%s: not of shape frames x bodies", ids);
+        return failure_set(failure, EX_DATAERR, "%s: not of shape frames x bodies", ids);
     int64_t rows = (int64_t)shape[1];
     int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
     *row = calloc((size_t)rows + 1, sizeof **row);
     *n = 0;
     if (!id || !*row) {
         free(id);
-        return why_set(why, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
     }
-    if (!source_rows(source, ids, (struct slab){ COLUMN_I32, k, 1, rows }, id, why))
+    if (!source_rows(source, ids, (struct slab){ COLUMN_I32, k, 1, rows }, id, failure))
         for (int64_t i = 0; i < rows; i++)
             if (id[i] >= 0) (*row)[(*n)++] = i;
     free(id);
-    return why->status;
+    return failure->status;
 }
 
 /* A column of p's bodies, of body i from row[i]: of frame k, or of a table that all frames share */
 static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct body_column *b,
-                       struct packing *p, struct why *why)
+                       struct packing *p, struct failure *failure)
 {
     const struct column *c = &b->column;
     const int64_t n = p->n;
@@ -206,15 +206,15 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
     const bool moving = roster_moves(b);
-    if (rank < 1 + moving) return why_set(why, EX_DATAERR, "%s: no dataset of bodies", path);
+    if (rank < 1 + moving) return failure_set(failure, EX_DATAERR, "%s: no dataset of bodies", path);
     int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)
-        return why_set(why, EX_DATAERR, "%s: fewer rows than bodies", path);
+        return failure_set(failure, EX_DATAERR, "%s: fewer rows than bodies", path);
     size_t bytes = (size_t)c->width * column_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
-    if (!all) return why_set(why, EX_SOFTWARE, "%s: no memory", path);
-    int e = moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, why)
-                   : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, why);
+    if (!all) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
+    int e = moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, failure)
+                   : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, failure);
     for (int64_t i = 0; !e && i < n; i++)
         memcpy(out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
     free(all);
@@ -222,11 +222,11 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
 }
 
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
-                struct why *why)
+                struct failure *failure)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, why))
-            return why->status;
+        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, failure))
+            return failure->status;
     }
     return 0;
 }

@@ -20,24 +20,24 @@ struct roster {
 
 /* The most rows that a trajectory can have that begins with this packing, and the rows of a chunk:
    functions of the packing, whoever writes it. */
-void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct why *why);
+void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct failure *failure);
 
 /*
  * row[p->n] = the rows of the packing's bodies; new ones are written to the tables of bodies. *row is
  * to be freed. EX_DATAERR: these are not the bodies that were there, or too many.
  */
 int roster_enter(struct roster *r, struct table_write *s, const struct packing *p, int64_t **row,
-                 struct why *why);
+                 struct failure *failure);
 /* Ids and motion, as the next frame of their datasets */
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
-                 const int64_t *row, struct why *why);
+                 const int64_t *row, struct failure *failure);
 void roster_free(struct roster *r);
 
 /* How many bodies frame k of a document has, and which rows they are; *row is to be freed. NULL: no
    body comes or goes, the frame has them all. */
-int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct why *why);
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure);
 /* The bodies in these rows of frame k, into the packing's arrays of as many */
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
-                struct why *why);
+                struct failure *failure);
 
 #endif

@@ -37,23 +37,23 @@ struct listing {
     uint64_t vertices, faces, corners;
 };
 
-static int read_lists(struct source *r, struct listing *l, struct why *why)
+static int read_lists(struct source *r, struct listing *l, struct failure *failure)
 {
     uint64_t balls, n[4];
     if (source_shape(r, SHAPE "/vertex", n) != 2 || n[0] > INT32_MAX)
-        return why_set(why, EX_DATAERR, SHAPE "/vertex: not of shape vertices x 3");
+        return failure_set(failure, EX_DATAERR, SHAPE "/vertex: not of shape vertices x 3");
     l->vertices = n[0];
     l->vertex = calloc((size_t)n[0] + 1, sizeof *l->vertex);
-    if (!l->vertex) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    if (!l->vertex) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     if (source_rows(r, SHAPE "/vertex", (struct slab){ COLUMN_F64, 0, (int64_t)n[0], 3 }, l->vertex,
-                    why))
-        return why->status;
-    l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, why);
-    l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, why);
-    l->corner = source_read_all(r, SHAPE "/corner", COLUMN_I32, &l->corners, why);
-    if (!why->status && balls != l->vertices)
-        why_set(why, EX_DATAERR, SHAPE "/ball: not a number for each vertex");
-    return why->status;
+                    failure))
+        return failure->status;
+    l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, failure);
+    l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, failure);
+    l->corner = source_read_all(r, SHAPE "/corner", COLUMN_I32, &l->corners, failure);
+    if (!failure->status && balls != l->vertices)
+        failure_set(failure, EX_DATAERR, SHAPE "/ball: not a number for each vertex");
+    return failure->status;
 }
 
 static void listing_drop(struct listing *l)
@@ -69,7 +69,7 @@ struct shape_tables_place {
 
 /* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
 static int shape_tables_make_shape(struct source *r, struct shape *s, const struct shape_tables_row *row, struct shape_tables_place *at,
-                      int dim, struct why *why)
+                      int dim, struct failure *failure)
 {
     const struct listing *l = at->of;
     if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
@@ -78,24 +78,24 @@ static int shape_tables_make_shape(struct source *r, struct shape *s, const stru
         (uint64_t)row->corners > l->corners - at->corners ||
         (row->vertices && !(l->vertex && l->ball)) || (row->faces && !l->face) ||
         (row->corners && !l->corner))
-        return why_set(why, EX_DATAERR, "more vertices or faces than there are");
-    if (source_draw(r, (uint64_t)row->vertices * (uint64_t)row->faces / PER_BYTE, why))
-        return why->status; // of each face all vertices are behind
-    if (shape_alloc(s, row->vertices, row->faces, row->corners, why)) return why->status;
+        return failure_set(failure, EX_DATAERR, "more vertices or faces than there are");
+    if (source_draw(r, (uint64_t)row->vertices * (uint64_t)row->faces / PER_BYTE, failure))
+        return failure->status; // of each face all vertices are behind
+    if (shape_alloc(s, row->vertices, row->faces, row->corners, failure)) return failure->status;
     s->form = row->form, s->round = row->round, s->volume = row->volume;
     memcpy(s->moment, row->moment, sizeof s->moment);
     for (int32_t i = 0; i < row->vertices; i++, at->vertices++)
         s->vertex[i] = l->vertex[at->vertices], s->ball[i] = l->ball[at->vertices];
-    for (int32_t f = 0; f < row->faces && !why->status; f++) {
+    for (int32_t f = 0; f < row->faces && !failure->status; f++) {
         int32_t n = l->face[at->faces++];
         if (n < 3 || n > s->corners - s->first[f])
-            why_set(why, EX_DATAERR, "a face has %d corners", n);
+            failure_set(failure, EX_DATAERR, "a face has %d corners", n);
         else
             s->first[f + 1] = s->first[f] + n;
     }
     for (int32_t i = 0; i < row->corners; i++) s->corner[i] = l->corner[at->corners++];
-    if (why->status || shape_finish(s, dim, why)) shape_free(s);
-    return why->status;
+    if (failure->status || shape_finish(s, dim, failure)) shape_free(s);
+    return failure->status;
 }
 
 /* The table of shapes */
@@ -107,57 +107,57 @@ struct shape_tables_table {
 };
 
 /* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
-static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t, struct why *why)
+static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t, struct failure *failure)
 {
     const char *names = t->names;
     struct shape_tables_place at = { .of = &t->lists };
-    for (int32_t k = 0; k < t->n && !why->status; k++) {
+    for (int32_t k = 0; k < t->n && !failure->status; k++) {
         struct shape s = { 0 };
-        struct why trouble = { 0 };
+        struct failure trouble = { 0 };
         const char *end = strchr(names, '\n');
         if (!end || end == names)
-            return why_set(why, EX_DATAERR, SHAPE "@names: fewer names than shapes");
+            return failure_set(failure, EX_DATAERR, SHAPE "@names: fewer names than shapes");
         char *name = strndup(names, (size_t)(end - names));
         names = end + 1;
         shape_tables_make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
         if (trouble.status)
-            why_set(why, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
+            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
         if (trouble.status) free(name);
         s.name = trouble.status ? NULL : name;
-        bool twice = !why->status && name && shapes_find(&p->shapes, name) >= 0;
-        if (!why->status && shapes_add(&p->shapes, p->dim, &s, why)) return why->status;
-        if (twice) why_set(why, EX_DATAERR, SHAPE "@names: two shapes have one name");
+        bool twice = !failure->status && name && shapes_find(&p->shapes, name) >= 0;
+        if (!failure->status && shapes_add(&p->shapes, p->dim, &s, failure)) return failure->status;
+        if (twice) failure_set(failure, EX_DATAERR, SHAPE "@names: two shapes have one name");
     }
-    return why->status;
+    return failure->status;
 }
 
-int shape_tables_read(struct source *r, struct packing *p, struct why *why)
+int shape_tables_read(struct source *r, struct packing *p, struct failure *failure)
 {
     uint64_t n[4];
     struct shape_tables_table t = { 0 };
     if (!source_has(r, SHAPE)) return 0;
     if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
-        return why_set(why, EX_DATAERR, SHAPE "/form: not a list of shapes");
+        return failure_set(failure, EX_DATAERR, SHAPE "/form: not a list of shapes");
     struct shape_tables_row *row = calloc((size_t)n[0], sizeof *row);
-    char *names = row ? source_text(r, SHAPE, "names", why) : NULL;
-    if (!row || (!names && !why->status)) why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    char *names = row ? source_text(r, SHAPE, "names", failure) : NULL;
+    if (!row || (!names && !failure->status)) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     t.n = (int32_t)n[0], t.row = row, t.names = names;
-    if (!why->status && !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), why) &&
-        !read_lists(r, &t.lists, why))
-        make_shapes(r, p, &t, why);
+    if (!failure->status && !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), failure) &&
+        !read_lists(r, &t.lists, failure))
+        make_shapes(r, p, &t, failure);
     listing_drop(&t.lists);
     free(row), free(names);
-    return why->status ? why->status : packing_alloc_shapes(p, why);
+    return failure->status ? failure->status : packing_alloc_shapes(p, failure);
 }
 
 /* ---- to a document ---- */
 
-static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct why *why)
+static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct failure *failure)
 {
     const hsize_t n = (hsize_t)t->n - 1, wide[2] = { n, 3 };
     struct shape_tables_row *row = calloc((size_t)n + 1, sizeof *row);
     double *out = calloc((size_t)n + 1, sizeof row->moment);
-    if (!row || !out) why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    if (!row || !out) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     for (int32_t k = 1; k < t->n && row && out; k++) {
         const struct shape *s = &t->s[k];
         row[k - 1] = (struct shape_tables_row){ s->form,
@@ -168,18 +168,18 @@ static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct wh
                                    s->volume,
                                    { s->moment[0], s->moment[1], s->moment[2] } };
     }
-    for (const struct column *c = layout_rows; c->name && !why->status; c++) {
+    for (const struct column *c = layout_rows; c->name && !failure->status; c++) {
         char path[80];
         snprintf(path, sizeof path, SHAPE "/%s", c->name);
         column_gather(c, (int64_t)n, row, sizeof *row, out);
         h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
-                 c->units, why);
+                 c->units, failure);
     }
     free(row), free(out);
-    return why->status;
+    return failure->status;
 }
 
-static int write_lists(hid_t file, const struct shapes *t, struct why *why)
+static int write_lists(hid_t file, const struct shapes *t, struct failure *failure)
 {
     struct listing l = { 0 };
     for (int32_t k = 1; k < t->n; k++) {
@@ -194,8 +194,8 @@ static int write_lists(hid_t file, const struct shapes *t, struct why *why)
     l.corner = calloc(l.corners + 1, sizeof *l.corner);
     uint64_t v = 0, f = 0, c = 0;
     if (!l.vertex || !l.ball || !l.face || !l.corner)
-        why_set(why, EX_SOFTWARE, "no memory for the shapes");
-    for (int32_t k = 1; k < t->n && !why->status; k++) {
+        failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n && !failure->status; k++) {
         const struct shape *s = &t->s[k];
         for (int32_t i = 0; i < s->vertices; i++, v++)
             l.vertex[v] = s->vertex[i], l.ball[v] = s->ball[i];
@@ -203,27 +203,27 @@ static int write_lists(hid_t file, const struct shapes *t, struct why *why)
         for (int32_t i = 0; i < s->corners; i++) l.corner[c++] = s->corner[i];
     }
     bool bad =
-        why->status ||
+        failure->status ||
         h5_write(file, SHAPE "/vertex", h5_array(H5T_NATIVE_DOUBLE, 2, vertices, l.vertex), "1",
-                 why) ||
+                 failure) ||
         h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
-                 why) ||
-        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", why) ||
-        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", why);
+                 failure) ||
+        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", failure) ||
+        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", failure);
     listing_drop(&l);
-    return bad ? why->status : 0;
+    return bad ? failure->status : 0;
 }
 
-int shape_tables_write(hid_t file, const struct packing *p, struct why *why)
+int shape_tables_write(hid_t file, const struct packing *p, struct failure *failure)
 {
     size_t length = 1;
     if (p->shapes.n < 2) return 0;
-    if (shape_tables_write_rows(file, &p->shapes, why) || write_lists(file, &p->shapes, why)) return why->status;
+    if (shape_tables_write_rows(file, &p->shapes, failure) || write_lists(file, &p->shapes, failure)) return failure->status;
     for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
     char *names = calloc(length, 1), *at = names;
-    if (!names) return why_set(why, EX_SOFTWARE, "no memory for the shapes");
+    if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     for (int32_t k = 1; k < p->shapes.n; k++) at += sprintf(at, "%s\n", p->shapes.s[k].name);
-    int e = h5_attr_text(file, SHAPE, "names", names, why);
+    int e = h5_attr_text(file, SHAPE, "names", names, failure);
     free(names);
     return e;
 }

@@ -9,7 +9,7 @@
 #include "io/table_write.h"
 
 /* The table, checked; the bodies' rows are among the tables of bodies. */
-int shape_tables_read(struct source *source, struct packing *p, struct why *why);
-int shape_tables_write(hid_t file, const struct packing *p, struct why *why);
+int shape_tables_read(struct source *source, struct packing *p, struct failure *failure);
+int shape_tables_write(hid_t file, const struct packing *p, struct failure *failure);
 
 #endif

@@ -10,11 +10,11 @@
 
 /* Rows of the datasets group/NAMEtail, from `start` on, into the records. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int table_read_columns(struct source *source, const char *group, const char *tail, int64_t start,
-                       struct records records, struct why *why);
+                       struct records records, struct failure *failure);
 
 /* The same of numbers all of which are finite */
 int table_read_finite(struct source *source, const char *group, const char *tail, int64_t start,
-                      struct records records, struct why *why);
+                      struct records records, struct failure *failure);
 
 /* Rows of a table: `count` from `start` on */
 struct span {
@@ -27,15 +27,15 @@ struct table_spans {
 };
 /* That of frame k. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int table_read_span(struct source *source, struct table_spans table, int64_t k, struct span *span,
-                    struct why *why);
+                    struct failure *failure);
 
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
-int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct why *why);
+int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct failure *failure);
 /* How many of n steps rise, from the first on: a killed writer may have made room for one without setting it. */
 int64_t table_read_rising(const int64_t *steps, int64_t n);
 /* The row of a step among n that rise; -1: none */
 int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step);
 /* That of the step in the dataset of steps at `path`; -1: it has none, or does not exist */
-int64_t table_read_row_at(struct source *source, const char *path, int64_t step, struct why *why);
+int64_t table_read_row_at(struct source *source, const char *path, int64_t step, struct failure *failure);
 
 #endif

@@ -22,7 +22,7 @@ static void tables_make_room(const struct table_write *s, const struct dataset *
                       o->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
 }
 
-static hid_t tables_create(const struct table_write *s, const struct dataset *o, struct why *why)
+static hid_t tables_create(const struct table_write *s, const struct dataset *o, struct failure *failure)
 {
     const char *path = o->path;
     const hsize_t *shape = o->shape;
@@ -39,7 +39,7 @@ static hid_t tables_create(const struct table_write *s, const struct dataset *o,
     tables_make_room(s, o, most, chunk, plist);
     char parent[80];
     snprintf(parent, sizeof parent, "%.*s", (int)(strrchr(path, '/') - path), path);
-    if (h5_group(file, parent, why)) {
+    if (h5_group(file, parent, failure)) {
         H5Pclose(plist);
         return -1;
     }
@@ -52,8 +52,8 @@ static hid_t tables_create(const struct table_write *s, const struct dataset *o,
     H5Pset_chunk_cache(uncached, 0, 0, 0);
     hid_t set = H5Dcreate2(file, path, disk, space, H5P_DEFAULT, plist, uncached);
     H5Tclose(disk), H5Pclose(plist), H5Pclose(uncached), H5Sclose(space);
-    if (set < 0) return why_set(why, EX_IOERR, "%s: cannot be made", path), -1;
-    if (!o->units || !h5_attr_text(file, path, "units", o->units, why)) return set;
+    if (set < 0) return failure_set(failure, EX_IOERR, "%s: cannot be made", path), -1;
+    if (!o->units || !h5_attr_text(file, path, "units", o->units, failure)) return set;
     H5Dclose(set);
     return -1;
 }
@@ -93,40 +93,40 @@ static int tables_append(hid_t set, const struct dataset *o)
     return good ? 0 : -1;
 }
 
-int table_write_rows(struct table_write *s, struct dataset o, struct why *why)
+int table_write_rows(struct table_write *s, struct dataset o, struct failure *failure)
 {
     if (!s->growing)
         return h5_write(s->file, o.path, h5_array(column_native(o.type), o.rank, o.shape, o.data),
-                        o.units, why);
+                        o.units, failure);
     hid_t set = tables_find(s, o.path);
     if (set < 0) {
         if (s->count == GROWING_DATASETS)
-            return why_set(why, EX_SOFTWARE, "%s: too many datasets", o.path);
-        set = tables_create(s, &o, why);
-        if (set < 0) return why->status;
+            return failure_set(failure, EX_SOFTWARE, "%s: too many datasets", o.path);
+        set = tables_create(s, &o, failure);
+        if (set < 0) return failure->status;
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", o.path);
         s->open[s->count++].set = set;
     }
-    return tables_append(set, &o) ? why_set(why, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
+    return tables_append(set, &o) ? failure_set(failure, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
                            : 0;
 }
 
 int table_write_number(struct table_write *s, const char *path, enum column_type type,
-                       const void *number, const char *units, struct why *why)
+                       const void *number, const char *units, struct failure *failure)
 {
     const hsize_t one = 1;
     const struct dataset o = { path, type, 1, &one, CHUNK_FRAMES, number, units };
-    return table_write_rows(s, o, why);
+    return table_write_rows(s, o, failure);
 }
 
 int table_write_span(struct table_write *s, const char *group, int64_t start, int64_t count,
-                     struct why *why)
+                     struct failure *failure)
 {
     char path[80];
     snprintf(path, sizeof path, "%s/start", group);
-    if (table_write_number(s, path, COLUMN_I64, &start, NULL, why)) return why->status;
+    if (table_write_number(s, path, COLUMN_I64, &start, NULL, failure)) return failure->status;
     snprintf(path, sizeof path, "%s/count", group);
-    return table_write_number(s, path, COLUMN_I64, &count, NULL, why);
+    return table_write_number(s, path, COLUMN_I64, &count, NULL, failure);
 }
 
 /* Frames that the dataset has, less one */
@@ -139,7 +139,7 @@ static int64_t last_frame(const struct table_write *s, const char *path)
 }
 
 static int write_body_column(struct table_write *s, const struct body_column *b,
-                             const struct packing *p, struct why *why)
+                             const struct packing *p, struct failure *failure)
 {
     const struct column *c = &b->column;
     const hsize_t n = (hsize_t)(s->distributed ? s->distributed->n : p->n);
@@ -149,43 +149,43 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
     char path[80];
     layout_body_path(b, path);
     if (moves ? table_write_rows(s, (struct dataset){ path, c->type, 3, shape, 1, data, c->units },
-                                 why)
+                                 failure)
               : h5_write(s->file, path,
                          h5_array(column_native(c->type), c->width == 1 ? 1 : 2, shape + 1, data),
-                         c->units, why))
-        return why->status;
+                         c->units, failure))
+        return failure->status;
     if (!s->distributed) return 0;
     if (s->places == DISTRIBUTED_PLACES)
-        return why_set(why, EX_SOFTWARE, "%s: too many columns", path);
+        return failure_set(failure, EX_SOFTWARE, "%s: too many columns", path);
     struct unfilled *o = &s->place[s->places++];
     *o = (struct unfilled){ .column = c, .frame = moves ? last_frame(s, path) : -1 };
     snprintf(o->path, sizeof o->path, "%s", path);
     return 0;
 }
 
-int table_write_bodies(struct table_write *s, bool moving, const struct packing *p, struct why *why)
+int table_write_bodies(struct table_write *s, bool moving, const struct packing *p, struct failure *failure)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++)
         if (column_array(&b->column, p) && !(b->traits & BODY_MOVES) == !moving &&
-            write_body_column(s, b, p, why))
-            return why->status;
+            write_body_column(s, b, p, failure))
+            return failure->status;
     return 0;
 }
 
 int table_write_columns(struct table_write *s, const char *where, const char *tail,
-                        struct records o, hsize_t chunk_rows, struct why *why)
+                        struct records o, hsize_t chunk_rows, struct failure *failure)
 {
     for (const struct column *c = o.columns; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
         void *data = malloc((size_t)(o.n + 1) * column_bytes(c));
-        if (!data) return why_set(why, EX_SOFTWARE, "no memory for %s", path);
+        if (!data) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
         column_gather(c, o.n, o.structs, o.stride, data);
         hsize_t shape[2] = { (hsize_t)o.n, (hsize_t)c->width };
         int e = table_write_rows(s,
                                  (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
                                                    chunk_rows, data, c->units },
-                                 why);
+                                 failure);
         free(data);
         if (e) return e;
     }
@@ -201,37 +201,37 @@ int table_write_close(struct table_write *s)
 }
 
 int table_write_link(struct table_write *s, const char *from, const char *name, const char *where,
-                     const struct column *c, struct why *why)
+                     const struct column *c, struct failure *failure)
 {
     char to[80];
     for (; c->name; c++) {
         snprintf(to, sizeof to, "%s/%s/%s", where, c->name, name);
         if (h5_has(s->file, to)) continue; // this is where it was written
         if (H5Lcreate_hard(s->file, from, s->file, to, H5P_DEFAULT, H5P_DEFAULT) < 0)
-            return why_set(why, EX_IOERR, "%s: cannot be linked", to);
+            return failure_set(failure, EX_IOERR, "%s: cannot be linked", to);
     }
     return 0;
 }
 
 /* A number of the frame, WHERE/name, that is linked to the columns when it is first written */
 static int write_clock(struct table_write *s, const char *where, const struct column *columns,
-                       struct dataset o, struct why *why)
+                       struct dataset o, struct failure *failure)
 {
     char path[80];
     snprintf(path, sizeof path, "%s/%s", where, o.path);
     bool linked = table_write_grows(s, path);
-    if (table_write_number(s, path, o.type, o.data, o.units, why)) return why->status;
-    return linked ? 0 : table_write_link(s, path, o.path, where, columns, why);
+    if (table_write_number(s, path, o.type, o.data, o.units, failure)) return failure->status;
+    return linked ? 0 : table_write_link(s, path, o.path, where, columns, failure);
 }
 
 int table_write_clocks(struct table_write *s, const char *where, const struct column *columns,
-                       int64_t step, double time, struct why *why)
+                       int64_t step, double time, struct failure *failure)
 {
     const struct dataset steps = { .path = "step", .type = COLUMN_I64, .data = &step };
     const struct dataset times = {
         .path = "time", .type = COLUMN_F64, .data = &time, .units = "s"
     };
-    return write_clock(s, where, columns, steps, why) || write_clock(s, where, columns, times, why)
-               ? why->status
+    return write_clock(s, where, columns, steps, failure) || write_clock(s, where, columns, times, failure)
+               ? failure->status
                : 0;
 }

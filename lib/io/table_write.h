@@ -52,32 +52,32 @@ struct dataset {
     const char *units; /* or NULL */
 };
 /* Writes shape[0] rows: as a dataset of their own or, in a trajectory, at the end of the dataset that grows there. */
-int table_write_rows(struct table_write *tables, struct dataset rows, struct why *why);
+int table_write_rows(struct table_write *tables, struct dataset rows, struct failure *failure);
 /* One number of the frame */
 int table_write_number(struct table_write *tables, const char *path, enum column_type type,
-                       const void *number, const char *units, struct why *why);
+                       const void *number, const char *units, struct failure *failure);
 /* group/start and count: the rows of the frame in the tables of the group */
 int table_write_span(struct table_write *tables, const char *group, int64_t start, int64_t count,
-                     struct why *why);
+                     struct failure *failure);
 
 /* The columns of bodies that all frames share, or the frame's values of those that move; their numbers follow
    where the bodies are distributed. */
 int table_write_bodies(struct table_write *tables, bool moving, const struct packing *p,
-                       struct why *why);
+                       struct failure *failure);
 
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);
 
 /* The records, into the datasets group/NAMEtail */
 int table_write_columns(struct table_write *tables, const char *group, const char *tail,
-                        struct records records, hsize_t chunk_rows, struct why *why);
+                        struct records records, hsize_t chunk_rows, struct failure *failure);
 
 /* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
 int table_write_link(struct table_write *tables, const char *from, const char *name,
-                     const char *where, const struct column *columns, struct why *why);
+                     const char *where, const struct column *columns, struct failure *failure);
 /* Writes WHERE/step and WHERE/time (s), and links them to all columns there. */
 int table_write_clocks(struct table_write *tables, const char *where, const struct column *columns,
-                       int64_t step, double time, struct why *why);
+                       int64_t step, double time, struct failure *failure);
 
 /* Closes the datasets; the file stays open. Returns -1 where something could not be written. */
 int table_write_close(struct table_write *tables);

@@ -69,60 +69,60 @@ static bool is_unknown(const char *path)
     return false;
 }
 
-static int read_item(struct unknown_item *i, struct source *s, struct why *why)
+static int read_item(struct unknown_item *i, struct source *s, struct failure *failure)
 {
     const struct object *o = &i->object;
     uint64_t size;
     if (o->kind == OBJECT_OTHER || o->rank > OBJECT_RANK ||
         (o->rank && o->kind != OBJECT_GROUP && !o->size))
-        return why_set(why, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
+        return failure_set(failure, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
                        i->path);
-    i->attributes = source_attributes(s, i->path, &i->attributes_size, why);
+    i->attributes = source_attributes(s, i->path, &i->attributes_size, failure);
     if (o->kind == OBJECT_TEXT && !o->rank)
-        i->text = source_text(s, i->path, NULL, why);
-    else if (o->kind != OBJECT_GROUP && !why->status)
-        i->data = source_raw(s, i->path, &size, why);
-    return why->status;
+        i->text = source_text(s, i->path, NULL, failure);
+    else if (o->kind != OBJECT_GROUP && !failure->status)
+        i->data = source_raw(s, i->path, &size, failure);
+    return failure->status;
 }
 
 static int unknown_add(struct unknown *u, const struct object *o, const char *path, const uint64_t *shape,
-               struct source *s, struct why *why)
+               struct source *s, struct failure *failure)
 {
     if (u->count == u->room) {
         int64_t room = u->room ? 2 * u->room : 16;
         struct unknown_item *more = realloc(u->item, (size_t)room * sizeof *more);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);
         u->item = more, u->room = room;
     }
     struct unknown_item *i = &u->item[u->count++];
     *i = (struct unknown_item){ .object = *o, .path = strdup(path) };
-    if (!i->path) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+    if (!i->path) return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);
     for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) i->shape[k] = shape[k];
-    return read_item(i, s, why);
+    return read_item(i, s, failure);
 }
 
 /* An object and all that is in it, which follows it in the walk; the first that does not. */
-static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct why *why)
+static int64_t add_tree(struct unknown *u, struct source *s, int64_t k, struct failure *failure)
 {
     const char *path, *inner;
     const uint64_t *shape;
     const struct object *o = source_object(s, k, &path, &shape);
     size_t n = strlen(path);
-    if (unknown_add(u, o, path, shape, s, why)) return k;
+    if (unknown_add(u, o, path, shape, s, failure)) return k;
     for (k++; (o = source_object(s, k, &inner, &shape)); k++) {
         if (o->attribute) continue;
         if (strncmp(inner, path, n) != 0 || inner[n] != '/') break;
-        if (unknown_add(u, o, inner, shape, s, why)) break;
+        if (unknown_add(u, o, inner, shape, s, failure)) break;
     }
     return k;
 }
 
-int unknown_read(struct unknown **out, struct source *s, bool whole, struct why *why)
+int unknown_read(struct unknown **out, struct source *s, bool whole, struct failure *failure)
 {
     struct unknown *u = *out = NULL;
     const char *path;
     const uint64_t *shape;
-    for (int64_t k = 0; !why->status && source_object(s, k, &path, &shape);) {
+    for (int64_t k = 0; !failure->status && source_object(s, k, &path, &shape);) {
         char step[OBJECT_PATH + 8];
         const struct object *o = source_object(s, k, &path, &shape);
         snprintf(step, sizeof step, "%s/step", path);
@@ -131,11 +131,11 @@ int unknown_read(struct unknown **out, struct source *s, bool whole, struct why 
             continue;
         }
         if (!u) *out = u = calloc(1, sizeof *u);
-        if (!u) return why_set(why, EX_SOFTWARE, "no memory for a copy of %s", path);
+        if (!u) return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);
         u->owners = 1;
-        k = add_tree(u, s, k, why);
+        k = add_tree(u, s, k, failure);
     }
-    return why->status;
+    return failure->status;
 }
 
 const char *unknown_timed(struct source *s)
@@ -168,44 +168,44 @@ void unknown_free(struct unknown *u)
     free(u);
 }
 
-static int write_attributes(const struct unknown_item *i, hid_t file, struct why *why)
+static int write_attributes(const struct unknown_item *i, hid_t file, struct failure *failure)
 {
     uint64_t at = 0;
     struct listed l;
-    while (!why->status && object_unpack(i->attributes, i->attributes_size, &at, &l)) {
+    while (!failure->status && object_unpack(i->attributes, i->attributes_size, &at, &l)) {
         const struct object o = l.object;
         const char *name = l.path;
         if (o.kind == OBJECT_OTHER || !o.size)
-            return why_set(why, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
+            return failure_set(failure, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
                            i->path, name);
         hsize_t dims[OBJECT_RANK], points = 1;
         for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = l.shape[k];
         if (points * o.size != o.data)
-            return why_set(why, EX_DATAERR, "%s@%s: of another size", i->path, name);
+            return failure_set(failure, EX_DATAERR, "%s@%s: of another size", i->path, name);
         if (o.kind == OBJECT_TEXT && !o.rank) {
-            h5_attr_text(file, i->path, name, l.data, why);
+            h5_attr_text(file, i->path, name, l.data, failure);
             continue;
         }
         hid_t type = element_type(&o);
-        h5_attr(file, i->path, name, h5_array(type, (int)o.rank, dims, l.data), why);
+        h5_attr(file, i->path, name, h5_array(type, (int)o.rank, dims, l.data), failure);
         if (o.class == 's') H5Tclose(type);
     }
-    return why->status;
+    return failure->status;
 }
 
-static int write_item(const struct unknown_item *i, hid_t file, struct why *why)
+static int write_item(const struct unknown_item *i, hid_t file, struct failure *failure)
 {
     const struct object *o = &i->object;
     if (o->kind == OBJECT_GROUP) {
-        if (h5_group(file, i->path, why)) return why->status;
+        if (h5_group(file, i->path, failure)) return failure->status;
     } else if (i->text) {
-        if (h5_write_text(file, i->path, i->text, why)) return why->status;
+        if (h5_write_text(file, i->path, i->text, failure)) return failure->status;
     } else {
         hid_t type = element_type(o);
-        h5_write(file, i->path, h5_array(type, (int)o->rank, i->shape, i->data), NULL, why);
+        h5_write(file, i->path, h5_array(type, (int)o->rank, i->shape, i->data), NULL, failure);
         if (o->class == 's') H5Tclose(type);
     }
-    return why->status ? why->status : write_attributes(i, file, why);
+    return failure->status ? failure->status : write_attributes(i, file, failure);
 }
 
 static bool is_problem(const char *path)
@@ -213,15 +213,15 @@ static bool is_problem(const char *path)
     return !strncmp(path, "/fclib_local", 12) || !strncmp(path, "/fclib_global", 13);
 }
 
-int unknown_write(const struct unknown *u, int64_t file, bool stale, struct why *why)
+int unknown_write(const struct unknown *u, int64_t file, bool stale, struct failure *failure)
 {
-    for (int64_t k = 0; u && k < u->count && !why->status; k++) {
+    for (int64_t k = 0; u && k < u->count && !failure->status; k++) {
         const struct unknown_item *i = &u->item[k];
         if ((stale && is_problem(i->path)) || h5_has(file, i->path)) continue;
-        struct why trouble = { 0 };
+        struct failure trouble = { 0 };
         if (write_item(i, file, &trouble)) // HDF5 writes not all that it reads
-            why_set(why, trouble.status == EX_IOERR ? EX_DATAERR : trouble.status,
+            failure_set(failure, trouble.status == EX_IOERR ? EX_DATAERR : trouble.status,
                     "%.200s: cannot be copied: %.150s", i->path, trouble.text);
     }
-    return why->status;
+    return failure->status;
 }

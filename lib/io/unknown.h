@@ -19,13 +19,13 @@ struct unknown;
  * only what does not depend on time. EX_DATAERR: there is something that is neither numbers nor texts,
  * and would be lost.
  */
-int unknown_read(struct unknown **unknown, struct source *source, bool whole, struct why *why);
+int unknown_read(struct unknown **unknown, struct source *source, bool whole, struct failure *failure);
 /* The path of the first object that unknown_read leaves out unless `whole`, or NULL. */
 const char *unknown_timed(struct source *source);
 /* One more owner, who frees it too. */
 struct unknown *unknown_share(struct unknown *unknown);
 void unknown_free(struct unknown *unknown);
 /* Into the HDF5 file (an hid_t), where a name is not taken yet; `stale`: without FCLIB problems. */
-int unknown_write(const struct unknown *unknown, int64_t file, bool stale, struct why *why);
+int unknown_write(const struct unknown *unknown, int64_t file, bool stale, struct failure *failure);
 
 #endif

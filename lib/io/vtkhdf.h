@@ -36,23 +36,23 @@ struct vtkhdf_parts {
     const char *const *name; /* [count] paths, "/VTKHDF/surfaces"; at most 3 */
     /* The cells of part k; they are the maker's, who frees them with `done`. */
     int (*make)(struct vtkhdf_cells *cells, const struct packing *p, int k, void **made,
-                struct why *why);
+                struct failure *failure);
     void (*done)(void *made);
 };
 
 /* For who writes VTKHDF groups otherwise: one in which VTK finds blocks in the order of their making; its type, and
    the version 2.minor of VTKHDF */
-int vtkhdf_group(hid_t file, const char *path, struct why *why);
-int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct why *why);
+int vtkhdf_group(hid_t file, const char *path, struct failure *failure);
+int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct failure *failure);
 
 struct vtkhdf;
 
 /* parts: NULL: the grains alone; else it has to stay where it is. EX_SOFTWARE: no memory. */
-int vtkhdf_begin(struct vtkhdf **vtk, const struct vtkhdf_parts *parts, struct why *why);
+int vtkhdf_begin(struct vtkhdf **vtk, const struct vtkhdf_parts *parts, struct failure *failure);
 /* What the frame has that is not in the document already. The document, growing or not, has the frame. */
-int vtkhdf_frame(struct vtkhdf *vtk, hid_t file, const struct packing *p, struct why *why);
+int vtkhdf_frame(struct vtkhdf *vtk, hid_t file, const struct packing *p, struct failure *failure);
 /* The document has all its frames: links, offsets and types. The next frame is another document's. */
-int vtkhdf_end(struct vtkhdf *vtk, hid_t file, struct why *why);
+int vtkhdf_end(struct vtkhdf *vtk, hid_t file, struct failure *failure);
 void vtkhdf_free(struct vtkhdf *vtk);
 
 #endif

@@ -68,7 +68,7 @@ static struct writer *writers; /* in such a program; used with the lock of libhd
 
 static void writer_enlist(struct writer *s)
 {
-    if (guest_is()) s->next = writers, writers = s;
+    if (embedded_is()) s->next = writers, writers = s;
 }
 
 static void writer_unlist(const struct writer *s)
@@ -109,22 +109,22 @@ void writer_forget_all(void)
     writers = NULL;
 }
 
-static int output_failed(const struct writer *s, struct why *why, const char *trouble)
+static int output_failed(const struct writer *s, struct failure *failure, const char *trouble)
 {
-    return why_set(why, EX_IOERR, "%s: %s", s->name, trouble);
+    return failure_set(failure, EX_IOERR, "%s: %s", s->name, trouble);
 }
 
 /* What kind of file it is that has been opened */
-static int writer_look_at(struct writer *s, enum writer_kind kind, struct why *why)
+static int writer_look_at(struct writer *s, enum writer_kind kind, struct failure *failure)
 {
     struct stat st;
     bool regular = !fstat(s->fd, &st) && S_ISREG(st.st_mode);
     char again[40];
     s->append = fcntl(s->fd, F_GETFL) & O_APPEND;
     s->linked = regular && st.st_nlink;
-    if (!s->append && output_lock(s->fd, F_OFD_SETLK, s->name, why)) return why->status;
+    if (!s->append && output_lock(s->fd, F_OFD_SETLK, s->name, failure)) return failure->status;
     if (isatty(s->fd))
-        return why_set(why, EX_USAGE,
+        return failure_set(failure, EX_USAGE,
                        "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
     snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
     if (regular && !st.st_size && !s->append && kind != WRITER_STREAM)
@@ -133,33 +133,33 @@ static int writer_look_at(struct writer *s, enum writer_kind kind, struct why *w
     return 0;
 }
 
-int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct why *why)
+int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct failure *failure)
 {
     struct writer *s = *out = calloc(1, sizeof *s);
-    if (!s) return why_set(why, EX_SOFTWARE, "no memory");
+    if (!s) return failure_set(failure, EX_SOFTWARE, "no memory");
     h5_start();
     s->doc.file = s->disk = s->library = -1;
     for (int k = 0; k < 2; k++) s->file[k].fd = s->file[k].old = -1;
     writer_enlist(s);
     s->name = path ? path : "standard output";
     s->fd = STDOUT_FILENO;
-    if (!path) return writer_look_at(s, kind, why);
+    if (!path) return writer_look_at(s, kind, failure);
     if (kind == WRITER_IN_PLACE && access(path, F_OK))
-        return output_failed(s, why, strerror(errno));
+        return output_failed(s, failure, strerror(errno));
     s->output = &s->file[0];
-    if (output_open(s->output, path, why)) return why->status;
+    if (output_open(s->output, path, failure)) return failure->status;
     s->fd = s->output->fd;
     s->waits = kind == WRITER_IN_PLACE || (kind == WRITER_COPY && s->output->old >= 0);
     if (kind == WRITER_IN_PLACE && s->output->old < 0)
-        return output_failed(s, why, "not a regular file");
-    return writer_look_at(s, kind, why);
+        return output_failed(s, failure, "not a regular file");
+    return writer_look_at(s, kind, failure);
 }
 
-int writer_take_place(struct writer *s, struct why *why)
+int writer_take_place(struct writer *s, struct failure *failure)
 {
-    if (fsync(s->fd)) return output_failed(s, why, strerror(errno)); // before the old one goes
+    if (fsync(s->fd)) return output_failed(s, failure, strerror(errno)); // before the old one goes
     s->waits = false;
-    return output_place(s->output, why);
+    return output_place(s->output, failure);
 }
 
 static int64_t bodies_of(const struct frame *f)
@@ -168,12 +168,12 @@ static int64_t bodies_of(const struct frame *f)
 }
 
 /* The numbers of bodies that others have */
-static int writer_fill(struct table_write *t, const char *path, struct why *why)
+static int writer_fill(struct table_write *t, const char *path, struct failure *failure)
 {
     int places = t->places;
     t->places = 0;
     return t->distributed
-               ? t->distributed->give(t->distributed, t->file, path, t->place, places, why)
+               ? t->distributed->give(t->distributed, t->file, path, t->place, places, failure)
                : 0;
 }
 
@@ -198,9 +198,9 @@ static hid_t writer_create(const char *path, hid_t access)
 }
 
 /* There is something whole in it. */
-static int writer_is_there(struct writer *s, struct why *why)
+static int writer_is_there(struct writer *s, struct failure *failure)
 {
-    if (s->waits || (s->output && output_place(s->output, why))) return why->status;
+    if (s->waits || (s->output && output_place(s->output, failure))) return failure->status;
     if (s->begun) output_keep(s->begun);
     s->begun = NULL;
     return 0;
@@ -209,25 +209,25 @@ static int writer_is_there(struct writer *s, struct why *why)
 /* ---- a stream ---- */
 
 /* A document begins: others that append wait, so that documents stay whole. */
-static int document_begin(struct writer *s, struct why *why)
+static int document_begin(struct writer *s, struct failure *failure)
 {
-    if (s->append && output_lock(s->fd, F_OFD_SETLKW, s->name, why)) return why->status;
+    if (s->append && output_lock(s->fd, F_OFD_SETLKW, s->name, failure)) return failure->status;
     s->start = lseek(s->fd, 0, s->append ? SEEK_END : SEEK_CUR);
     s->size = 0;
     return 0;
 }
 
 /* More of its bytes. On failure a regular file is cut back to what it was. */
-static int document_bytes(void *to, const void *bytes, size_t size, struct why *why)
+static int document_bytes(void *to, const void *bytes, size_t size, struct failure *failure)
 {
     struct writer *s = to;
     for (size_t done = 0; done < size;) {
         ssize_t n = write(s->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
         if (n < 0) {
-            output_failed(s, why, strerror(errno));
-            if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
-            return why->status;
+            output_failed(s, failure, strerror(errno));
+            if (s->start >= 0 && ftruncate(s->fd, s->start)) return failure->status;
+            return failure->status;
         }
         done += (size_t)n;
     }
@@ -235,20 +235,20 @@ static int document_bytes(void *to, const void *bytes, size_t size, struct why *
     return 0;
 }
 
-static int document_end(struct writer *s, struct why *why)
+static int document_end(struct writer *s, struct failure *failure)
 {
     struct stat st;
     if (s->append) output_unlock(s->fd);
     if (s->start >= 0 && !fstat(s->fd, &st) && S_ISREG(st.st_mode) &&
         st.st_size < s->start + s->size)
-        return output_failed(s, why, CUT_OFF);
+        return output_failed(s, failure, CUT_OFF);
     return 0;
 }
 
-static int writer_write_all(struct writer *s, const unsigned char *bytes, size_t size, struct why *why)
+static int writer_write_all(struct writer *s, const unsigned char *bytes, size_t size, struct failure *failure)
 {
-    return document_begin(s, why) || document_bytes(s, bytes, size, why) || document_end(s, why)
-               ? why->status
+    return document_begin(s, failure) || document_bytes(s, bytes, size, failure) || document_end(s, failure)
+               ? failure->status
                : 0;
 }
 
@@ -263,64 +263,64 @@ bool writer_passes(const struct writer *s)
     return !s->trajectory && !s->vtk;
 }
 
-int writer_vtk(struct writer *s, const struct vtkhdf_parts *parts, struct why *why)
+int writer_vtk(struct writer *s, const struct vtkhdf_parts *parts, struct failure *failure)
 {
-    return vtkhdf_begin(&s->vtk, parts, why);
+    return vtkhdf_begin(&s->vtk, parts, failure);
 }
 
 /* What VTK finds of a frame that the document has, which is its last where no others follow */
-static int for_vtk(struct writer *s, hid_t file, const struct frame *f, bool last, struct why *why)
+static int for_vtk(struct writer *s, hid_t file, const struct frame *f, bool last, struct failure *failure)
 {
     if (!s->vtk || !f->packed) return 0;
     if (f->distributed)
-        return why_set(why, EX_USAGE,
+        return failure_set(failure, EX_USAGE,
                        "several processes make no /VTKHDF: nsd-cat --vtk does, after");
-    return vtkhdf_frame(s->vtk, file, &f->packing, why) || (last && vtkhdf_end(s->vtk, file, why));
+    return vtkhdf_frame(s->vtk, file, &f->packing, failure) || (last && vtkhdf_end(s->vtk, file, failure));
 }
 
-int writer_pass(struct writer *s, struct reader *from, struct why *why)
+int writer_pass(struct writer *s, struct reader *from, struct failure *failure)
 {
-    if (document_begin(s, why)) return why->status;
-    if (reader_pour(from, document_bytes, s, why)) {
+    if (document_begin(s, failure)) return failure->status;
+    if (reader_pour(from, document_bytes, s, failure)) {
         // a reader that broke down half-way leaves no half a document in a file
-        if (s->start >= 0 && ftruncate(s->fd, s->start)) return why->status;
-        return why->status;
+        if (s->start >= 0 && ftruncate(s->fd, s->start)) return failure->status;
+        return failure->status;
     }
-    return document_end(s, why) || writer_is_there(s, why) ? why->status : 0;
+    return document_end(s, failure) || writer_is_there(s, failure) ? failure->status : 0;
 }
 
 /* Writes a document of the core driver straight from libhdf5's memory, with its header. */
-static int write_image(struct writer *s, hid_t file, struct why *why)
+static int write_image(struct writer *s, hid_t file, struct failure *failure)
 {
     void **memory;
     bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
     ssize_t image = flushed ? H5Fget_file_image(file, NULL, 0) : -1; // without the user block
     if (image < 0 || H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&memory) < 0)
-        return why_set(why, EX_SOFTWARE, "no memory for the document");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the document");
     size_t size = (size_t)image + DOCUMENT_USERBLOCK;
     unsigned char *bytes = *memory;
     uint32_t crc = document_crc(0, bytes + DOCUMENT_USERBLOCK, size - DOCUMENT_USERBLOCK);
     document_header(bytes, size, crc);
-    return writer_write_all(s, bytes, size, why);
+    return writer_write_all(s, bytes, size, failure);
 }
 
-static int stream_frame(struct writer *s, const struct frame *f, struct why *why)
+static int stream_frame(struct writer *s, const struct frame *f, struct failure *failure)
 {
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     size_t step = (size_t)bodies_of(f) * 32;
     H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
     struct table_write doc = { .file = writer_create("document", access), .distributed = f->distributed };
     H5Pclose(access);
-    if (doc.file < 0) return why_set(why, EX_SOFTWARE, "no memory for the document");
-    int e = frame_write_static(&doc, f, why) || frame_write_moment(&doc, f, why) ||
-            frame_write_step(&doc, f, why) ||
-            (f->export && fclib_write_problem(f->export, f->export_global, doc.file, why)) ||
+    if (doc.file < 0) return failure_set(failure, EX_SOFTWARE, "no memory for the document");
+    int e = frame_write_static(&doc, f, failure) || frame_write_moment(&doc, f, failure) ||
+            frame_write_step(&doc, f, failure) ||
+            (f->export && fclib_write_problem(f->export, f->export_global, doc.file, failure)) ||
             (f->foreign && f->u &&
-             fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, why)) ||
-            writer_fill(&doc, NULL, why) || for_vtk(s, doc.file, f, true, why) ||
-            write_image(s, doc.file, why);
+             fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, failure)) ||
+            writer_fill(&doc, NULL, failure) || for_vtk(s, doc.file, f, true, failure) ||
+            write_image(s, doc.file, failure);
     H5Fclose(doc.file);
-    return e ? why->status : 0;
+    return e ? failure->status : 0;
 }
 
 /*
@@ -371,21 +371,21 @@ static bool still_there(const struct writer *s)
            !memcmp(header, now, sizeof now);
 }
 
-static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct why *why)
+static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct failure *failure)
 {
     unsigned char header[DOCUMENT_USERBLOCK];
     document_header(header, length, crc);
-    return write_at(s, header, sizeof header, 0) ? 0 : output_failed(s, why, strerror(errno));
+    return write_at(s, header, sizeof header, 0) ? 0 : output_failed(s, failure, strerror(errno));
 }
 
 /*
  * Reserves what a frame may need on the disk before anything of it is written. HDF5 changes its
  * tables in place, so that a disk filling up half-way would cost the earlier frames too.
  */
-static int reserve(struct writer *s, const struct frame *f, struct why *why)
+static int reserve(struct writer *s, const struct frame *f, struct failure *failure)
 {
     hsize_t size = 0, n = (hsize_t)bodies_of(f), rows = 0;
-    if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, why, "cannot be written");
+    if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, failure, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
@@ -400,7 +400,7 @@ static int reserve(struct writer *s, const struct frame *f, struct why *why)
     int e = posix_fallocate(s->disk, (off_t)size,
                             (off_t)(frame < RESERVE_LEAST ? RESERVE_LEAST : frame));
     if (e) e = posix_fallocate(s->disk, (off_t)size, (off_t)frame);
-    return e ? output_failed(s, why, strerror(e)) : 0;
+    return e ? output_failed(s, failure, strerror(e)) : 0;
 }
 
 /* Sets the superblock's end-of-file address, at its byte 40: readers refuse what lies beyond. */
@@ -412,13 +412,13 @@ static bool set_end(const struct writer *s, hsize_t end)
 }
 
 /* HDF5 by itself would write the end-of-file address last. */
-static int flush(struct writer *s, struct why *why)
+static int flush(struct writer *s, struct failure *failure)
 {
     hsize_t size;
     bool good = H5Fget_filesize(s->doc.file, &size) >= 0 && set_end(s, size) &&
                 H5Fflush(s->doc.file, H5F_SCOPE_GLOBAL) >= 0;
     s->end = (off_t)size;
-    return good ? 0 : output_failed(s, why, "cannot be written (full?)");
+    return good ? 0 : output_failed(s, failure, "cannot be written (full?)");
 }
 
 static uint32_t cell_crc(const struct cell *c)
@@ -453,35 +453,35 @@ static struct common_part shared_of(const struct frame *f)
 }
 
 /* What is stored only with the first frame has to be true of all. */
-static int writer_check_same(const struct writer *s, const struct frame *f, struct why *why)
+static int writer_check_same(const struct writer *s, const struct frame *f, struct failure *failure)
 {
     const struct common_part p = s->first, q = shared_of(f);
     if (p.pours != q.pours || p.removals != q.removals)
-        return why_set(why, EX_DATAERR, "other pours or removals than the trajectory's");
+        return failure_set(failure, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)
-        return why_set(why, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
+        return failure_set(failure, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
                        (long long)p.n);
     if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
-        return why_set(why, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
+        return failure_set(failure, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
     if (p.adapts != q.adapts)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "frames with a time step of their own and others in one trajectory");
     if (p.tolerance != q.tolerance)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "frames with an automatic time step and others in one trajectory");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
-        return why_set(why, EX_DATAERR, "overlap differs from the trajectory's");
-    if (p.crc != q.crc) return why_set(why, EX_DATAERR, "other bodies than the trajectory's");
-    if (p.cell != q.cell) return why_set(why, EX_DATAERR, "another cell than the trajectory's");
+        return failure_set(failure, EX_DATAERR, "overlap differs from the trajectory's");
+    if (p.crc != q.crc) return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's");
+    if (p.cell != q.cell) return failure_set(failure, EX_DATAERR, "another cell than the trajectory's");
     if (f->packing.step <= s->step)
-        return why_set(why, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
+        return failure_set(failure, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
                        (long long)f->packing.step, (long long)s->step);
     if (f->detected && s->contacts && (!f->contacts.found == s->solved || f->moved != s->moved))
-        return why_set(why, EX_DATAERR, "contacts solved and unsolved in one trajectory");
+        return failure_set(failure, EX_DATAERR, "contacts solved and unsolved in one trajectory");
     return 0;
 }
 
-static int trajectory_begin(struct writer *s, const struct frame *f, struct why *why)
+static int trajectory_begin(struct writer *s, const struct frame *f, struct failure *failure)
 {
     char path[40];
     snprintf(path, sizeof path, "/proc/self/fd/%d", s->disk);
@@ -491,62 +491,62 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct why 
     H5Pset_alignment(access, ALIGN_FROM, DOCUMENT_USERBLOCK); // the most that HDF5 allows
     s->doc = (struct table_write){ .file = writer_create(path, access), .growing = true };
     H5Pclose(access);
-    if (s->doc.file < 0) return output_failed(s, why, "cannot be written");
+    if (s->doc.file < 0) return output_failed(s, failure, "cannot be written");
     s->library = descriptor_of(s->doc.file);
-    if (guest_is() && s->library < 0) return output_failed(s, why, "cannot be kept from children");
+    if (embedded_is() && s->library < 0) return output_failed(s, failure, "cannot be kept from children");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
-        return output_failed(s, why, "cannot be written (full?)");
+        return output_failed(s, failure, "cannot be written (full?)");
     if (packing_varies(&f->packing)) {
         int64_t most, chunk;
-        roster_bounds(&f->packing, &most, &chunk, why);
+        roster_bounds(&f->packing, &most, &chunk, failure);
         s->doc.most_bodies = (hsize_t)most, s->doc.chunk_bodies = (hsize_t)chunk;
         s->doc.roster = &s->roster;
     }
-    if (why->status || reserve(s, f, why)) return why->status;
+    if (failure->status || reserve(s, f, failure)) return failure->status;
     s->first = shared_of(f);
     s->step = f->packing.step - 1;
     s->doc.distributed = f->distributed;
-    return write_header(s, 0, 0, why) || frame_write_static(&s->doc, f, why) ? why->status : 0;
+    return write_header(s, 0, 0, failure) || frame_write_static(&s->doc, f, failure) ? failure->status : 0;
 }
 
 /* Processes that write together give the reserve back. */
-static int fill_frame(struct writer *s, const struct frame *f, struct why *why)
+static int fill_frame(struct writer *s, const struct frame *f, struct failure *failure)
 {
     char path[PATH_MAX];
     if (!f->distributed) return 0;
-    return writer_fill(&s->doc, find_path(s, path) ? path : NULL, why) || reserve(s, f, why) ? why->status
+    return writer_fill(&s->doc, find_path(s, path) ? path : NULL, failure) || reserve(s, f, failure) ? failure->status
                                                                                       : 0;
 }
 
-static int trajectory_frame(struct writer *s, const struct frame *f, struct why *why)
+static int trajectory_frame(struct writer *s, const struct frame *f, struct failure *failure)
 {
     if (!f->packed)
-        return why_set(why, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
+        return failure_set(failure, EX_DATAERR, "an FCLIB problem does not go into a trajectory");
     bool first = s->doc.file < 0;
-    if (!first && !still_there(s)) return output_failed(s, why, CUT_OFF);
-    if (first ? trajectory_begin(s, f, why) : reserve(s, f, why)) return why->status;
-    if (writer_check_same(s, f, why)) return why->status;
-    if (frame_write_moment(&s->doc, f, why) || flush(s, why) || fill_frame(s, f, why) ||
-        frame_write_step(&s->doc, f, why) || flush(s, why) ||
-        for_vtk(s, s->doc.file, f, false, why))
-        return why->status;
+    if (!first && !still_there(s)) return output_failed(s, failure, CUT_OFF);
+    if (first ? trajectory_begin(s, f, failure) : reserve(s, f, failure)) return failure->status;
+    if (writer_check_same(s, f, failure)) return failure->status;
+    if (frame_write_moment(&s->doc, f, failure) || flush(s, failure) || fill_frame(s, f, failure) ||
+        frame_write_step(&s->doc, f, failure) || flush(s, failure) ||
+        for_vtk(s, s->doc.file, f, false, failure))
+        return failure->status;
     s->step = f->packing.step, s->frames++;
     if (f->detected) s->contacts = true, s->solved = f->contacts.found, s->moved = f->moved;
     return 0;
 }
 
-static int trajectory_close(struct writer *s, struct why *why)
+static int trajectory_close(struct writer *s, struct failure *failure)
 {
     hsize_t size;
-    if (s->vtk && vtkhdf_end(s->vtk, s->doc.file, why)) return why->status;
+    if (s->vtk && vtkhdf_end(s->vtk, s->doc.file, failure)) return failure->status;
     int failed = table_write_close(&s->doc) || H5Fget_filesize(s->doc.file, &size) < 0;
     s->library = -1;
     if (H5Fclose(s->doc.file) < 0 || failed)
-        return output_failed(s, why, "cannot be written (full?)");
-    if (!still_there(s)) return output_failed(s, why, CUT_OFF);
+        return output_failed(s, failure, "cannot be written (full?)");
+    if (!still_there(s)) return output_failed(s, failure, CUT_OFF);
     struct stat st; // the reserve that was not needed is given back
     if (fstat(s->disk, &st) || (st.st_size > (off_t)size && ftruncate(s->disk, (off_t)size)))
-        return output_failed(s, why, strerror(errno));
+        return output_failed(s, failure, strerror(errno));
     unsigned char buffer[1 << 16];
     uint32_t crc = 0;
     off_t at = DOCUMENT_USERBLOCK;
@@ -556,8 +556,8 @@ static int trajectory_close(struct writer *s, struct why *why)
         crc = document_crc(crc, buffer, (size_t)n);
         at += n;
     }
-    if (n < 0) return output_failed(s, why, strerror(errno));
-    if (write_header(s, (uint64_t)at, crc, why)) return why->status;
+    if (n < 0) return output_failed(s, failure, strerror(errno));
+    if (write_header(s, (uint64_t)at, crc, failure)) return failure->status;
     lseek(s->fd, at, SEEK_SET); // the next writer continues behind us
     return 0;
 }
@@ -568,59 +568,59 @@ static void trajectory_fails(const struct writer *s)
     if (!s->frames && ftruncate(s->disk, 0)) return; // there is nothing more that can be done
 }
 
-int writer_frame(struct writer *s, const struct frame *f, struct why *why)
+int writer_frame(struct writer *s, const struct frame *f, struct failure *failure)
 {
-    if (f->packed && packing_check(&f->packing, why))
-        return why->status; // no reader would accept it
+    if (f->packed && packing_check(&f->packing, failure))
+        return failure->status; // no reader would accept it
     if (!f->packed && s->doc.file < 0)
         s->trajectory = false; // an FCLIB problem is a document of its own
-    int e = s->trajectory ? trajectory_frame(s, f, why) : stream_frame(s, f, why);
-    if (!e) return writer_is_there(s, why);
+    int e = s->trajectory ? trajectory_frame(s, f, failure) : stream_frame(s, f, failure);
+    if (!e) return writer_is_there(s, failure);
     if (s->trajectory) trajectory_fails(s);
-    return why->status;
+    return failure->status;
 }
 
 /* The document is whole and closed, and has its place; the one with the frames will take it. */
-static int begin_again(struct writer *s, struct why *why)
+static int begin_again(struct writer *s, struct failure *failure)
 {
-    if (trajectory_close(s, why)) return why->status;
+    if (trajectory_close(s, failure)) return failure->status;
     roster_free(&s->roster);
     s->doc = (struct table_write){ .file = -1 };
     s->frames = 0, s->contacts = false;
     if (!s->output) { // it will be written over
         s->begun = &s->file[0];
         output_borrow(s->begun, s->fd, s->name);
-        return lseek(s->fd, 0, SEEK_SET) ? output_failed(s, why, strerror(errno)) : 0;
+        return lseek(s->fd, 0, SEEK_SET) ? output_failed(s, failure, strerror(errno)) : 0;
     }
-    if (output_place_for_now(s->output, why)) return why->status;
+    if (output_place_for_now(s->output, failure)) return failure->status;
     output_unlock(s->fd);
     close(s->disk);
     s->begun = s->output, s->output = &s->file[1], s->disk = -1;
-    if (output_open(s->output, s->name, why)) return why->status;
+    if (output_open(s->output, s->name, failure)) return failure->status;
     s->fd = s->output->fd;
-    return writer_look_at(s, WRITER_TRAJECTORY, why);
+    return writer_look_at(s, WRITER_TRAJECTORY, failure);
 }
 
-int writer_begin(struct writer *s, const struct frame *f, struct why *why)
+int writer_begin(struct writer *s, const struct frame *f, struct failure *failure)
 {
     bool begun = s->frames || s->waits || (s->output && s->output->old >= 0);
     if (!s->trajectory || begun) return 0;
-    if (trajectory_frame(s, f, why)) trajectory_fails(s);
-    return why->status ? why->status : begin_again(s, why);
+    if (trajectory_frame(s, f, failure)) trajectory_fails(s);
+    return failure->status ? failure->status : begin_again(s, failure);
 }
 
-int writer_close(struct writer *s, struct why *why)
+int writer_close(struct writer *s, struct failure *failure)
 {
-    int e = s->doc.file >= 0 ? trajectory_close(s, why) : 0;
+    int e = s->doc.file >= 0 ? trajectory_close(s, failure) : 0;
     if (!e && s->linked && output_removed(s->fd))
-        e = output_failed(s, why, "another program has removed it");
+        e = output_failed(s, failure, "another program has removed it");
     if (s->disk >= 0) close(s->disk);
     roster_free(&s->roster), vtkhdf_free(s->vtk);
     if (s->begun) output_drop(s->begun);
     writer_unlist(s);
-    if (!s->output && close(s->fd) && !e) e = output_failed(s, why, strerror(errno));
+    if (!s->output && close(s->fd) && !e) e = output_failed(s, failure, strerror(errno));
     if (s->output && e) output_drop(s->output);
-    if (s->output && !e) e = output_close(s->output, why);
+    if (s->output && !e) e = output_close(s->output, failure);
     free(s);
     return e;
 }

@@ -15,7 +15,7 @@
 /* box X0,X1,Y0,Y1[,Z0,Z1]; layers AXIS:N; point X,Y,Z; plane NX,NY,NZ; radius M; bins N; distance M; only NAME,...; wear K;
    tracer KIND, or large; sample M.
    Returns 0, or EX_USAGE with "--name: trouble", where nothing has changed. */
-int asked_set(struct asked *asked, const char *name, const char *text, struct why *why);
+int asked_set(struct asked *asked, const char *name, const char *text, struct failure *failure);
 /* Is there one of that name? */
 bool asked_has(const char *name);
 

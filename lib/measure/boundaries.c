@@ -43,14 +43,14 @@ static void boundaries_add(struct boundaries_push *to, const struct snapshot *s,
     to->tangential += hypot(r[1], r[2]) / s->p->dt;
 }
 
-static int boundaries_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int boundaries_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     bool fixed = false;
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
     // boundary w at [w], fixed bodies behind them
     struct boundaries_push *push = calloc((size_t)p->walls + 1, sizeof *push);
-    if (!push) return why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!push) return failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
@@ -61,7 +61,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
     }
     for (int32_t w = 0; w < p->walls + fixed; w++) {
         if (w < p->walls ? !snapshot_wall(s, w) : s->only.walls) continue;
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, w < p->walls ? w : -1), put(&at, (double)push[w].contacts);
         put_vec(&at, push[w].force), put_vec(&at, push[w].torque);
@@ -69,7 +69,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct why
         put(&at, w < p->walls ? name_row(p, w) : NAN);
     }
     free(push);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_boundaries = {
@@ -105,14 +105,14 @@ static bool is_named(const struct names *n, int32_t name, int32_t wall, int32_t 
     return false;
 }
 
-static int boundaries_names_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int boundaries_names_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     struct wall_faces faces = { 0 };
     struct boundaries_push *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
-    if (!push || !any) why_set(why, EX_SOFTWARE, "no memory for the forces on boundaries");
-    if (why->status || face_of_init(&faces, p, true, why)) goto end;
+    if (!push || !any) failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (failure->status || face_of_init(&faces, p, true, failure)) goto end;
     if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;
     for (int64_t i = 0; i < s->s->n && s->s->c[i].a < 0; i++) {
@@ -123,7 +123,7 @@ static int boundaries_names_rows(struct table *t, const struct snapshot *s, stru
     }
     for (int32_t k = 0; k < p->names.n; k++) {
         if (!any[k] || (s->only.walls && !s->only.name[k])) continue;
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, k), put(&at, (double)push[k].contacts);
         put_vec(&at, push[k].force), put_vec(&at, push[k].torque);
@@ -132,7 +132,7 @@ static int boundaries_names_rows(struct table *t, const struct snapshot *s, stru
 end:
     free(push), free(any);
     wall_faces_free(&faces);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_names = {

@@ -71,20 +71,20 @@ static double neighbours(const struct snapshot *s, int32_t *count)
     return mean(s, count, 0, &bodies);
 }
 
-static int coordination_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int coordination_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     int64_t bodies, bearing, more, contacts = 0;
-    double *at = table_row(t, why);
+    double *at = table_row(t, failure);
     int32_t *count = counts_of(s);
     if (!at || !count) {
         free(count);
-        return why_set(why, EX_SOFTWARE, "no memory to count contacts");
+        return failure_set(failure, EX_SOFTWARE, "no memory to count contacts");
     }
     for (int64_t i = 0; i < s->s->n; i++)
         contacts += branch_counts(s->s, i) && of_chosen(s, &s->s->c[i]);
     double z = mean(s, count, 0, &bodies), mechanical = mean(s, count, 2, &more);
     if (counts_without_rattlers(count, s, least_contacts(s)))
-        why_set(why, EX_SOFTWARE, "no memory to count contacts");
+        failure_set(failure, EX_SOFTWARE, "no memory to count contacts");
     double bears = mean(s, count, 1, &bearing), touched = neighbours(s, count);
     put(&at, (double)bodies), put(&at, (double)contacts);
     put(&at, z), put(&at, touched), put(&at, mechanical), put(&at, bears),
@@ -93,7 +93,7 @@ static int coordination_rows(struct table *t, const struct snapshot *s, struct w
     if (!more) table_null(t, "no body has two contacts");
     if (!bearing) table_null(t, "every body is a rattler");
     free(count);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_coordination = {
@@ -115,28 +115,28 @@ static const struct quantity numbers[] = {
     { 0 },
 };
 
-static int coordination_number_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int coordination_number_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     int32_t *count = counts_of(s), most = 0;
     int64_t all = 0;
-    if (!count) return why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    if (!count) return failure_set(failure, EX_SOFTWARE, "no memory to count contacts");
     for (int64_t i = 0; i < s->p->n; i++) {
         if (!counts_body(s, i)) count[i] = -1;
         all += count[i] >= 0;
         if (count[i] > most) most = count[i];
     }
     int64_t *bodies = calloc((size_t)(most > 0 ? most : 0) + 1, sizeof *bodies);
-    if (!bodies) why_set(why, EX_SOFTWARE, "no memory to count contacts");
+    if (!bodies) failure_set(failure, EX_SOFTWARE, "no memory to count contacts");
     for (int64_t i = 0; bodies && i < s->p->n; i++)
         if (count[i] >= 0) bodies[count[i]]++;
     for (int32_t k = 0; bodies && all && k <= most; k++) {
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, k), put(&at, (double)bodies[k]), put(&at, (double)bodies[k] / (double)all);
     }
     if (!all) table_null(t, "no body that moves is in the region");
     free(bodies), free(count);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_contact_numbers = {

@@ -17,17 +17,17 @@ static const struct quantity quantities[] = {
 /* m: of body i since the first frame; false: it was not there */
 static bool displacement(const struct snapshot *s, int64_t i, vec3 *d)
 {
-    const struct kept_body *then =
-        s->p->mass[i] > 0 && snapshot_body(s, i) ? kept_find(s->first, s->p->id[i]) : NULL;
-    if (then) *d = v3_sub(kept_place(s->p, i), then->x);
+    const struct frame_memory_body *then =
+        s->p->mass[i] > 0 && snapshot_body(s, i) ? frame_memory_find(s->first, s->p->id[i]) : NULL;
+    if (then) *d = v3_sub(frame_memory_place(s->p, i), then->x);
     return then;
 }
 
-static int displacement_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int displacement_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    double n = 0, square[3] = { 0, 0, 0 }, *at = table_row(t, why);
+    double n = 0, square[3] = { 0, 0, 0 }, *at = table_row(t, failure);
     vec3 drift = v3(0, 0, 0), d;
-    if (!at) return why->status;
+    if (!at) return failure->status;
     for (int64_t i = 0; i < s->p->n; i++)
         if (displacement(s, i, &d)) {
             n++, drift = v3_add(drift, d);

@@ -50,22 +50,22 @@ static void each_grain_fill(double *at, const struct packing *p, int64_t i, cons
     put_tensor(&at, &T[i]);
 }
 
-static int each_grain_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int each_grain_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     bool solved = s->s && (s->s->found || !s->s->n);
     int32_t *count = s->s ? counts_of(s) : NULL;
     struct tensor *T = solved ? moments(s) : NULL;
     bool memory = (count || !s->s) && (T || !solved);
-    if (!memory) why_set(why, EX_SOFTWARE, "no memory for numbers of bodies");
+    if (!memory) failure_set(failure, EX_SOFTWARE, "no memory for numbers of bodies");
     if (!solved) table_null(t, "no stress: the document has no solved contacts");
     for (int64_t i = 0; memory && i < s->p->n; i++) {
         if (!snapshot_body(s, i) || !region_holds(&s->region, s->p->x[i])) continue;
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         each_grain_fill(at, s->p, i, count, T);
     }
     free(count), free(T);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_grains = {

@@ -22,13 +22,13 @@ static const struct quantity quantities[] = {
 };
 
 /* What contacts take in the step, and what boundaries give, by the motion at each contact [motion/contact_motion.h] */
-static int energies_add_step(double **at, const struct snapshot *s, double *stored, struct why *why)
+static int energies_add_step(double **at, const struct snapshot *s, double *stored, struct failure *failure)
 {
     struct step_start m;
     double impact = 0, friction = 0, boundaries = 0, kept = 0;
-    if (step_start_init(&m, s, why)) {
+    if (step_start_init(&m, s, failure)) {
         step_start_free(&m);
-        return why->status;
+        return failure->status;
     }
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
@@ -50,19 +50,19 @@ static int energies_add_step(double **at, const struct snapshot *s, double *stor
     return 0;
 }
 
-static int energies_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int energies_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     struct cell_flow flow;
-    double peculiar = 0, kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, why);
-    if (!at) return why->status;
+    double peculiar = 0, kinetic = 0, rotation = 0, potential = 0, *at = table_row(t, failure);
+    if (!at) return failure->status;
     cell_flow_init(&flow, &p->cell, p->cell.edge, p->cell.rate);
     for (int64_t i = 0; i < p->n; i++) {
         vec3 w = flow.changes ? v3_sub(p->v[i], cell_flow_gain(&flow, p->x[i])) : p->v[i];
         int times = snapshot_body(s, i) ? region_holds(&s->region, p->x[i]) : 0;
         kinetic += times * 0.5 * p->mass[i] * v3_dot(p->v[i], p->v[i]);
         peculiar += times * 0.5 * p->mass[i] * v3_dot(w, w);
-        rotation += times * 0.5 * top_energy2(p, i, p->q[i], p->w[i]);
+        rotation += times * 0.5 * rotation_energy2(p, i, p->q[i], p->w[i]);
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     double *step = at + 5, stored = 0;
@@ -74,8 +74,8 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct why *
         lacks = "contacts are not divided among groups of bodies";
     else if (contacts_summed(s->s))
         lacks = "the step was made in substeps, nsd-step --log has their dissipation";
-    else if (energies_add_step(&step, s, &stored, why))
-        return why->status;
+    else if (energies_add_step(&step, s, &stored, failure))
+        return failure->status;
     if (lacks) table_null(t, "no dissipation: %s", lacks);
     if (lacks && p->law) stored = NAN;
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);

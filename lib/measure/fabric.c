@@ -12,11 +12,11 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int fabric_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int fabric_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct tensor F = { { { 0 } } };
-    double n = 0, value[3], *at = table_row(t, why);
-    if (!at) return why->status;
+    double n = 0, value[3], *at = table_row(t, failure);
+    if (!at) return failure->status;
     for (int64_t i = 0; i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         int times = branch_counts(s->s, i) ? region_holds(&s->region, c->x) : 0;

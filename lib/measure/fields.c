@@ -41,7 +41,7 @@ static double fields_mean_diameter(const struct packing *p)
     return sum;
 }
 
-static int grid_init(struct fields *f, const struct snapshot *s, double spacing, struct why *why)
+static int grid_init(struct fields *f, const struct snapshot *s, double spacing, struct failure *failure)
 {
     const struct region *r = &s->region;
     double origin[3] = { 0, 0, 0 }, step[3] = { 1, 1, 1 }, points = 1;
@@ -51,10 +51,10 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
         double size = r->hi[k] - r->lo[k];
         double wide = spacing > 0 ? spacing : fmax(fields_mean_diameter(s->p), size / USUAL_CELLS);
         double cells = fmax(ceil(size / wide * (1 - 1e-12)), 1);
-        if (!(size > 0)) return why_set(why, EX_DATAERR, "no volume to lay a grid over");
+        if (!(size > 0)) return failure_set(failure, EX_DATAERR, "no volume to lay a grid over");
         points *= cells;
         if (!(points <= (double)MOST_POINTS))
-            return why_set(why, EX_DATAERR,
+            return failure_set(failure, EX_DATAERR,
                            "a grid of more than %lld points: a larger --spacing or a smaller --box "
                            "has fewer",
                            (long long)MOST_POINTS);
@@ -65,18 +65,18 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
 }
 
 int fields_init(struct fields *f, const struct snapshot *s, double width, double spacing,
-                struct why *why)
+                struct failure *failure)
 {
     *f = (struct fields){ .width = width > 0 ? width : fields_mean_diameter(s->p) };
-    if (!s->p->n) return why_set(why, EX_DATAERR, "no bodies to lay a grid over");
-    if (grid_init(f, s, spacing, why)) return why->status;
+    if (!s->p->n) return failure_set(failure, EX_DATAERR, "no bodies to lay a grid over");
+    if (grid_init(f, s, spacing, failure)) return failure->status;
     for (int k = 0; k < FIELD_COUNT; k++) {
         size_t numbers = (size_t)fields_points(f) * (size_t)field_quantity[k].width;
         if (!(f->x[k] = calloc(numbers, sizeof *f->x[k])))
-            return why_set(why, EX_SOFTWARE, "no memory for fields");
+            return failure_set(failure, EX_SOFTWARE, "no memory for fields");
     }
     f->moment = calloc((size_t)fields_points(f) * MOMENTS, sizeof *f->moment);
-    return f->moment ? 0 : why_set(why, EX_SOFTWARE, "no memory for fields");
+    return f->moment ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for fields");
 }
 
 void fields_free(struct fields *f)
@@ -287,21 +287,21 @@ static struct region grid_region(const struct fields *f, const struct packing *p
 
 /* Do widths, and the ways of bodies to where contacts are, reach few images of the cell? */
 static int check_reach(const struct fields *f, const struct packing *p, const struct region *r,
-                       double ahead, struct why *why)
+                       double ahead, struct failure *failure)
 {
     double fastest = 0;
     for (int64_t i = 0; ahead != 0 && i < p->n; i++) fastest = fmax(fastest, v3_norm(p->v[i]));
     return region_check_images(r, p->n, CUT * f->width + fabs(ahead) * fastest,
-                               "--fields: 4 widths and the way of the fastest body reach", why);
+                               "--fields: 4 widths and the way of the fastest body reach", failure);
 }
 
-int fields_set(struct fields *f, const struct snapshot *s, struct why *why)
+int fields_set(struct fields *f, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     const struct region r = grid_region(f, p);
     const bool solved = s->s && (s->s->found || !s->s->n);
     const double ahead = !s->s ? 0 : s->moved ? -step_after(p) : step_ahead(p);
-    if (check_reach(f, p, &r, ahead, why)) return why->status;
+    if (check_reach(f, p, &r, ahead, failure)) return failure->status;
     for (int k = 0; k < FIELD_COUNT; k++)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));

@@ -48,11 +48,11 @@ struct fields {
  * Returns 0, EX_SOFTWARE, or EX_DATAERR where there is nothing to lay it over.
  */
 int fields_init(struct fields *f, const struct snapshot *s, double width, double spacing,
-                struct why *why);
+                struct failure *failure);
 void fields_free(struct fields *f);
 /* The fields of a snapshot, on the grid that there is; without solved contacts their stress is NaN. Returns 0, or
    EX_DATAERR where too many images of the bodies in a periodic cell are within reach. */
-int fields_set(struct fields *f, const struct snapshot *s, struct why *why);
+int fields_set(struct fields *f, const struct snapshot *s, struct failure *failure);
 
 static inline int64_t fields_points(const struct fields *f)
 {

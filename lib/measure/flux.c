@@ -33,42 +33,42 @@ static void flux_cross(struct crossed *n, const struct snapshot *s, vec3 x, vec3
 }
 
 /* Those that have come or gone between the frames: from where they came, or to where they went */
-static int add_events(struct crossed *n, const struct snapshot *s, struct why *why)
+static int add_events(struct crossed *n, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
-    struct kept now = { 0 };
+    struct frame_memory now = { 0 };
     if (!p->events.n) return 0;
-    if (kept_set(&now, p, why)) return why->status;
+    if (frame_memory_set(&now, p, failure)) return failure->status;
     follow_chosen(&now, s);
     for (int64_t k = 0; k < p->events.n; k++) {
         const struct event *e = &p->events.e[k];
-        const struct kept_body *b = kept_find(e->came ? &now : s->before, e->id);
+        const struct frame_memory_body *b = frame_memory_find(e->came ? &now : s->before, e->id);
         if (!b || !b->chosen) continue;
-        vec3 way = kept_way(p, e->came ? e->x : b->x, e->came ? b->x : e->x);
+        vec3 way = frame_memory_way(p, e->came ? e->x : b->x, e->came ? b->x : e->x);
         flux_cross(n, s, e->came ? e->x : b->x, way, e->mass);
     }
-    kept_free(&now);
+    frame_memory_free(&now);
     return 0;
 }
 
-static int flux_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int flux_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     struct crossed n = { { 0, 0 }, { 0, 0 } };
-    double since = p->t - s->before->t, *at = table_row(t, why);
-    if (!at) return why->status;
+    double since = p->t - s->before->t, *at = table_row(t, failure);
+    if (!at) return failure->status;
     if (!(v3_norm(s->asked->normal) > 0)) {
         table_null(t, "the plane is given by --plane");
         return 0;
     }
     for (int64_t i = 0; i < p->n; i++) {
-        const struct kept_body *then = kept_find(s->before, p->id[i]);
+        const struct frame_memory_body *then = frame_memory_find(s->before, p->id[i]);
         if (!then || !snapshot_body(s, i)) continue;
         // from where it would be now, had it come straight and never been replaced by an image
-        vec3 way = v3_sub(kept_place(p, i), then->x);
+        vec3 way = v3_sub(frame_memory_place(p, i), then->x);
         flux_cross(&n, s, v3_sub(p->x[i], way), way, p->mass[i]);
     }
-    if (add_events(&n, s, why)) return why->status;
+    if (add_events(&n, s, failure)) return failure->status;
     put(&at, since);
     for (int k = 0; k < 2; k++) put(&at, n.bodies[k]);
     for (int k = 0; k < 2; k++) put(&at, n.mass[k]);

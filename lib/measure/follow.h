@@ -8,12 +8,12 @@
 #include "measure/snapshot.h"
 
 /* Marks the bodies to which measures keep. */
-void follow_chosen(struct kept *now, const struct snapshot *s);
+void follow_chosen(struct frame_memory *now, const struct snapshot *s);
 /* now = what is remembered of this frame, with times out of s->before; to be freed by kept_free. pairs: those that
    touch as well, where the frame has contacts. Returns 0 or EX_SOFTWARE. */
-int follow(struct kept *now, const struct snapshot *s, bool pairs, struct why *why);
+int follow(struct frame_memory *now, const struct snapshot *s, bool pairs, struct failure *failure);
 /* Is a kept body in the region? */
-static inline bool follow_in(const struct kept_body *b)
+static inline bool follow_in(const struct frame_memory_body *b)
 {
     return b->entered == b->entered; // else NaN
 }

@@ -13,14 +13,14 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int fraction_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int fraction_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     struct region region = s->region;
     const struct region *r = &region;
-    double solid = 0, *at = table_row(t, why);
-    if (!at || (!s->asked->boxed && region_inside(&region, p, why) && why->status))
-        return why->status;
+    double solid = 0, *at = table_row(t, failure);
+    if (!at || (!s->asked->boxed && region_inside(&region, p, failure) && failure->status))
+        return failure->status;
     for (int64_t i = 0; i < p->n; i++)
         if (snapshot_body(s, i)) solid += grain_fill(p, i) * region_ball(r, p->x[i], p->radius[i]);
     if (!(r->volume > 0)) table_null(t, "the region has no volume");

@@ -81,11 +81,11 @@ static void friction_add(struct friction_sums *m, const struct snapshot *s, int6
     if (rub.most > 0) m->rough++, m->mobilised += rub.is / rub.most;
 }
 
-static int friction_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int friction_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct friction_sums m = { 0 };
-    double square = 0, *at = table_row(t, why);
-    if (!at) return why->status;
+    double square = 0, *at = table_row(t, failure);
+    if (!at) return failure->status;
     for (int64_t i = 0; i < s->s->n; i++)
         if (friction_pushes(s, i)) friction_add(&m, s, i);
     double n = (double)m.contacts, mean = m.normal / n;
@@ -119,11 +119,11 @@ const struct measure measure_friction = {
    up to `most`, 0: the largest */
 static int distribution(struct table *t, const struct snapshot *s,
                         double (*value)(const struct snapshot *, int64_t), bool by_mean,
-                        double most, struct why *why)
+                        double most, struct failure *failure)
 {
     double *x = malloc(((size_t)s->s->n + 1) * sizeof *x), sum = 0, largest = 0;
     int64_t n = 0;
-    if (!x) return why_set(why, EX_SOFTWARE, "no memory for a distribution");
+    if (!x) return failure_set(failure, EX_SOFTWARE, "no memory for a distribution");
     for (int64_t i = 0; i < s->s->n; i++) {
         double v = friction_pushes(s, i) ? value(s, i) : NAN;
         if (v >= 0) x[n++] = v, sum += v, largest = fmax(largest, v);
@@ -138,26 +138,26 @@ static int distribution(struct table *t, const struct snapshot *s,
         x[i] /= unit;
         if (most > 0) x[i] = fmin(x[i], most); // rounding
     }
-    histogram_rows(t, x, n, most > 0 ? most : largest / unit, s->asked->bins, why);
+    histogram_rows(t, x, n, most > 0 ? most : largest / unit, s->asked->bins, failure);
     free(x);
-    return why->status;
+    return failure->status;
 }
 
 static const struct quantity of_force[] = { HISTOGRAM_QUANTITIES("1", "in units of the mean force"),
                                             { 0 } };
 static const struct quantity of_part[] = { HISTOGRAM_QUANTITIES("1", "|f_t| / (mu f_n)"), { 0 } };
 
-static int normal_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int normal_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    return distribution(t, s, normal, true, 0, why);
+    return distribution(t, s, normal, true, 0, failure);
 }
-static int tangential_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int tangential_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    return distribution(t, s, friction_tangential, true, 0, why);
+    return distribution(t, s, friction_tangential, true, 0, failure);
 }
-static int mobilised_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int mobilised_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    return distribution(t, s, mobilised, false, 1, why);
+    return distribution(t, s, mobilised, false, 1, failure);
 }
 
 const struct measure measure_normal_forces = {

@@ -15,6 +15,6 @@
 /* A row for each of `bins` bins of the same width from 0 to `most`, which is in the last.
    Returns 0 or EX_SOFTWARE. */
 int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
-                   struct why *why);
+                   struct failure *failure);
 
 #endif

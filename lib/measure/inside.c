@@ -47,13 +47,13 @@ static double inside_mean_diameter(const struct packing *p)
     return 2 * sum / (double)p->n;
 }
 
-int region_inside(struct region *r, const struct packing *p, struct why *why)
+int region_inside(struct region *r, const struct packing *p, struct failure *failure)
 {
     double lo[3] = { 0 }, hi[3] = { 0 };
     bool open = false;
     if (p->n < BED || r->period.any) return 1;
     struct piece *s = malloc((size_t)p->n * sizeof *s);
-    if (!s) return why_set(why, EX_SOFTWARE, "no memory for the inside of the bed");
+    if (!s) return failure_set(failure, EX_SOFTWARE, "no memory for the inside of the bed");
     const double d = inside_mean_diameter(p);
     for (int k = 0; k < p->dim; k++) {
         double below = -INFINITY, above = INFINITY;

@@ -15,16 +15,16 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int lifetimes_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int lifetimes_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    struct kept now;
-    double made = 0, ended = 0, age = 0, life = 0, whole = 0, *at = table_row(t, why);
-    if (!at || follow(&now, s, true, why)) return why->status;
+    struct frame_memory now;
+    double made = 0, ended = 0, age = 0, life = 0, whole = 0, *at = table_row(t, failure);
+    if (!at || follow(&now, s, true, failure)) return failure->status;
     for (int64_t k = 0; k < now.pairs; k++)
-        made += !kept_pair_find(s->before, &now.pair[k]), age += s->p->t - now.pair[k].began;
+        made += !frame_memory_pair_find(s->before, &now.pair[k]), age += s->p->t - now.pair[k].began;
     for (int64_t k = 0; k < s->before->pairs; k++) {
-        const struct kept_pair *c = &s->before->pair[k];
-        if (kept_pair_find(&now, c)) continue;
+        const struct frame_memory_pair *c = &s->before->pair[k];
+        if (frame_memory_pair_find(&now, c)) continue;
         ended++;
         if (c->whole) whole++, life += s->p->t - c->began;
     }
@@ -34,7 +34,7 @@ static int lifetimes_rows(struct table *t, const struct snapshot *s, struct why 
     if (!(whole > 0))
         table_null(t, "no contact whose beginning was observed has ended since the previous frame");
     put(&at, n > 0 ? age / n : NAN), put(&at, whole > 0 ? life / whole : NAN);
-    kept_free(&now);
+    frame_memory_free(&now);
     return 0;
 }
 
@@ -59,20 +59,20 @@ static const struct quantity each[] = {
     { 0 },
 };
 
-static int separations_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int separations_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    struct kept now;
-    if (follow(&now, s, true, why)) return why->status;
+    struct frame_memory now;
+    if (follow(&now, s, true, failure)) return failure->status;
     for (int64_t k = 0; k < s->before->pairs; k++) {
-        const struct kept_pair *c = &s->before->pair[k];
-        if (kept_pair_find(&now, c)) continue;
-        double *at = table_row(t, why);
+        const struct frame_memory_pair *c = &s->before->pair[k];
+        if (frame_memory_pair_find(&now, c)) continue;
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, c->a), put(&at, c->b), put(&at, c->began), put(&at, s->p->t);
         put(&at, s->p->t - c->began), put(&at, c->whole);
     }
-    kept_free(&now);
-    return why->status;
+    frame_memory_free(&now);
+    return failure->status;
 }
 
 const struct measure measure_separations = {

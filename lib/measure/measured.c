@@ -13,7 +13,7 @@ static void measured_choose_one(const struct measure **chosen, const struct meas
     if (k < MOST_MEASURES) chosen[k] = m;
 }
 
-int measured_choose(const struct measure **chosen, const char *names, struct why *why)
+int measured_choose(const struct measure **chosen, const char *names, struct failure *failure)
 {
     for (int k = 0; k <= MOST_MEASURES; k++) chosen[k] = NULL;
     for (const char *s = names;; s++) {
@@ -22,7 +22,7 @@ int measured_choose(const struct measure **chosen, const char *names, struct why
         if (n == 3 && !strncmp(s, "all", n))
             for (int k = 0; measure_at(k); k++) measured_choose_one(chosen, measure_at(k));
         else if (!m)
-            return why_set(why, EX_USAGE, "--measures: no '%.*s' (nsd-stat --list names them)",
+            return failure_set(failure, EX_USAGE, "--measures: no '%.*s' (nsd-stat --list names them)",
                            (int)n, s);
         else
             measured_choose_one(chosen, m);
@@ -40,28 +40,28 @@ bool measured_remember(const struct measure *const *chosen)
     return false;
 }
 
-int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct kept *first,
-                  struct kept *before, struct why *why)
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct frame_memory *first,
+                  struct frame_memory *before, struct failure *failure)
 {
     bool pairs = false;
-    struct kept now;
+    struct frame_memory now;
     for (int k = 0; chosen[k]; k++) pairs = pairs || chosen[k]->needs == NEEDS_CONTACTS_BEFORE;
-    if (!s->first && kept_set(first, s->p, why)) return why->status;
-    if (follow(&now, s, pairs, why)) return why->status;
-    kept_free(before);
+    if (!s->first && frame_memory_set(first, s->p, failure)) return failure->status;
+    if (follow(&now, s, pairs, failure)) return failure->status;
+    frame_memory_free(before);
     *before = now;
     return 0;
 }
 
 /* Can each measure keep to what --only names? Returns 0 or EX_DATAERR. */
 static int check_only(const struct measure *const *chosen, const struct snapshot *s,
-                      struct why *why)
+                      struct failure *failure)
 {
     bool used = !s->only.any;
     for (int k = 0; chosen[k]; k++) {
         const enum keeps_to to = chosen[k]->keeps_to;
         if (to == KEEPS_TO_NOTHING && s->only.bodies)
-            return why_set(why, EX_DATAERR,
+            return failure_set(failure, EX_DATAERR,
                            "--only: %s is measured of all bodies, not of a group or kind",
                            chosen[k]->name);
         used = used || (to == KEEPS_TO_WALLS && s->only.walls) ||
@@ -69,17 +69,17 @@ static int check_only(const struct measure *const *chosen, const struct snapshot
     }
     const char *of = s->only.walls ? "walls" : "bodies";
     if (used) return 0;
-    return why_set(why, EX_DATAERR, "--only: '%s' names %s, and no measure of %s is chosen",
+    return failure_set(failure, EX_DATAERR, "--only: '%s' names %s, and no measure of %s is chosen",
                    s->asked->only, of, of);
 }
 
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
-                 struct why *why)
+                 struct failure *failure)
 {
     for (int k = 0; k < MOST_MEASURES; k++) t[k] = (struct table){ 0 };
-    if (why->status || check_only(chosen, s, why)) return why->status;
+    if (failure->status || check_only(chosen, s, failure)) return failure->status;
     for (int k = 0; chosen[k]; k++)
-        if (measure_run(&t[k], chosen[k], s, why)) return why->status;
+        if (measure_run(&t[k], chosen[k], s, failure)) return failure->status;
     return 0;
 }
 

@@ -67,7 +67,7 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
     return NULL;
 }
 
-int measure_run(struct table *t, const struct measure *m, const struct snapshot *s, struct why *why)
+int measure_run(struct table *t, const struct measure *m, const struct snapshot *s, struct failure *failure)
 {
     table_init(t, m->quantity);
     t->names = &s->p->names;
@@ -76,7 +76,7 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
         table_null(t, "%s", lack);
         return 0;
     }
-    if (m->rows(t, s, why)) return why->status;
+    if (m->rows(t, s, failure)) return failure->status;
     const struct quantity *q = m->quantity;
     for (int k = 0, in = 0; k < t->width; k++, in++) {
         if (in == q->width) q++, in = 0;

@@ -37,7 +37,7 @@ struct measure {
     bool remembers; /* it looks at frames before this one, where there are any */
     /* Fills the table. A number that there is not is left NaN, with the reason by table_null().
        Returns 0 or EX_SOFTWARE. */
-    int (*rows)(struct table *t, const struct snapshot *s, struct why *why);
+    int (*rows)(struct table *t, const struct snapshot *s, struct failure *failure);
 };
 
 extern const struct measure measure_fraction, measure_coordination, measure_contact_numbers,
@@ -56,6 +56,6 @@ const struct measure *measure_named(const char *name, size_t n);
 /* t = the measure of a snapshot; to be freed. One without what it needs has no rows, and says why.
    Returns 0 or EX_SOFTWARE. */
 int measure_run(struct table *t, const struct measure *m, const struct snapshot *s,
-                struct why *why);
+                struct failure *failure);
 
 #endif

@@ -282,13 +282,13 @@ static void put_segregation(double **at, struct table *t, const struct snapshot 
     put(at, square > 0 ? (tracers / nt - (sum - tracers) / (n - nt)) / sqrt(3 * square / n) : NAN);
 }
 
-static int mixing_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int mixing_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct mixture m = { 0 };
     struct samples y = { { 0 }, 0, NULL, NULL };
-    double *at = table_row(t, why);
+    double *at = table_row(t, failure);
     const char *reason = NULL;
-    if (!at) return why->status;
+    if (!at) return failure->status;
     bool room = mixture_gather(&m, s);
     if (room && !m.n) reason = "no body that moves is in the region";
     if (room && !reason) {
@@ -306,7 +306,7 @@ static int mixing_rows(struct table *t, const struct snapshot *s, struct why *wh
     }
     if (reason) table_null(t, "%s", reason);
     free(y.bodies), free(y.tracers), mixture_free(&m);
-    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory for mixing");
+    return room ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for mixing");
 }
 
 const struct measure measure_mixing = {

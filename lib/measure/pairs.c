@@ -59,7 +59,7 @@ static bool pairs_count(const struct scatter *a, const struct near *g, int64_t *
 }
 
 static void pairs_fill(struct table *t, const struct snapshot *s, const struct scatter *a, double reach,
-                 const int64_t *counts, struct why *why)
+                 const int64_t *counts, struct failure *failure)
 {
     double bins = (double)s->asked->bins, n = (double)a->seekers, least = INFINITY;
     for (int k = 0; k < 3 && k < s->p->dim; k++) least = fmin(least, a->size[k]);
@@ -69,7 +69,7 @@ static void pairs_fill(struct table *t, const struct snapshot *s, const struct s
         double from = reach * (double)k / bins, to = reach * (double)(k + 1) / bins;
         double even =
             n * others / a->volume * (expected(a, s->p->dim, to) - expected(a, s->p->dim, from));
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) return;
         put(&at, from), put(&at, to), put(&at, 0.5 * (double)counts[k]);
         put(&at, to <= least ? (double)counts[k] / even : NAN);
@@ -88,7 +88,7 @@ static const char *impossible(const struct snapshot *s, const struct scatter *a,
     return NULL;
 }
 
-static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int pairs_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     struct scatter a = { .size = { INFINITY, INFINITY, INFINITY } };
@@ -112,9 +112,9 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct why *why
     if (reason)
         table_null(t, "%s", reason);
     else if (room)
-        pairs_fill(t, s, &a, reach, counts, why);
+        pairs_fill(t, s, &a, reach, counts, failure);
     near_free(&g), scatter_free(&a), free(counts);
-    return room ? why->status : why_set(why, EX_SOFTWARE, "no memory for pairs of bodies");
+    return room ? failure->status : failure_set(failure, EX_SOFTWARE, "no memory for pairs of bodies");
 }
 
 const struct measure measure_pairs = {

@@ -68,9 +68,9 @@ static void profile_add_layer(struct table *t, const struct snapshot *s, const s
     put(&at, tensor_trace(&T) / s->p->dim), put_tensor(&at, &T);
 }
 
-static int profile_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int profile_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    return snapshot_layers(s, t, profile_add_layer, NULL, why);
+    return snapshot_layers(s, t, profile_add_layer, NULL, failure);
 }
 
 const struct measure measure_profile = {

@@ -42,7 +42,7 @@ static vec3 shifted(const struct region *r, vec3 x, int64_t i, int64_t j, int64_
 }
 
 int region_check_images(const struct region *r, int64_t n, double margin, const char *what,
-                        struct why *why)
+                        struct failure *failure)
 {
     const double few = 1000, most = 1e7; // of one body, where there may be millions of them; of all
     double images = 1;
@@ -50,7 +50,7 @@ int region_check_images(const struct region *r, int64_t n, double margin, const 
         region_walk(r, v3(r->lo[0], r->lo[1], r->dim == 3 ? r->lo[2] : 0), margin);
     for (int k = 0; k < 3; k++) images *= (double)(w.to[k] - w.from[k] + 1);
     if (images <= few || images * (double)n <= most) return 0;
-    return why_set(why, EX_DATAERR, "%s %.3g images of each body in the periodic cell", what,
+    return failure_set(failure, EX_DATAERR, "%s %.3g images of each body in the periodic cell", what,
                    images);
 }
 

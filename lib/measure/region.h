@@ -48,7 +48,7 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin);
 /* Are there so many of each of n bodies that a walk for each would take minutes? Returns 0, or EX_DATAERR with `what` in the
    reason. */
 int region_check_images(const struct region *r, int64_t n, double margin, const char *what,
-                        struct why *why);
+                        struct failure *failure);
 bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image);
 /* m/s: how much faster than the body the image is that region_next() has found last */
 vec3 region_rate(const struct region_walk *w, const struct region *r);

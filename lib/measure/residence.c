@@ -16,30 +16,30 @@ static const struct quantity quantities[] = {
 };
 
 /* Was it in the region, and is not now? */
-static bool gone(const struct kept *now, const struct kept_body *then)
+static bool gone(const struct frame_memory *now, const struct frame_memory_body *then)
 {
-    const struct kept_body *b = kept_find(now, then->id);
+    const struct frame_memory_body *b = frame_memory_find(now, then->id);
     return follow_in(then) && !(b && follow_in(b));
 }
 
-static double left_at(const struct snapshot *s, const struct kept *now, int32_t id)
+static double left_at(const struct snapshot *s, const struct frame_memory *now, int32_t id)
 {
-    return kept_find(now, id) ? s->p->t : follow_removed(s, id);
+    return frame_memory_find(now, id) ? s->p->t : follow_removed(s, id);
 }
 
-static int residence_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int residence_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    struct kept now;
+    struct frame_memory now;
     double bodies = 0, entered = 0, left = 0, age = 0, stay = 0, whole = 0;
-    double *at = table_row(t, why);
-    if (!at || follow(&now, s, false, why)) return why->status;
+    double *at = table_row(t, failure);
+    if (!at || follow(&now, s, false, failure)) return failure->status;
     for (int64_t k = 0; k < now.n; k++) {
-        const struct kept_body *b = &now.body[k], *then = kept_find(s->before, b->id);
+        const struct frame_memory_body *b = &now.body[k], *then = frame_memory_find(s->before, b->id);
         if (!follow_in(b)) continue;
         bodies++, age += s->p->t - b->entered, entered += !then || !follow_in(then);
     }
     for (int64_t k = 0; k < s->before->n; k++) {
-        const struct kept_body *b = &s->before->body[k];
+        const struct frame_memory_body *b = &s->before->body[k];
         if (!gone(&now, b)) continue;
         left++;
         if (b->whole) whole++, stay += left_at(s, &now, b->id) - b->entered;
@@ -49,7 +49,7 @@ static int residence_rows(struct table *t, const struct snapshot *s, struct why 
     if (!(whole > 0))
         table_null(t, "no body whose entry was observed has left since the previous frame");
     put(&at, bodies > 0 ? age / bodies : NAN), put(&at, whole > 0 ? stay / whole : NAN);
-    kept_free(&now);
+    frame_memory_free(&now);
     return 0;
 }
 
@@ -75,21 +75,21 @@ static const struct quantity each[] = {
     { 0 },
 };
 
-static int departures_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int departures_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    struct kept now;
-    if (follow(&now, s, false, why)) return why->status;
+    struct frame_memory now;
+    if (follow(&now, s, false, failure)) return failure->status;
     for (int64_t k = 0; k < s->before->n; k++) {
-        const struct kept_body *b = &s->before->body[k];
+        const struct frame_memory_body *b = &s->before->body[k];
         if (!gone(&now, b)) continue;
         const double left = left_at(s, &now, b->id);
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, b->id), put(&at, b->entered), put(&at, left), put(&at, left - b->entered);
-        put(&at, b->whole), put(&at, !kept_find(&now, b->id));
+        put(&at, b->whole), put(&at, !frame_memory_find(&now, b->id));
     }
-    kept_free(&now);
-    return why->status;
+    frame_memory_free(&now);
+    return failure->status;
 }
 
 const struct measure measure_departures = {

@@ -44,10 +44,10 @@ static void sizes_add_layer(struct table *t, const struct snapshot *s, const str
         table_null(t, "layers without bodies have no sizes");
 }
 
-static int sizes_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int sizes_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const double mean = sizes_mean_radius(s);
-    return snapshot_layers(s, t, sizes_add_layer, &mean, why);
+    return snapshot_layers(s, t, sizes_add_layer, &mean, failure);
 }
 
 const struct measure measure_sizes = {
@@ -100,11 +100,11 @@ static void sizes_moments_of(struct moments *m, const struct snapshot *s, int ax
     }
 }
 
-static int segregation_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int segregation_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct moments m;
-    double *at = table_row(t, why);
-    if (!at) return why->status;
+    double *at = table_row(t, failure);
+    if (!at) return failure->status;
     if (snapshot_axis(s) >= s->p->dim && snapshot_axis(s) < 3) {
         table_null(t, "in the plane there are no heights along z");
         return 0;

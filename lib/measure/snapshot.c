@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Is --tracer a kind of this document? Returns 0 or EX_DATAERR. */
-static int check_tracer(const struct packing *p, const char *tracer, struct why *why)
+static int check_tracer(const struct packing *p, const char *tracer, struct failure *failure)
 {
     char kinds[200];
     size_t at = 0;
@@ -16,12 +16,12 @@ static int check_tracer(const struct packing *p, const char *tracer, struct why 
         if (at < sizeof kinds)
             at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
     }
-    return why_set(why, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
+    return failure_set(failure, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
                    at < sizeof kinds ? "" : "...");
 }
 
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
-                  bool moved, const struct asked *asked, struct why *why)
+                  bool moved, const struct asked *asked, struct failure *failure)
 {
     *s = (struct snapshot){
         .p = p, .s = contacts, .moved = moved, .asked = asked, .unconverged = NAN
@@ -29,30 +29,30 @@ int snapshot_init(struct snapshot *s, const struct packing *p, const struct cont
     region_whole(&s->whole, p);
     s->region = s->whole;
     if (asked->boxed) region_box(&s->region, p, asked->lo, asked->hi);
-    if (region_check_images(&s->region, p->n, 0, "--box: it holds", why) ||
-        check_tracer(p, asked->tracer, why))
-        return why->status;
-    return chosen_init(&s->only, p, "--only", *asked->only ? asked->only : NULL, why);
+    if (region_check_images(&s->region, p->n, 0, "--box: it holds", failure) ||
+        check_tracer(p, asked->tracer, failure))
+        return failure->status;
+    return selection_init(&s->only, p, "--only", *asked->only ? asked->only : NULL, failure);
 }
 
 void snapshot_free(struct snapshot *s)
 {
-    chosen_free(&s->only);
+    selection_free(&s->only);
 }
 
 bool snapshot_body(const struct snapshot *s, int64_t i)
 {
-    return !s->only.bodies || chosen_body(&s->only, s->p, i);
+    return !s->only.bodies || selection_body(&s->only, s->p, i);
 }
 
 bool snapshot_wall(const struct snapshot *s, int32_t wall)
 {
-    return !s->only.walls || chosen_wall(&s->only, s->p, wall);
+    return !s->only.walls || selection_wall(&s->only, s->p, wall);
 }
 
 bool snapshot_face(const struct snapshot *s, int32_t wall, int32_t face)
 {
-    return !s->only.walls || chosen_face(&s->only, s->p, wall, face);
+    return !s->only.walls || selection_face(&s->only, s->p, wall, face);
 }
 
 int snapshot_axis(const struct snapshot *s)
@@ -66,13 +66,13 @@ int snapshot_axis(const struct snapshot *s)
 }
 
 int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *add,
-                    const void *with, struct why *why)
+                    const void *with, struct failure *failure)
 {
     const char *reason = NULL;
     int64_t n = s->asked->layers;
     int axis = snapshot_axis(s);
     struct region *layer = calloc((size_t)n + 1, sizeof *layer);
-    if (!layer) return why_set(why, EX_SOFTWARE, "no memory for layers");
+    if (!layer) return failure_set(failure, EX_SOFTWARE, "no memory for layers");
     if (axis == 3)
         region_shells(layer, n, &s->region, s->p, s->asked->point, &reason);
     else if (axis < s->p->dim)
@@ -81,12 +81,12 @@ int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *a
         reason = "in the plane there are no layers along z";
     if (reason) table_null(t, "%s", reason);
     for (int64_t i = 0; !reason && i < n; i++) {
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, axis == 3 ? layer[i].inner : layer[i].lo[axis]);
         put(&at, axis == 3 ? layer[i].outer : layer[i].hi[axis]);
         add(t, s, &layer[i], at, with);
     }
     free(layer);
-    return why->status;
+    return failure->status;
 }

@@ -38,16 +38,16 @@ struct snapshot {
     const struct asked *asked;
     double
         unconverged; /* steps since the frame before, or of the first all, that have not converged; NaN: not known */
-    const struct kept *first, *before; /* frames before this one; NULL: it is the first */
+    const struct frame_memory *first, *before; /* frames before this one; NULL: it is the first */
     struct region whole;               /* all there is, and its volume */
     struct region region;              /* the box, or else the whole */
-    struct chosen only;                /* of this frame, what asked->only names */
+    struct selection only;                /* of this frame, what asked->only names */
 };
 
 /* s = a frame. Regions and names are found; the rest is borrowed. Returns 0, EX_DATAERR where a name of `asked` is not
    in the document, or EX_SOFTWARE; to be freed in any case. */
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,
-                  bool moved, const struct asked *asked, struct why *why);
+                  bool moved, const struct asked *asked, struct failure *failure);
 void snapshot_free(struct snapshot *s);
 /* Do measures keep to the body; to the wall, or any of its faces; to this face? All, where none is named. */
 bool snapshot_body(const struct snapshot *s, int64_t i);
@@ -59,7 +59,7 @@ bool snapshot_face(const struct snapshot *s, int32_t wall, int32_t face);
 typedef void layer_function(struct table *t, const struct snapshot *s, const struct region *layer,
                             double *at, const void *with);
 int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *add,
-                    const void *with, struct why *why);
+                    const void *with, struct failure *failure);
 /* The axis of layers: the asked one, or the one nearest to up */
 int snapshot_axis(const struct snapshot *s);
 

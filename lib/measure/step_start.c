@@ -2,14 +2,14 @@
 
 #include "motion/move.h"
 
-int step_start_init(struct step_start *m, const struct snapshot *s, struct why *why)
+int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure)
 {
     *m = (struct step_start){ .p = s->p };
     if (s->moved) {
         m->p = &m->back;
-        if (packing_copy(&m->back, s->p, why) || move_back(&m->back, s->s, why)) return why->status;
+        if (packing_copy(&m->back, s->p, failure) || move_back(&m->back, s->s, failure)) return failure->status;
     }
-    return impulses_init(&m->sum, m->p, s->s, false, why);
+    return impulses_init(&m->sum, m->p, s->s, false, failure);
 }
 
 void step_start_free(struct step_start *m)

@@ -15,7 +15,7 @@ struct step_start {
 };
 
 /* Of solved contacts. Returns 0 or EX_SOFTWARE; to be freed either way. */
-int step_start_init(struct step_start *m, const struct snapshot *s, struct why *why);
+int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure);
 void step_start_free(struct step_start *m);
 
 #endif

@@ -26,12 +26,12 @@ static struct tensor strain_of(const struct tensor *F, int dim)
     return H;
 }
 
-static int strain_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int strain_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     int dim = s->p->dim;
     struct deformed now = { 0 };
-    double value[3], *at = table_row(t, why);
-    if (!at) return why->status;
+    double value[3], *at = table_row(t, failure);
+    if (!at) return failure->status;
     if (s->before) now = s->before->form;
     deformed_follow(&now, s->p);
     put(&at, s->first ? s->p->t - s->first->t : 0);

@@ -57,12 +57,12 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int stress_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int stress_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct region *r = &s->region;
     struct moving m;
-    double value[3], *at = table_row(t, why);
-    if (!at) return why->status;
+    double value[3], *at = table_row(t, failure);
+    if (!at) return failure->status;
     if (!(r->volume > 0)) {
         table_null(t, "the region has no volume");
         return 0;

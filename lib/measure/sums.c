@@ -58,14 +58,14 @@ static void look_free(struct look *l)
     wall_faces_free(&l->faces);
 }
 
-static int look_init(struct look *l, const struct snapshot *s, struct why *why)
+static int look_init(struct look *l, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     const struct wall_sums *before = s->before ? &s->before->sums : NULL;
     bool same = before && before->n == p->sums.n && before->since == p->sums.since;
     *l = (struct look){ .s = s, .p = p, .from = same ? before : NULL };
     l->span = p->t - (same ? s->before->t : p->sums.since);
-    return face_of_init(&l->faces, p, false, why);
+    return face_of_init(&l->faces, p, false, failure);
 }
 
 /* Adds a face, from which that of the frame before is taken. */
@@ -129,14 +129,14 @@ static double sums_row_of(const struct packing *p, const char *name)
     return name ? names_find(&p->names, name, strlen(name)) : NAN;
 }
 
-static int walls_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int walls_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct look l;
-    if (look_init(&l, s, why)) return why->status;
+    if (look_init(&l, s, failure)) return failure->status;
     for (int32_t w = 0; w < s->p->walls; w++) {
         struct sum sum = { 0 };
         if (!snapshot_wall(s, w)) continue;
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         sums_add_faces(&sum, &l, w, 0, sums_count_of(&l, w));
         put(&at, w), put(&at, sums_row_of(s->p, names_of_wall(&s->p->names, w)));
@@ -144,14 +144,14 @@ static int walls_rows(struct table *t, const struct snapshot *s, struct why *why
     }
     explain(t, &l);
     look_free(&l);
-    return why->status;
+    return failure->status;
 }
 
-static int sums_names_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int sums_names_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct names *names = &s->p->names;
     struct look l;
-    if (look_init(&l, s, why)) return why->status;
+    if (look_init(&l, s, failure)) return failure->status;
     if (!names->rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0, end; k < names->rows; k = end) { // rows are sorted by name
         struct sum sum = { 0 };
@@ -161,24 +161,24 @@ static int sums_names_rows(struct table *t, const struct snapshot *s, struct why
                       r->count ? r->count : sums_count_of(&l, r->boundary));
         }
         if (s->only.walls && !s->only.name[names->row[k].name]) continue;
-        double *at = table_row(t, why);
+        double *at = table_row(t, failure);
         if (!at) break;
         put(&at, names->row[k].name), put_sum(&at, &l, &sum);
     }
     explain(t, &l);
     look_free(&l);
-    return why->status;
+    return failure->status;
 }
 
-static int faces_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int faces_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct look l;
-    if (look_init(&l, s, why)) return why->status;
-    for (int32_t w = 0; w < s->p->walls && !why->status; w++)
+    if (look_init(&l, s, failure)) return failure->status;
+    for (int32_t w = 0; w < s->p->walls && !failure->status; w++)
         for (int32_t k = 0; k < sums_count_of(&l, w); k++) {
             struct sum sum = { 0 };
             if (!snapshot_face(s, w, k)) continue;
-            double *at = table_row(t, why);
+            double *at = table_row(t, failure);
             if (!at) break;
             sums_add(&sum, &l, w, k);
             put(&at, w), put(&at, sums_row_of(s->p, names_of_face(&s->p->names, w, k))), put(&at, k);
@@ -186,7 +186,7 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct why *why
         }
     explain(t, &l);
     look_free(&l);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_sums = {

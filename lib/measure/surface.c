@@ -22,7 +22,7 @@ static const struct quantity quantities[] = {
 };
 
 /* A point of the surface: across gravity and up (m) */
-struct top {
+struct rotation {
     double a, b, h;
     int64_t i;
 };
@@ -42,7 +42,7 @@ static struct basis basis_of(const struct packing *p)
 
 static int by_square(const void *x, const void *y)
 {
-    const struct top *one = x, *other = y;
+    const struct rotation *one = x, *other = y;
     if (one->a != other->a) return one->a < other->a ? -1 : 1;
     if (one->b != other->b) return one->b < other->b ? -1 : 1;
     if (one->h != other->h) return one->h > other->h ? -1 : 1;
@@ -51,7 +51,7 @@ static int by_square(const void *x, const void *y)
 
 /* top[] = the highest body of each square; returns how many. Where contacts are known only bodies that
    touch something count: what flies is not the surface. -1 when memory is short. */
-static int64_t tops(struct top *top, const struct snapshot *s, const struct basis *e)
+static int64_t tops(struct rotation *top, const struct snapshot *s, const struct basis *e)
 {
     const struct packing *p = s->p;
     int32_t *count = s->s ? counts_of(s) : NULL;
@@ -62,7 +62,7 @@ static int64_t tops(struct top *top, const struct snapshot *s, const struct basi
     for (int64_t i = 0; i < p->n; i++) {
         if (!counts_body(s, i) || (count && !count[i])) continue;
         vec3 x = p->x[i];
-        top[n++] = (struct top){ floor(v3_dot(x, e->a) / width), floor(v3_dot(x, e->b) / width),
+        top[n++] = (struct rotation){ floor(v3_dot(x, e->a) / width), floor(v3_dot(x, e->b) / width),
                                  v3_dot(x, e->up) + p->radius[i], i };
     }
     qsort(top, (size_t)n, sizeof *top, by_square);
@@ -80,7 +80,7 @@ struct surface_mean {
     double a, b, h;
 };
 
-static struct surface_mean mean_of(const struct top *top, int64_t n)
+static struct surface_mean mean_of(const struct rotation *top, int64_t n)
 {
     struct surface_mean m = { 0, 0, 0 };
     for (int64_t k = 0; k < n; k++)
@@ -89,7 +89,7 @@ static struct surface_mean mean_of(const struct top *top, int64_t n)
 }
 
 /* h = mean + slope[0] a + slope[1] b; false: the points do not say */
-static bool plane(const struct top *top, int64_t n, int dim, double slope[2], double *spread)
+static bool plane(const struct rotation *top, int64_t n, int dim, double slope[2], double *spread)
 {
     struct surface_mean m = mean_of(top, n);
     double aa = 0, ab = 0, bb = 0, ah = 0, bh = 0, sum = 0;
@@ -115,7 +115,7 @@ static const double NEARER_TO_CONE = 0.5;
 
 /* How much the surface falls with the distance from its axis; NaN: the points do not say, or lie on a plane, h =
    mean + slope . (a, b), as well as on a cone */
-static double flank(const struct top *top, int64_t n, const double slope[2])
+static double flank(const struct rotation *top, int64_t n, const double slope[2])
 {
     struct surface_mean m = mean_of(top, n);
     double least = INFINITY, most = -INFINITY, count = 0, r = 0, h = 0, rr = 0, rh = 0;
@@ -146,7 +146,7 @@ static double degrees(double slope)
 }
 
 static void surface_fill(double *at, struct table *t, const struct snapshot *s, const struct basis *e,
-                 const struct top *top, int64_t n)
+                 const struct rotation *top, int64_t n)
 {
     double slope[2], spread, steep;
     int64_t apex = 0;
@@ -171,23 +171,23 @@ static void surface_fill(double *at, struct table *t, const struct snapshot *s, 
     put_vec(&at, v3_axpy(s->p->x[top[apex].i], s->p->radius[top[apex].i], e->up));
 }
 
-static int surface_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int surface_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
-    double *at = table_row(t, why);
-    if (!at) return why->status;
+    double *at = table_row(t, failure);
+    if (!at) return failure->status;
     if (!(v3_norm(s->p->g) > 0)) {
         table_null(t, "without gravity no side is up");
         return 0;
     }
     struct basis e = basis_of(s->p);
-    struct top *top = malloc(((size_t)s->p->n + 1) * sizeof *top);
+    struct rotation *top = malloc(((size_t)s->p->n + 1) * sizeof *top);
     int64_t n = top ? tops(top, s, &e) : -1;
     if (n < 0)
-        why_set(why, EX_SOFTWARE, "no memory for the surface");
+        failure_set(failure, EX_SOFTWARE, "no memory for the surface");
     else
         surface_fill(at, t, s, &e, top, n);
     free(top);
-    return why->status;
+    return failure->status;
 }
 
 const struct measure measure_surface = {

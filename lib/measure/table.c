@@ -19,13 +19,13 @@ void table_free(struct table *t)
     t->x = NULL, t->rows = t->room = 0;
 }
 
-double *table_row(struct table *t, struct why *why)
+double *table_row(struct table *t, struct failure *failure)
 {
     if (t->rows == t->room) {
         int64_t room = 2 * t->room + 1;
         double *x = realloc(t->x, (size_t)room * (size_t)t->width * sizeof *x);
         if (!x) {
-            why_set(why, EX_SOFTWARE, "no memory for a measure");
+            failure_set(failure, EX_SOFTWARE, "no memory for a measure");
             return NULL;
         }
         t->x = x, t->room = room;

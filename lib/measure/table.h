@@ -27,7 +27,7 @@ struct table {
 void table_init(struct table *t, const struct quantity *quantity);
 void table_free(struct table *t);
 /* One more row, all NaN; NULL when memory is short (EX_SOFTWARE). Valid until the next. */
-double *table_row(struct table *t, struct why *why);
+double *table_row(struct table *t, struct failure *failure);
 /* Why there are no numbers, unless a reason is there already. */
 void table_null(struct table *t, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -12,11 +12,11 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-static int temperature_rows(struct table *t, const struct snapshot *s, struct why *why)
+static int temperature_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     struct moving m;
-    double *at = table_row(t, why);
-    if (!at) return why->status;
+    double *at = table_row(t, failure);
+    if (!at) return failure->status;
     moving_of(&m, s, &s->region);
     put(&at, (double)m.bodies);
     if (!m.bodies) {

@@ -31,6 +31,6 @@ enum { ADAPT_MOST = 16 };
 
 /* dt of the step to come, tol a share of a radius; near: neighbours that are kept from one call to the next.
    Returns 0, or EX_SOFTWARE. */
-int adapt_step(struct packing *p, double tol, struct neighbours *near, struct why *why);
+int adapt_step(struct packing *p, double tol, struct neighbours *near, struct failure *failure);
 
 #endif

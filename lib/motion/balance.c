@@ -41,15 +41,15 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
         if (!(m > 0)) continue;
         vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / m, sum->force[i]);
         if (sum->flow.changes) add_flow(b, p, sum, i, &dv);
-        quat q = top_is(p, i) ? top_predict(p, i) : p->q[i]; // where the reactions act
-        vec3 dw = top_spin(p, i, q, sum->moment[i]), was = top_predict_spin(p, i, q);
+        quat q = rotation_is(p, i) ? rotation_predict(p, i) : p->q[i]; // where the reactions act
+        vec3 dw = rotation_spin(p, i, q, sum->moment[i]), was = rotation_predict_spin(p, i, q);
         vec3 v = v3_add(p->v[i], dv), w = v3_add(was, dw);
         vec3 x = v3_axpy(v3_axpy(p->x[i], before, p->v[i]), after, v);
         mean[i] = (struct balance_mean){ v3_axpy(p->v[i], 0.5, dv), v3_axpy(was, 0.5, dw) };
-        b->kinetic += 0.5 * (m * v3_dot(v, v) + top_energy2(p, i, q, w));
+        b->kinetic += 0.5 * (m * v3_dot(v, v) + rotation_energy2(p, i, q, w));
         b->potential -= m * v3_dot(p->g, x);
         b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
-        b->change += top_is(p, i) ? 0.5 * (top_energy2(p, i, q, w) - top_energy2(p, i, q, was))
+        b->change += rotation_is(p, i) ? 0.5 * (rotation_energy2(p, i, q, w) - rotation_energy2(p, i, q, was))
                                   : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         balance_add_to(b->momentum, m, v);
@@ -202,11 +202,11 @@ static void find_gains(struct gain *gain, const struct packing *p, const struct 
 }
 
 int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
-                  const struct impulses *sum, struct why *why)
+                  const struct impulses *sum, struct failure *failure)
 {
     struct balance_mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     struct balance unwanted = { 0 };
-    if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
+    if (!mean) return failure_set(failure, EX_SOFTWARE, "no memory for the balances");
     add_bodies(&unwanted, p, sum, NULL, mean);
     find_gains(gain, p, s, sum, mean);
     free(mean);
@@ -228,11 +228,11 @@ static bool add_gains(struct balance *b, const struct packing *p, const struct c
 }
 
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 const struct impulses *sum, const bool *of, struct why *why)
+                 const struct impulses *sum, const bool *of, struct failure *failure)
 {
     struct balance_mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     *b = (struct balance){ 0 };
-    if (!mean) return why_set(why, EX_SOFTWARE, "no memory for the balances");
+    if (!mean) return failure_set(failure, EX_SOFTWARE, "no memory for the balances");
     add_bodies(b, p, sum, of, mean);
     if (energy_has_peculiar(p)) b->peculiar_change = -energy_peculiar(p, of);
     balance_add_freedoms(b, p, sum);
@@ -240,5 +240,5 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     add_ties(b, p, s);
     bool good = add_gains(b, p, s, sum, mean);
     free(mean);
-    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for the balances");
+    return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the balances");
 }

@@ -45,7 +45,7 @@
 /* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
    given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
 int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
-                 const struct impulses *sum, const bool *of, struct why *why);
+                 const struct impulses *sum, const bool *of, struct failure *failure);
 
 /* What the impact of a pair of bodies has gained in addition to the energy that its approach could give up */
 struct gain {
@@ -54,7 +54,7 @@ struct gain {
 };
 /* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
 int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
-                  const struct impulses *sum, struct why *why);
+                  const struct impulses *sum, struct failure *failure);
 /* The first contact after i that is of another pair; the images of one body count as one. */
 int64_t balance_next_pair(const struct contacts *s, int64_t i);
 /* Less than this part of the scale is rounding, or what the solve leaves. */

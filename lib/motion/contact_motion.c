@@ -13,10 +13,10 @@ static struct velocity of_body(const struct packing *p, const struct impulses *s
     if (!(p->mass[i] > 0)) return (struct velocity){ p->v[i], p->w[i] };
     vec3 dv = v3_axpy(v3_scale(p->dt, p->g), 1 / p->mass[i], sum->force[i]);
     if (sum->flow.changes) dv = v3_add(dv, cell_flow_gain(&sum->flow, packing_predict(p, i)));
-    quat q = top_is(p, i) ? top_predict(p, i) : p->q[i];
+    quat q = rotation_is(p, i) ? rotation_predict(p, i) : p->q[i];
     return (struct velocity){ v3_axpy(p->v[i], 0.5, dv),
-                              v3_axpy(top_predict_spin(p, i, q), 0.5,
-                                      top_spin(p, i, q, sum->moment[i])) };
+                              v3_axpy(rotation_predict_spin(p, i, q), 0.5,
+                                      rotation_spin(p, i, q, sum->moment[i])) };
 }
 
 /* m/s: of the boundary's material, with what its load makes of it */

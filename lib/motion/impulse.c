@@ -75,19 +75,19 @@ static void find_flow(struct impulses *sum, const struct packing *p)
 }
 
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
-                  bool ended, struct why *why)
+                  bool ended, struct failure *failure)
 {
     size_t n = (size_t)p->n + 1;
     *sum = (struct impulses){ .ahead = ended ? -step_after(p) : step_ahead(p) };
     cell_predict(&p->cell, sum->ahead, sum->edge);
     if (!ended) cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), sum->next);
-    if (freedoms_init(&sum->freedoms, p, sum->edge, ended, why)) return why->status;
-    const struct outside *o = &p->outside; // what is not 0 to begin with is not set to 0 first
+    if (freedoms_init(&sum->freedoms, p, sum->edge, ended, failure)) return failure->status;
+    const struct external_force *o = &p->outside; // what is not 0 to begin with is not set to 0 first
     sum->force = o->force ? malloc(n * sizeof *sum->force) : calloc(n, sizeof *sum->force);
     sum->moment = o->torque ? malloc(n * sizeof *sum->moment) : calloc(n, sizeof *sum->moment);
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);
     if (!sum->force || !sum->moment || !sum->yield)
-        return why_set(why, EX_SOFTWARE, "no memory to move the bodies");
+        return failure_set(failure, EX_SOFTWARE, "no memory to move the bodies");
     for (int64_t i = 0; o->force && i < p->n; i++) sum->force[i] = v3_scale(p->dt, o->force[i]);
     for (int64_t i = 0; o->torque && i < p->n; i++) sum->moment[i] = v3_scale(p->dt, o->torque[i]);
     const double middle = p->t + (ended ? -p->dt : p->dt) / 2;

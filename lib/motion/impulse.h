@@ -56,7 +56,7 @@ static inline double push_turns_a(const struct push *o, vec3 w)
 /* Of all contacts, in the step that begins where the packing is, or, ended, that ends there; then
    without next[] and flow. Returns 0 or EX_SOFTWARE; to be freed in any case. */
 int impulses_init(struct impulses *sum, const struct packing *p, const struct contacts *s,
-                  bool ended, struct why *why);
+                  bool ended, struct failure *failure);
 void impulses_free(struct impulses *sum);
 
 /* m/s, rad/s: what the step makes of the speed of freedom k */

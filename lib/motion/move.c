@@ -32,13 +32,13 @@ static struct move_way move_way_of(const struct packing *p, bool back)
 }
 
 /* A body that keeps its angular momentum, not its angular velocity [bodies/top.h] */
-static void top_move(struct packing *p, const struct move_way *y, int64_t i, vec3 moment)
+static void rotation_move(struct packing *p, const struct move_way *y, int64_t i, vec3 moment)
 {
-    vec3 L = top_momentum(p, i, p->q[i], p->w[i]);
-    p->q[i] = top_turn(p, i, p->q[i], L, y->first);
+    vec3 L = rotation_momentum(p, i, p->q[i], p->w[i]);
+    p->q[i] = rotation_turn(p, i, p->q[i], L, y->first);
     L = v3_axpy(L, y->sign, moment);
-    p->q[i] = top_turn(p, i, p->q[i], L, y->then);
-    p->w[i] = top_spin(p, i, p->q[i], L);
+    p->q[i] = rotation_turn(p, i, p->q[i], L, y->then);
+    p->w[i] = rotation_spin(p, i, p->q[i], L);
 }
 
 /* m/s: of body i after the step */
@@ -53,8 +53,8 @@ static vec3 velocity_after(const struct packing *p, const struct cell_flow *flow
 static void body_move(struct packing *p, const struct cell_flow *flow, const struct move_way *y,
                       int64_t i, vec3 force, vec3 moment)
 {
-    bool top = top_is(p, i);
-    if (top) top_move(p, y, i, moment);
+    bool top = rotation_is(p, i);
+    if (top) rotation_move(p, y, i, moment);
     p->x[i] = v3_axpy(p->x[i], y->first, p->v[i]);
     if (!top) p->q[i] = move_turn(p->q[i], y->first, p->w[i]);
     if (p->mass[i] > 0) {
@@ -147,27 +147,27 @@ struct endless endless_after(const struct packing *p, const struct impulses *sum
 }
 
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
-            struct why *why)
+            struct failure *failure)
 {
-    if (packing_check_clock(p, why) || (p->law && contact_laws_keep(p, s, why)) ||
-        memory_keep(&p->memory, s, why))
-        return why->status;
+    if (packing_check_clock(p, failure) || (p->law && contact_laws_keep(p, s, failure)) ||
+        memory_keep(&p->memory, s, failure))
+        return failure->status;
     move_bodies(p, sum, false);
     cell_move(&p->cell, step_ahead(p), step_after(p), sum->next);
     move_freedoms(p, sum, false);
     p->step++;
     p->t = packing_time(p, p->step);
-    return room_check_growth(p, why);
+    return servo_box_check_growth(p, failure);
 }
 
-int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct why *why)
+int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct failure *failure)
 {
     struct impulses sum;
-    if (!impulses_init(&sum, p, s, false, why) && !move_by(p, s, &sum, why) &&
+    if (!impulses_init(&sum, p, s, false, failure) && !move_by(p, s, &sum, failure) &&
         overlap_projects(p->overlap))
-        project_apart(p, s, did, why);
+        project_apart(p, s, did, failure);
     impulses_free(&sum);
-    return why->status;
+    return failure->status;
 }
 
 static void unmove_by(struct packing *p, struct impulses *sum)
@@ -183,10 +183,10 @@ static void unmove_by(struct packing *p, struct impulses *sum)
     p->t = packing_time(p, p->step);
 }
 
-int move_back(struct packing *p, const struct contacts *s, struct why *why)
+int move_back(struct packing *p, const struct contacts *s, struct failure *failure)
 {
     struct impulses sum;
-    if (!impulses_init(&sum, p, s, true, why)) unmove_by(p, &sum);
+    if (!impulses_init(&sum, p, s, true, failure)) unmove_by(p, &sum);
     impulses_free(&sum);
-    return why->status;
+    return failure->status;
 }

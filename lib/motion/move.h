@@ -16,11 +16,11 @@
 
 /* The bodies and the freedoms move, by the contacts' reactions, and bodies apart where the packing
    needs it [motion/project.h], did, or NULL: what that has done; step and t advance. Returns 0 or EX_SOFTWARE. */
-int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct why *why);
+int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct failure *failure);
 
 /* The same where the sums of the reactions are there already; bodies are not moved apart. */
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,
-            struct why *why);
+            struct failure *failure);
 
 /* After move_by() with these sums; what is reported of the step is not looked at. */
 struct endless endless_after(const struct packing *p, const struct impulses *sum);
@@ -28,6 +28,6 @@ struct endless endless_after(const struct packing *p, const struct impulses *sum
 /* Back to before move_step(), to rounding: what a solution in a trajectory is checked from. A
    projection is not undone: the errors depend on velocities, and where there is a projection the
    lever arms on radii. */
-int move_back(struct packing *p, const struct contacts *s, struct why *why);
+int move_back(struct packing *p, const struct contacts *s, struct failure *failure);
 
 #endif

@@ -230,19 +230,19 @@ static bool relax_in_threads(struct relaxing *y)
 }
 
 int project_apart(struct packing *p, const struct contacts *s, struct projected *did,
-                  struct why *why)
+                  struct failure *failure)
 {
-    return project_shared(p, s, NULL, did, why);
+    return project_shared(p, s, NULL, did, failure);
 }
 
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
-                   struct projected *did, struct why *why)
+                   struct projected *did, struct failure *failure)
 {
     vec3 *was = did ? malloc(((size_t)p->n + 1) * sizeof *was) : NULL;
     struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
     struct projected_contact *part = malloc(((size_t)s->n + 1) * sizeof *part);
     bool room =
-        part && o.d && (was || !did) && !freedoms_init(&o.freedoms, p, p->cell.edge, false, why);
+        part && o.d && (was || !did) && !freedoms_init(&o.freedoms, p, p->cell.edge, false, failure);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
     if (!room) share = NULL; // the caller ends the others, who wait
     bool more = room && parts_make(p, s, &o, part);
@@ -263,5 +263,5 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     if (moves && did) *did = projected_from(was, p, share ? share->own : NULL);
     free(was), free(part), free(o.d), free(o.z);
     freedoms_free(&o.freedoms);
-    return room ? 0 : why_set(why, EX_SOFTWARE, "no memory to move the bodies apart");
+    return room ? 0 : failure_set(failure, EX_SOFTWARE, "no memory to move the bodies apart");
 }

@@ -48,10 +48,10 @@ struct project_share {
     bool (*after_sweep)(void *with, struct displaced *d, bool more);
 };
 int project_shared(struct packing *p, const struct contacts *s, const struct project_share *share,
-                   struct projected *did, struct why *why);
+                   struct projected *did, struct failure *failure);
 
 /* The bodies after their step by these contacts; did, or NULL: what that has done. Returns 0 or EX_SOFTWARE. */
 int project_apart(struct packing *p, const struct contacts *s, struct projected *did,
-                  struct why *why);
+                  struct failure *failure);
 
 #endif

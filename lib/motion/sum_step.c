@@ -23,13 +23,13 @@ static void sum_step_add(struct face_sums *to, const struct packing *p, const st
 }
 
 int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
-             struct why *why)
+             struct failure *failure)
 {
     if (!p->sums.n) return 0;
     if (!p->sums.faces) {
         if (!(p->sums.faces = calloc(1, sizeof *p->sums.faces)))
-            return why_set(why, EX_SOFTWARE, "no memory for the sums");
-        if (face_of_init(p->sums.faces, p, true, why)) return why->status;
+            return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
+        if (face_of_init(p->sums.faces, p, true, failure)) return failure->status;
     }
     const struct wall_faces *f = p->sums.faces;
     for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++) { // boundaries come first

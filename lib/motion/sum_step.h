@@ -7,6 +7,6 @@
 /* In the step that begins where the packing is, by the reactions of its contacts, whose sums are given, too. Nothing
    where no sums are kept. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
-             struct why *why);
+             struct failure *failure);
 
 #endif

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int assembly_short_of_memory(struct why *why)
+static int assembly_short_of_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "out of memory for an FCLIB problem");
+    return failure_set(failure, EX_SOFTWARE, "out of memory for an FCLIB problem");
 }
 
 void assembly_free(struct assembly *A)
@@ -117,7 +117,7 @@ static bool assembly_vectors(struct assembly *A)
     return assembly_add_freedoms(A);
 }
 
-int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
+int assembly_init(struct assembly *A, const struct problem *p, struct failure *failure)
 {
     *A = (struct assembly){ .p = p };
     size_t n = (size_t)p->n, nd = n * (size_t)p->d;
@@ -138,7 +138,7 @@ int assembly_init(struct assembly *A, const struct problem *p, struct why *why)
     }
     good = good && lists_init(&A->of, p->bodies, 2 * p->n, A->end) && list_freedoms(A) &&
            assembly_vectors(A);
-    return good ? 0 : assembly_short_of_memory(why);
+    return good ? 0 : assembly_short_of_memory(failure);
 }
 
 /* J: u_c = J (v, w), or J (v, y) of levers, for the body at this end of the contact, as in bundle_velocity() */
@@ -263,18 +263,18 @@ static void fill_W(const struct assembly *A, struct stored *W, int64_t *near)
     }
 }
 
-int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
+int assembly_W(const struct assembly *A, struct stored *W, struct failure *failure)
 {
     int64_t n = A->p->n, d = A->p->d, blocks = 0;
     *W = (struct stored){ 0 };
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
-    if (!near) return assembly_short_of_memory(why);
+    if (!near) return assembly_short_of_memory(failure);
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, ALL, near);
     int e = 0;
     if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
-        e = why_set(why, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
+        e = failure_set(failure, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
     else if (!stored_init(W, n * d, n * d, -2, blocks * d * d))
-        e = assembly_short_of_memory(why);
+        e = assembly_short_of_memory(failure);
     else
         fill_W(A, W, near);
     free(near);
@@ -282,14 +282,14 @@ int assembly_W(const struct assembly *A, struct stored *W, struct why *why)
 }
 
 /* J m^-1/2 of the freedoms that all contacts have in common */
-static int assembly_common(const struct assembly *A, struct delassus *W, struct why *why)
+static int assembly_common(const struct assembly *A, struct delassus *W, struct failure *failure)
 {
     const struct couplings *y = A->p->coupling;
     int32_t columns = 0, walls = 0; // the walls' come first
     for (int32_t k = 0; y && k < y->freedoms.n; k++)
         *(freedom_common(&y->freedoms.f[k]) ? &columns : &walls) += 1;
     if (!columns) return 0;
-    if (delassus_alloc_common(W, columns, why)) return why->status;
+    if (delassus_alloc_common(W, columns, failure)) return failure->status;
     for (int64_t i = 0; i < y->n; i++) {
         const struct coupling *of = &y->of[i];
         if (!freedom_common(&y->freedoms.f[of->freedom])) continue;
@@ -300,14 +300,14 @@ static int assembly_common(const struct assembly *A, struct delassus *W, struct 
     return 0;
 }
 
-int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why)
+int assembly_blocks(const struct assembly *A, struct delassus *W, struct failure *failure)
 {
     int d = A->p->d;
     int64_t n = A->p->n, blocks = 0;
     int64_t *near = malloc((size_t)(n + 1) * sizeof *near);
-    if (!near) return assembly_short_of_memory(why);
+    if (!near) return assembly_short_of_memory(failure);
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, NOT_COMMON, near);
-    if (!delassus_alloc(W, d, n, blocks, why) && !assembly_common(A, W, why)) {
+    if (!delassus_alloc(W, d, n, blocks, failure) && !assembly_common(A, W, failure)) {
         blocks = 0;
         for (int64_t c = 0; c < n; c++) {
             W->mu[c] = assembly_bundle(A, c)->mu[slot_lane(A->slot[c])];
@@ -328,7 +328,7 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *wh
         }
     }
     free(near);
-    return why->status;
+    return failure->status;
 }
 
 /* The unknowns of a body are dof[0 .. dofs-1] of its (v, w). */
@@ -413,15 +413,15 @@ static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
 }
 
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
-                struct why *why)
+                struct failure *failure)
 {
     int64_t nd = A->p->n * A->p->d, couplings = A->p->coupling ? A->p->coupling->n : 0;
     *M = *H = (struct stored){ 0 }, *f = NULL;
     if (A->p->bodies > INT32_MAX / 6 - freedoms_of(A) || nd > (INT32_MAX - 3 * couplings) / 12)
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "/fclib_global/H: too large for the 32-bit indices of FCLIB");
     int32_t *first = malloc((size_t)(A->p->bodies + freedoms_of(A) + 1) * sizeof *first);
-    if (!first) return assembly_short_of_memory(why);
+    if (!first) return assembly_short_of_memory(failure);
     int64_t nv = assembly_unknowns(A, first);
     *f = malloc((size_t)(nv + 1) * sizeof **f);
     bool good =
@@ -431,5 +431,5 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
         fill_H(A, first, H);
     }
     free(first);
-    return good ? 0 : assembly_short_of_memory(why);
+    return good ? 0 : assembly_short_of_memory(failure);
 }

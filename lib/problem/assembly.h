@@ -34,15 +34,15 @@ struct assembly {
 
 /* All return 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for FCLIB's 32-bit
    indices. What they fill is to be freed in any case. */
-int assembly_init(struct assembly *A, const struct problem *p, struct why *why);
+int assembly_init(struct assembly *A, const struct problem *p, struct failure *failure);
 /* W by rows */
-int assembly_W(const struct assembly *A, struct stored *W, struct why *why);
+int assembly_W(const struct assembly *A, struct stored *W, struct failure *failure);
 /* W block by block, with q, mu and r = 0, and what all contacts have in common in J; nothing to free where it
    fails */
-int assembly_blocks(const struct assembly *A, struct delassus *W, struct why *why);
+int assembly_blocks(const struct assembly *A, struct delassus *W, struct failure *failure);
 /* M and H by columns, and f[M->n] */
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
-                struct why *);
+                struct failure *);
 void assembly_free(struct assembly *A);
 
 #endif

@@ -29,11 +29,11 @@ static int mass_splitting_numbers(const struct problem *p, int64_t slot, double 
 }
 
 /* A brake of n slots, in one piece: what is found of it is freed with the problem. */
-static struct brake *brake_new(int64_t n, int all)
+static struct mass_splitting *mass_splitting_new(int64_t n, int all)
 {
     size_t slots = (size_t)n * sizeof(int64_t), numbers = (size_t)n * (size_t)all * sizeof(double),
            places = (size_t)all * sizeof(double *), which = (size_t)all * sizeof(int);
-    struct brake *b = calloc(1, sizeof *b + slots + numbers + places + which);
+    struct mass_splitting *b = calloc(1, sizeof *b + slots + numbers + places + which);
     if (!b) return NULL;
     void *at = b + 1;
     b->slot = at, at = (char *)at + slots;
@@ -54,7 +54,7 @@ static uint64_t bits(double x)
 
 /* other[n][all], the numbers of the slots before they are held, becomes other[n][width], of those that have
    changed in any slot. */
-static void keep_changed(const struct problem *p, struct brake *b)
+static void keep_changed(const struct problem *p, struct mass_splitting *b)
 {
     for (int j = 0; j < b->all; j++) b->number[j] = 0;
     for (int64_t i = 0; i < b->n; i++) {
@@ -69,11 +69,11 @@ static void keep_changed(const struct problem *p, struct brake *b)
             b->other[i * b->width + j] = b->other[i * b->all + b->number[j]];
 }
 
-int brake_make(struct problem *p, const struct filling *f, const double *slower)
+int mass_splitting_make(struct problem *p, const struct filling *f, const double *slower)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < p->slots; i++) n += p->contact[i] >= 0 && slower[p->contact[i]] > 1;
-    struct brake *b = p->brake = brake_new(n, mass_splitting_numbers(p, 0, NULL));
+    struct mass_splitting *b = p->brake = mass_splitting_new(n, mass_splitting_numbers(p, 0, NULL));
     if (!b) return -1;
     for (int64_t i = 0; i < p->slots; i++) {
         if (p->contact[i] < 0 || !(slower[p->contact[i]] > 1)) continue;
@@ -87,9 +87,9 @@ int brake_make(struct problem *p, const struct filling *f, const double *slower)
     return 0;
 }
 
-void brake_hold(struct problem *p, bool hold)
+void mass_splitting_hold(struct problem *p, bool hold)
 {
-    struct brake *b = p->brake;
+    struct mass_splitting *b = p->brake;
     if (!b || b->held == hold) return;
     for (int64_t i = 0; i < b->n; i++) {
         mass_splitting_numbers(p, b->slot[i], b->at);

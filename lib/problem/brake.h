@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-struct brake {
+struct mass_splitting {
     int64_t n;
     int64_t *slot; /* [n] */
     bool held;     /* the slots have the numbers of lighter bodies, */
@@ -25,8 +25,8 @@ struct brake {
 
 /* p->brake of contacts with slower[contact] > 1; they are held. To be called when the slots are filled, as
    fill_slot() is. -1 when memory is short. */
-int brake_make(struct problem *p, const struct filling *f, const double *slower);
+int mass_splitting_make(struct problem *p, const struct filling *f, const double *slower);
 /* Whether the sweeps' numbers are to be in the slots, or the true ones; p->brake may be NULL. */
-void brake_hold(struct problem *p, bool hold);
+void mass_splitting_hold(struct problem *p, bool hold);
 
 #endif

@@ -7,9 +7,9 @@
 #include <string.h>
 #include <suitesparse/klu.h>
 
-static int condense_short_of_memory(struct why *why)
+static int condense_short_of_memory(struct failure *failure)
 {
-    why_set(why, EX_SOFTWARE, "out of memory for a global problem");
+    failure_set(failure, EX_SOFTWARE, "out of memory for a global problem");
     return EX_SOFTWARE;
 }
 
@@ -78,43 +78,43 @@ static bool factor_gather(struct factor *K, const struct global *P)
     return good;
 }
 
-static int factor_init(struct factor *K, const struct global *P, struct why *why)
+static int factor_init(struct factor *K, const struct global *P, struct failure *failure)
 {
     K->n = P->nv + P->nl;
     if (K->n == 0) return 0;
-    if (!factor_gather(K, P)) return condense_short_of_memory(why);
+    if (!factor_gather(K, P)) return condense_short_of_memory(failure);
     klu_l_common *c = &K->common;
     klu_l_defaults(c);
     K->symbolic = klu_l_analyze(K->n, K->p, K->i, c);
     if (K->symbolic) K->numeric = klu_l_factor(K->p, K->i, K->x, K->symbolic, c);
-    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE) return condense_short_of_memory(why);
+    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE) return condense_short_of_memory(failure);
     bool good = K->numeric && c->status == KLU_OK && klu_l_rcond(K->symbolic, K->numeric, c);
     if (!good || !(c->rcond >= 1e-16))
-        return why_set(why, EX_DATAERR, "/fclib_global/M: %s singular (rcond %.1g)",
+        return failure_set(failure, EX_DATAERR, "/fclib_global/M: %s singular (rcond %.1g)",
                        P->nl ? "with G it is" : "is", good ? c->rcond : 0);
     return 0;
 }
 
 /* x = K^-1 b */
-static int factor_solve(struct factor *K, const double *b, double *x, struct why *why)
+static int factor_solve(struct factor *K, const double *b, double *x, struct failure *failure)
 {
     if (K->n == 0) return 0;
     memcpy(x, b, (size_t)K->n * sizeof *x);
     bool good = klu_l_solve(K->symbolic, K->numeric, K->n, 1, x, &K->common);
     for (int64_t k = 0; good && k < K->n; k++) good = isfinite(x[k]);
-    return good ? 0 : why_set(why, EX_DATAERR, "/fclib_global/M: singular to working precision");
+    return good ? 0 : failure_set(failure, EX_DATAERR, "/fclib_global/M: singular to working precision");
 }
 
 /* (v0, l0) = K^-1 (f, -b) */
 static int condense_free(struct motion *U, const struct global *P, struct factor *K,
-                         struct why *why)
+                         struct failure *failure)
 {
     U->v0 = calloc((size_t)K->n + 1, sizeof *U->v0);
-    if (!U->v0) return condense_short_of_memory(why);
+    if (!U->v0) return condense_short_of_memory(failure);
     if (K->n == 0) return 0;
     for (int64_t k = 0; k < P->nv; k++) K->dense[k] = P->f[k];
     for (int64_t k = 0; k < P->nl; k++) K->dense[P->nv + k] = -P->b[k];
-    return factor_solve(K, K->dense, U->v0, why);
+    return factor_solve(K, K->dense, U->v0, failure);
 }
 
 static int32_t component_of(int32_t *component, int32_t i)
@@ -167,7 +167,7 @@ struct condense_columns {
  * d.
  */
 static int solve_columns(struct sparse *V, const struct sparse *H, struct factor *K,
-                         const struct condense_columns *s, struct why *why)
+                         const struct condense_columns *s, struct failure *failure)
 {
     const struct lists *of = &s->of;
     int32_t *component = s->component, *owner = component + K->n, *todo = s->todo;
@@ -179,23 +179,23 @@ static int solve_columns(struct sparse *V, const struct sparse *H, struct factor
         kept = 0;
         for (int64_t k = 0; k < left; k++)
             if (!join_columns(H, of, todo[k], component, owner, K->dense)) todo[kept++] = todo[k];
-        if (factor_solve(K, K->dense, y, why)) return why->status;
+        if (factor_solve(K, K->dense, y, failure)) return failure->status;
         for (int64_t i = 0; i < K->n; i++)
             if (owner[component[i]] >= 0 && y[i] != 0 &&
                 !sparse_add(V, i, owner[component[i]], y[i]))
-                return condense_short_of_memory(why);
+                return condense_short_of_memory(failure);
     }
     return 0;
 }
 
 static int condense_columns(struct motion *U, const struct global *P, struct factor *K,
-                            struct why *why)
+                            struct failure *failure)
 {
     struct condense_columns s = { .component = calloc((size_t)(2 * K->n + 1), sizeof *s.component),
                          .todo = malloc((size_t)(P->H.n + 1) * sizeof *s.todo),
                          .y = malloc((size_t)(K->n + 1) * sizeof *s.y) };
     bool room = s.y && s.component && s.todo && lists_init(&s.of, P->H.n, P->H.count, P->H.col);
-    int e = room ? solve_columns(&U->V, &P->H, K, &s, why) : condense_short_of_memory(why);
+    int e = room ? solve_columns(&U->V, &P->H, K, &s, failure) : condense_short_of_memory(failure);
     lists_free(&s.of);
     free(s.todo), free(s.component), free(s.y);
     return e;
@@ -229,17 +229,17 @@ static bool condense_W(struct sparse *W, const struct sparse *H, const struct sp
     return good;
 }
 
-int condense(const struct global *P, struct motion *U, struct sparse *W, double *q, struct why *why)
+int condense(const struct global *P, struct motion *U, struct sparse *W, double *q, struct failure *failure)
 {
     struct factor K = { 0 };
     int64_t n = P->nv + P->nl, nd = P->H.n;
     *U = (struct motion){ .nv = P->nv, .nl = P->nl, .V = { .m = n, .n = nd } };
     *W = (struct sparse){ .m = nd, .n = nd };
-    int e = factor_init(&K, P, why);
-    if (!e) e = condense_free(U, P, &K, why);
-    if (!e) e = condense_columns(U, P, &K, why);
+    int e = factor_init(&K, P, failure);
+    if (!e) e = condense_free(U, P, &K, failure);
+    if (!e) e = condense_columns(U, P, &K, failure);
     factor_free(&K);
-    if (!e && !condense_W(W, &P->H, &U->V)) e = condense_short_of_memory(why);
+    if (!e && !condense_W(W, &P->H, &U->V)) e = condense_short_of_memory(failure);
     for (int64_t k = 0; !e && k < P->H.count; k++) q[P->H.col[k]] += P->H.x[k] * U->v0[P->H.row[k]];
     return e;
 }

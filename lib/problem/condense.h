@@ -35,7 +35,7 @@ struct motion {
  * or EX_SOFTWARE; motion and W are to be freed in any case.
  */
 int condense(const struct global *P, struct motion *U, struct sparse *W, double *q,
-             struct why *why);
+             struct failure *failure);
 
 /* v[nv + nl] = v0 + V r */
 void motion_of(const struct motion *U, const double *r, double *v);

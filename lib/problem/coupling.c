@@ -39,13 +39,13 @@ static bool coupling_add_contact(struct couplings *c, int64_t *room, const struc
 }
 
 int couplings_init(struct couplings *c, const struct packing *p, const struct contacts *s,
-                   struct why *why)
+                   struct failure *failure)
 {
     int64_t room = 0;
     *c = (struct couplings){ 0 };
     vec3 half[3];
     cell_predict(&p->cell, step_ahead(p), half);
-    if (freedoms_init(&c->freedoms, p, half, false, why)) return why->status;
+    if (freedoms_init(&c->freedoms, p, half, false, failure)) return failure->status;
     c->first = calloc((size_t)s->n + 1, sizeof *c->first);
     bool good = c->first != NULL;
     for (int64_t i = 0; good && i < s->n; i++) {
@@ -54,7 +54,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
     }
     if (good) return 0;
     couplings_free(c);
-    return why_set(why, EX_SOFTWARE, "no memory for the contacts of the loads");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the contacts of the loads");
 }
 
 double couplings_pairs(const struct couplings *c)

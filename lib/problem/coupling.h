@@ -30,7 +30,7 @@ struct couplings {
 
 /* Returns 0, or EX_SOFTWARE with nothing to free. */
 int couplings_init(struct couplings *c, const struct packing *p, const struct contacts *s,
-                   struct why *why);
+                   struct failure *failure);
 void couplings_free(struct couplings *c);
 
 /* How many pairs of contacts share a boundary's freedom, each contact with itself too; a pair counts for each

@@ -71,14 +71,14 @@ static int64_t count_blocks(const struct sparse *A, const int64_t *order, int d)
     return blocks;
 }
 
-static int delassus_no_memory(struct delassus *W, int64_t n, struct why *why)
+static int delassus_no_memory(struct delassus *W, int64_t n, struct failure *failure)
 {
     delassus_free(W);
-    why_set(why, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
+    failure_set(failure, EX_SOFTWARE, "out of memory for a problem of %lld contacts", (long long)n);
     return EX_SOFTWARE;
 }
 
-int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why)
+int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct failure *failure)
 {
     *W = (struct delassus){ .d = d, .n = n };
     W->first = calloc((size_t)(n + 1), sizeof *W->first);
@@ -89,29 +89,29 @@ int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct 
     W->mu = calloc((size_t)(n + 1), sizeof *W->mu);
     W->r = calloc((size_t)(n * d + 1), sizeof *W->r);
     bool room = W->first && W->col && W->block && W->diag && W->q && W->mu && W->r;
-    return room ? 0 : delassus_no_memory(W, n, why);
+    return room ? 0 : delassus_no_memory(W, n, failure);
 }
 
-int delassus_alloc_common(struct delassus *W, int common, struct why *why)
+int delassus_alloc_common(struct delassus *W, int common, struct failure *failure)
 {
     W->J = calloc((size_t)(W->n * W->d * common) + 1, sizeof *W->J);
-    if (!W->J) return delassus_no_memory(W, W->n, why);
+    if (!W->J) return delassus_no_memory(W, W->n, failure);
     W->common = common;
     return 0;
 }
 
-int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct why *why)
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct failure *failure)
 {
     const int64_t entries = A->count;
     *W = (struct delassus){ .d = d, .n = n };
     int64_t *tally = malloc((size_t)(n + 1) * sizeof *tally);
     int64_t *half = malloc((size_t)(entries + 1) * sizeof *half);
     int64_t *order = malloc((size_t)(entries + 1) * sizeof *order);
-    int e = tally && half && order ? 0 : delassus_no_memory(W, n, why);
+    int e = tally && half && order ? 0 : delassus_no_memory(W, n, failure);
     if (!e) { // by column, then stably by row
         sort_by_block(W, entries, A->col, NULL, half, tally);
         sort_by_block(W, entries, A->row, half, order, tally);
-        e = delassus_alloc(W, d, n, count_blocks(A, order, d), why);
+        e = delassus_alloc(W, d, n, count_blocks(A, order, d), failure);
     }
     if (!e) {
         const double none[9] = { 0 };
@@ -130,7 +130,7 @@ void delassus_free(struct delassus *W)
 }
 
 int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
-                  struct why *why)
+                  struct failure *failure)
 {
     int d = W->d, dd = d * d;
     size_t blocks = (size_t)W->first[W->n];
@@ -141,7 +141,7 @@ int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, c
     to->q = calloc((size_t)(d * rows) + 1, sizeof *to->q);
     if (!to->first || !to->col || !to->block || !to->q) {
         delassus_free(to);
-        return why_set(why, EX_SOFTWARE, "no memory for the blocks of W");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the blocks of W");
     }
     for (int64_t i = 0; i < rows; i++) {
         int64_t at = to->first[i + 1] = to->first[i], c = row[i];
@@ -172,16 +172,16 @@ static void subtract_common(struct delassus *W)
 }
 
 int delassus_subset(struct delassus *to, const struct delassus *W,
-                    const struct chosen_contacts *chosen, const double *r, const double *v,
-                    struct why *why)
+                    const struct selection_contacts *chosen, const double *r, const double *v,
+                    struct failure *failure)
 {
     const int64_t n = chosen->n;
     const int32_t *contact = chosen->contact, *of = chosen->of;
     int d = W->d, dd = d * d;
     int64_t blocks = 0;
     for (int64_t i = 0; i < n; i++) blocks += W->first[contact[i] + 1] - W->first[contact[i]];
-    if (delassus_alloc(to, d, n, blocks, why)) return why->status;
-    if (W->common && delassus_alloc_common(to, W->common, why)) return why->status;
+    if (delassus_alloc(to, d, n, blocks, failure)) return failure->status;
+    if (W->common && delassus_alloc_common(to, W->common, failure)) return failure->status;
     const int64_t row = d * W->common; // numbers of J of a contact
     for (int64_t i = 0; i < n && row; i++)
         memcpy(to->J + row * i, W->J + row * contact[i], (size_t)row * sizeof *to->J);

@@ -47,9 +47,9 @@ struct delassus {
 };
 
 /* Arrays for this many blocks, all zero. Returns 0, or EX_SOFTWARE with nothing to free. */
-int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct why *why);
+int delassus_alloc(struct delassus *W, int d, int64_t n, int64_t blocks, struct failure *failure);
 /* J with so many columns, all zero. Returns 0, or EX_SOFTWARE with all of W freed. */
-int delassus_alloc_common(struct delassus *W, int common, struct why *why);
+int delassus_alloc_common(struct delassus *W, int common, struct failure *failure);
 
 /* W_cc = B, d x d by columns; in the plane with the third row and column of law/local.h. */
 void delassus_set_diag(struct delassus *W, int64_t c, const double *B);
@@ -61,7 +61,7 @@ bool delassus_block_counts(int d, const double *B);
  * The blocks of A, an (n d) x (n d) matrix; those of zeros are left out. q, mu and r are 0. Returns 0, or EX_SOFTWARE
  * with nothing to free. The caller has checked the indices.
  */
-int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct why *why);
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct failure *failure);
 void delassus_free(struct delassus *W);
 
 /*
@@ -70,10 +70,10 @@ void delassus_free(struct delassus *W);
  * contacts. Returns 0, or EX_SOFTWARE with nothing to free.
  */
 int delassus_sort(struct delassus *to, const struct delassus *W, int64_t rows, const int32_t *row,
-                  struct why *);
+                  struct failure *);
 
 /* Some of W's contacts */
-struct chosen_contacts {
+struct selection_contacts {
     int64_t n;
     int32_t *contact; /* [n] ascending: contact i of them is contact[i] of W */
     int32_t *of;      /* [W->n] the inverse of contact[]; -1: not chosen */
@@ -85,8 +85,8 @@ struct chosen_contacts {
  * free.
  */
 int delassus_subset(struct delassus *to, const struct delassus *W,
-                    const struct chosen_contacts *chosen, const double *r, const double *v,
-                    struct why *why);
+                    const struct selection_contacts *chosen, const double *r, const double *v,
+                    struct failure *failure);
 
 /* The number of entries of W, in all of its blocks */
 static inline double delassus_entries(const struct delassus *W)

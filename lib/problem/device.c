@@ -17,35 +17,35 @@ static const struct device_kind *device_kind_named(const char *name, size_t n)
 }
 
 /* The kind of device, and its number; NULL and EX_USAGE where the name is none */
-static const struct device_kind *parse(const char *name, int *number, struct why *why)
+static const struct device_kind *parse(const char *name, int *number, struct failure *failure)
 {
     size_t n = strcspn(name, ":"), digits = name[n] ? strspn(name + n + 1, "0123456789") : 0;
     const struct device_kind *kind = device_kind_named(name, n);
     if (!kind || (name[n] && (!digits || digits > 3 || name[n + 1 + digits]))) {
-        why_set(why, EX_USAGE, "--device: '%s' is none of list, opencl, opencl:N", name);
+        failure_set(failure, EX_USAGE, "--device: '%s' is none of list, opencl, opencl:N", name);
         return NULL;
     }
     *number = name[n] ? atoi(name + n + 1) : 0;
     return kind;
 }
 
-int device_named(const char *name, struct why *why)
+int device_named(const char *name, struct failure *failure)
 {
     int number;
-    return parse(name, &number, why) ? 0 : why->status;
+    return parse(name, &number, failure) ? 0 : failure->status;
 }
 
-struct device *device_open(const char *name, struct why *why)
+struct device *device_open(const char *name, struct failure *failure)
 {
     int number;
-    const struct device_kind *kind = parse(name, &number, why);
-    return kind ? kind->open(number, why) : NULL;
+    const struct device_kind *kind = parse(name, &number, failure);
+    return kind ? kind->open(number, failure) : NULL;
 }
 
-int device_list(FILE *to, struct why *why)
+int device_list(FILE *to, struct failure *failure)
 {
     for (int k = 0; device_kinds[k]; k++)
-        if (device_kinds[k]->list(to, why)) return why->status;
+        if (device_kinds[k]->list(to, failure)) return failure->status;
     return 0;
 }
 
@@ -64,20 +64,20 @@ const char *device_declines(const struct problem *p)
     return p->slots > INT32_MAX ? "there are too many contacts" : NULL;
 }
 
-int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why)
+int device_hold(struct device *d, struct problem *p, enum method_id method, struct failure *failure)
 {
-    if (d->kind->hold(d, p, method, why)) return why->status;
+    if (d->kind->hold(d, p, method, failure)) return failure->status;
     p->device = d;
     d->problem = p, d->here = true, d->there = false, d->kept = 0;
     return 0;
 }
 
-int device_release(struct problem *p, struct why *why)
+int device_release(struct problem *p, struct failure *failure)
 {
     struct device *d = p->device;
     if (!d->here && !d->lost.status) d->kind->download(d, p, false);
     p->device = NULL, d->problem = NULL;
-    return d->lost.status ? why_set(why, d->lost.status, "%s", d->lost.text) : 0;
+    return d->lost.status ? failure_set(failure, d->lost.status, "%s", d->lost.text) : 0;
 }
 
 void device_home(struct problem *p, bool writes)

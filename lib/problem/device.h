@@ -34,7 +34,7 @@ enum {
 struct device {
     const struct device_kind *kind;
     char name[200];                 /* as the driver has it */
-    struct why lost;                /* status 0: it works */
+    struct failure lost;                /* status 0: it works */
     struct problem *problem;        /* whose iterate it has; NULL: none */
     bool here, there;               /* the iterate of the host is current; that of the device is */
     int kept;                       /* iterates that are kept */
@@ -46,12 +46,12 @@ struct device {
 struct device_kind {
     const char *name; /* as --device has it */
     /* One line for each device of the machine; EX_UNAVAILABLE where there are none */
-    int (*list)(FILE *to, struct why *why);
+    int (*list)(FILE *to, struct failure *failure);
     /* The device of this number; NULL and EX_UNAVAILABLE */
-    struct device *(*open)(int number, struct why *why);
+    struct device *(*open)(int number, struct failure *failure);
     void (*close)(struct device *d);
     /* Memory and kernels for a problem, and all but its iterate */
-    int (*hold)(struct device *d, struct problem *p, enum method_id method, struct why *why);
+    int (*hold)(struct device *d, struct problem *p, enum method_id method, struct failure *failure);
     /* The iterate to the device, and from it: reactions, u, W->r, and velocities of bodies if wanted */
     void (*upload)(struct device *d, const struct problem *p);
     void (*download)(struct device *d, struct problem *p, bool bodies);
@@ -72,20 +72,20 @@ struct device_kind {
 extern const struct device_kind device_opencl;
 
 /* Whether this names a device, there or not: "opencl" or "opencl:1", 0 by default; else EX_USAGE */
-int device_named(const char *name, struct why *why);
+int device_named(const char *name, struct failure *failure);
 /* The device of that number; NULL, and EX_USAGE or EX_UNAVAILABLE */
-struct device *device_open(const char *name, struct why *why);
+struct device *device_open(const char *name, struct failure *failure);
 /* The devices of all kinds, a line each; EX_UNAVAILABLE where there are none */
-int device_list(FILE *to, struct why *why);
+int device_list(FILE *to, struct failure *failure);
 void device_close(struct device *d); /* may be NULL */
 
 /* Why the CPU has to solve this problem, a literal; NULL: devices can */
 const char *device_declines(const struct problem *p);
 
 /* From now on p's iterate is on the device: p->device = d. Returns 0, or EX_UNAVAILABLE: then it is not. */
-int device_hold(struct device *d, struct problem *p, enum method_id method, struct why *why);
+int device_hold(struct device *d, struct problem *p, enum method_id method, struct failure *failure);
 /* The end of that: r, u and W->r are in the slots again. EX_UNAVAILABLE where the device was lost */
-int device_release(struct problem *p, struct why *why);
+int device_release(struct problem *p, struct failure *failure);
 /* The iterate is in the slots, and may be changed there if `writes`. Nothing without a device */
 void device_home(struct problem *p, bool writes);
 

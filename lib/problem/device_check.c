@@ -102,7 +102,7 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
     enum { ENTRIES = 9 * (3 * CHAIN - 2) };
     int32_t row[ENTRIES], col[ENTRIES];
     double x[ENTRIES], q[3 * CHAIN], mu[CHAIN];
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int n = 0;
     for (int c = 0; c < CHAIN; c++) {
         mu[c] = 0.6 + 0.5 * device_number(state);
@@ -121,10 +121,10 @@ static bool make_blocks(struct problem *p, struct delassus *W, bool full, double
             }
     }
     const struct sparse A = { .count = n, .row = row, .col = col, .x = x };
-    if (delassus_init(W, 3, CHAIN, &A, &why)) return false;
+    if (delassus_init(W, 3, CHAIN, &A, &failure)) return false;
     memcpy(W->q, q, sizeof q), memcpy(W->mu, mu, sizeof mu);
     const struct prepare_opt form = { .rho_factor = rho, .order = ORDER_COLOUR };
-    if (!problem_prepare_delassus(p, W, &form, &why)) return true;
+    if (!problem_prepare_delassus(p, W, &form, &failure)) return true;
     delassus_free(W);
     return false;
 }
@@ -210,7 +210,7 @@ static void on_device(struct problem *p, struct mixing m, struct result *out)
 
 /* Both, of a problem that is made; -1 when memory is short */
 static int device_compare(struct device *d, struct problem *p, enum method_id method, bool *same,
-                   struct why *why)
+                   struct failure *failure)
 {
     size_t vector = (size_t)p->slots * 3, bodies = (size_t)p->bodies * sizeof *p->body;
     double *room = lay_lines((1 + 2 * MIXING_DEPTH) * (int64_t)vector, sizeof *room);
@@ -225,9 +225,9 @@ static int device_compare(struct device *d, struct problem *p, enum method_id me
         if (p->body) memcpy(body, p->body, bodies);
         device_start(p, body), on_cpu(p, method, m, &out[0]);
         device_start(p, body);
-        if (!device_hold(d, p, method, why)) {
+        if (!device_hold(d, p, method, failure)) {
             on_device(p, m, &out[1]);
-            device_release(p, why);
+            device_release(p, failure);
             *same = out[0].n == out[1].n &&
                     !memcmp(out[0].x, out[1].x, (size_t)out[0].n * sizeof(double));
         }
@@ -237,7 +237,7 @@ static int device_compare(struct device *d, struct problem *p, enum method_id me
 }
 
 int device_check(struct device *d, const struct problem_kind *kind, enum method_id method,
-                 struct why *why)
+                 struct failure *failure)
 {
     int variant = !kind->given_by_W ? 0 : kind->full ? 1 : 2;
     uint64_t state = 1;
@@ -250,17 +250,17 @@ int device_check(struct device *d, const struct problem_kind *kind, enum method_
     bool made = variant ? make_blocks(&p, &W, kind->full, methods[method]->rho, &state)
                         : make_balls(&p, contact, group, &state);
     const struct device_account account = d->account; // not of a solve
-    if (!made || device_compare(d, &p, method, &same, why))
-        why_set(why, EX_SOFTWARE, "--device: no memory");
+    if (!made || device_compare(d, &p, method, &same, failure))
+        failure_set(failure, EX_SOFTWARE, "--device: no memory");
     d->account = account;
     if (made || !variant) problem_free(&p);
     if (made && variant) delassus_free(&W);
-    if (why->status) return why->status;
+    if (failure->status) return failure->status;
     d->checked[method] |= 1U << variant;
     if (same) return 0;
-    why_set(&d->lost, EX_UNAVAILABLE,
+    failure_set(&d->lost, EX_UNAVAILABLE,
             "--device %s: %s: its driver computes other bits than the CPU (%s, %s): take another "
             "driver, or leave --device out",
             d->kind->name, d->name, methods[method]->name, kind->name);
-    return why_set(why, d->lost.status, "%s", d->lost.text);
+    return failure_set(failure, d->lost.status, "%s", d->lost.text);
 }

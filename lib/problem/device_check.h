@@ -9,6 +9,6 @@
 
 /* EX_UNAVAILABLE where they differ, for problems of this kind and this method; once for each */
 int device_check(struct device *d, const struct problem_kind *kind, enum method_id method,
-                 struct why *why);
+                 struct failure *failure);
 
 #endif

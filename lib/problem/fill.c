@@ -98,7 +98,7 @@ static void set_rows(const struct slot_filling *f, double G[9][BUNDLE], int32_t 
     for (int j = 0; j < 3 && i >= 0; j++) {
         vec3 row = v3_cross(arm, e[j]);
         if (pack->dim == 2) row = j == 2 ? v3(0, 0, 0) : v3(0, 0, row.z);
-        if (pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
+        if (pack->mass[i] > 0) row = rotation_inverse_root(pack, i, half[i], row);
         G[3 * j][k] = row.x, G[3 * j + 1][k] = row.y, G[3 * j + 2][k] = row.z;
     }
 }
@@ -195,7 +195,7 @@ static void set_turning(double R[9][BUNDLE], int k, const struct packing *pack, 
     for (int j = 0; j < 3; j++) {
         vec3 row = e[j];
         if (pack->dim == 2) row = v3(0, 0, row.z);
-        if (i >= 0 && pack->mass[i] > 0) row = top_inverse_root(pack, i, half[i], row);
+        if (i >= 0 && pack->mass[i] > 0) row = rotation_inverse_root(pack, i, half[i], row);
         R[3 * j][k] = row.x, R[3 * j + 1][k] = row.y, R[3 * j + 2][k] = row.z;
     }
 }

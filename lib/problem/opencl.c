@@ -46,9 +46,9 @@ enum opencl_role {
     ROOM,
     MIXED,
     MIXED_SUM,
-    KEPT_R,
-    KEPT_U = KEPT_R + DEVICE_KEPT,
-    ROLES = KEPT_U + DEVICE_KEPT
+    FRAME_MEMORY_R,
+    FRAME_MEMORY_U = FRAME_MEMORY_R + DEVICE_KEPT,
+    ROLES = FRAME_MEMORY_U + DEVICE_KEPT
 };
 
 enum kernel_id {
@@ -117,9 +117,9 @@ struct opencl {
 /* Whether it works still; else why it does not */
 static bool good(struct opencl *o, int32_t error, const char *what)
 {
-    struct why *lost = &o->device.lost;
+    struct failure *lost = &o->device.lost;
     if (error && !lost->status)
-        why_set(lost, EX_UNAVAILABLE,
+        failure_set(lost, EX_UNAVAILABLE,
                 "--device opencl: %s: it has failed: %s: %s: start again, or leave --device out",
                 o->device.name, what, opencl_error(error));
     return !lost->status;
@@ -139,7 +139,7 @@ static void opencl_text_of(const struct opencl_api *api, void *device, void *pla
     api->clGetDeviceInfo(device, OCL_DEVICE_NAME, sizeof name - 1, name, NULL);
     api->clGetPlatformInfo(platform, OCL_PLATFORM_NAME, sizeof of - 1, of, NULL);
     snprintf(text, room, "%s (%s)", name, of);
-    why_plain(text);
+    failure_plain(text);
 }
 
 /* All devices, in the order of their platforms; returns their number */
@@ -166,19 +166,19 @@ static uint64_t opencl_number_of(const struct opencl_api *api, void *device, uin
     return x;
 }
 
-static int none(struct why *why)
+static int none(struct failure *failure)
 {
-    return why_set(why, EX_UNAVAILABLE,
+    return failure_set(failure, EX_UNAVAILABLE,
                    "--device opencl: no device has a driver here: install that of the GPU, or "
                    "leave --device out");
 }
 
-static int opencl_list(FILE *to, struct why *why)
+static int opencl_list(FILE *to, struct failure *failure)
 {
     void *device[DEVICES], *platform[DEVICES];
-    const struct opencl_api *api = opencl_api(why);
+    const struct opencl_api *api = opencl_api(failure);
     int n = api ? devices_of(api, device, platform) : 0;
-    if (!n) return none(why);
+    if (!n) return none(failure);
     for (int k = 0; k < n; k++) {
         char name[200];
         opencl_text_of(api, device[k], platform[k], name, sizeof name);
@@ -217,18 +217,18 @@ static void close_device(struct device *d)
 static bool opencl_begin(struct opencl *o)
 {
     const struct opencl_api *api = o->api;
-    struct why *why = &o->device.lost;
+    struct failure *failure = &o->device.lost;
     size_t team = 0;
     int32_t error = 0;
     if (!opencl_number_of(api, o->id, OCL_DEVICE_DOUBLE_FP_CONFIG)) {
-        why_set(why, EX_UNAVAILABLE,
+        failure_set(failure, EX_UNAVAILABLE,
                 "--device opencl: %s: no double precision (fp64): take another, --device list",
                 o->device.name);
         return false;
     }
     api->clGetDeviceInfo(o->id, OCL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof team, &team, NULL);
     if (team < TEAM) {
-        why_set(why, EX_UNAVAILABLE, "--device opencl: %s: work-groups of %d at most, not %d",
+        failure_set(failure, EX_UNAVAILABLE, "--device opencl: %s: work-groups of %d at most, not %d",
                 o->device.name, (int)team, TEAM);
         return false;
     }
@@ -240,27 +240,27 @@ static bool opencl_begin(struct opencl *o)
     return good(o, error, "no queue");
 }
 
-static struct device *opencl_open_device(int number, struct why *why)
+static struct device *opencl_open_device(int number, struct failure *failure)
 {
     void *device[DEVICES], *platform[DEVICES];
-    const struct opencl_api *api = opencl_api(why);
+    const struct opencl_api *api = opencl_api(failure);
     if (!api) return NULL;
     int n = devices_of(api, device, platform);
-    if (!n) return none(why), NULL;
+    if (!n) return none(failure), NULL;
     if (number >= n) {
-        why_set(why, EX_UNAVAILABLE,
+        failure_set(failure, EX_UNAVAILABLE,
                 "--device opencl:%d: there are %d, from opencl:0 on: --device list", number, n);
         return NULL;
     }
     struct opencl *o = calloc(1, sizeof *o);
     if (!o || !(o->stage = malloc(STAGE * sizeof(struct bundle)))) {
         free(o);
-        return why_set(why, EX_SOFTWARE, "--device opencl: no memory"), NULL;
+        return failure_set(failure, EX_SOFTWARE, "--device opencl: no memory"), NULL;
     }
     o->device.kind = &device_opencl, o->api = api, o->id = device[number];
     opencl_text_of(api, device[number], platform[number], o->device.name, sizeof o->device.name);
     if (opencl_begin(o)) return &o->device;
-    why_set(why, o->device.lost.status, "%s", o->device.lost.text);
+    failure_set(failure, o->device.lost.status, "%s", o->device.lost.text);
     close_device(&o->device);
     return NULL;
 }
@@ -274,7 +274,7 @@ static void report_build(struct opencl *o, void *program, int32_t error)
     char *log = calloc(n + 1, 1), *line = log ? log : "";
     if (log) o->api->clGetProgramBuildInfo(program, o->id, OCL_PROGRAM_BUILD_LOG, n, log, NULL);
     line += strspn(line, " \t\r\n");
-    why_set(&o->device.lost, EX_UNAVAILABLE,
+    failure_set(&o->device.lost, EX_UNAVAILABLE,
             "--device opencl: %s: its driver does not compile the kernels: %s: %.*s: take another "
             "driver, or leave --device out",
             o->device.name, opencl_error(error), (int)strcspn(line, "\n") % 150, line);
@@ -380,7 +380,7 @@ static bool need(struct opencl *o, enum opencl_role role, size_t size)
     size_t all = size;
     for (int k = 0; k < ROLES; k++) all += o->buffer[k].size;
     if (all > o->memory || size > o->largest) {
-        why_set(&o->device.lost, EX_UNAVAILABLE,
+        failure_set(&o->device.lost, EX_UNAVAILABLE,
                 "--device opencl: %s: needs %.3g GB, and %.3g GB of it in one piece: it has %.3g "
                 "and %.3g: leave --device out",
                 o->device.name, GB * (double)all, GB * (double)size, GB * (double)o->memory,
@@ -553,7 +553,7 @@ static int64_t largest_level(const struct opencl *o)
     return most;
 }
 
-static int hold(struct device *d, struct problem *p, enum method_id method, struct why *why)
+static int hold(struct device *d, struct problem *p, enum method_id method, struct failure *failure)
 {
     struct opencl *o = (struct opencl *)d;
     const size_t bundles = (size_t)p->bundles;
@@ -581,8 +581,8 @@ static int hold(struct device *d, struct problem *p, enum method_id method, stru
     if (room)
         need(o, QUESTION, (size_t)(p->kind.full ? largest_level(o) : 1) * sizeof(struct question));
     opencl_give(o, QUESTIONS, &zero, sizeof zero);
-    if (!room) return why_set(why, EX_SOFTWARE, "--device opencl: no memory");
-    return d->lost.status ? why_set(why, d->lost.status, "%s", d->lost.text) : 0;
+    if (!room) return failure_set(failure, EX_SOFTWARE, "--device opencl: no memory");
+    return d->lost.status ? failure_set(failure, d->lost.status, "%s", d->lost.text) : 0;
 }
 
 static void upload(struct device *d, const struct problem *p)
@@ -746,7 +746,7 @@ static void opencl_keep(struct device *d, const struct problem *p, int place, bo
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    enum opencl_role r = (enum opencl_role)(KEPT_R + place), v = (enum opencl_role)(KEPT_U + place);
+    enum opencl_role r = (enum opencl_role)(FRAME_MEMORY_R + place), v = (enum opencl_role)(FRAME_MEMORY_U + place);
     if (need(o, r, size)) opencl_copy(o, R, r, size);
     if (u && need(o, v, size)) opencl_copy(o, U, v, size);
 }
@@ -755,8 +755,8 @@ static void opencl_restore(struct device *d, const struct problem *p, int place,
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    opencl_copy(o, (enum opencl_role)(KEPT_R + place), R, size);
-    if (u) opencl_copy(o, (enum opencl_role)(KEPT_U + place), U, size);
+    opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_R + place), R, size);
+    if (u) opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_U + place), U, size);
     if (p->kind.given_by_W) {
         SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d), opencl_whole(p->slots));
         launch(o, SCATTER, p->slots);

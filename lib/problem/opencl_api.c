@@ -14,11 +14,11 @@ static struct opencl_api opencl_calls;
 static bool opencl_open;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 
-static void open_loader(struct why *why)
+static void open_loader(struct failure *failure)
 {
     void *opened = dlopen(LOADER, RTLD_NOW | RTLD_LOCAL);
     if (!opened) {
-        why_set(why, EX_UNAVAILABLE,
+        failure_set(failure, EX_UNAVAILABLE,
                 "--device opencl: no OpenCL here, %s: install ocl-icd-libopencl1 and the driver of "
                 "the GPU, or leave --device out",
                 dlerror());
@@ -28,7 +28,7 @@ static void open_loader(struct why *why)
     {                                                                                              \
         void *at = dlsym(opened, #name);                                                           \
         if (!at) {                                                                                 \
-            why_set(why, EX_UNAVAILABLE, "--device opencl: %s has no %s: it is no OpenCL 1.2",     \
+            failure_set(failure, EX_UNAVAILABLE, "--device opencl: %s has no %s: it is no OpenCL 1.2",     \
                     LOADER, #name);                                                                \
             dlclose(opened);                                                                       \
             return;                                                                                \
@@ -39,10 +39,10 @@ static void open_loader(struct why *why)
     opencl_open = true;
 }
 
-const struct opencl_api *opencl_api(struct why *why)
+const struct opencl_api *opencl_api(struct failure *failure)
 {
     pthread_mutex_lock(&lock);
-    if (!opencl_open) open_loader(why);
+    if (!opencl_open) open_loader(failure);
     bool there = opencl_open;
     pthread_mutex_unlock(&lock);
     return there ? &opencl_calls : NULL;

@@ -79,7 +79,7 @@ struct opencl_api {
 };
 
 /* The calls, of the loader that is opened at the first time; NULL and EX_UNAVAILABLE where there is none */
-const struct opencl_api *opencl_api(struct why *why);
+const struct opencl_api *opencl_api(struct failure *failure);
 /* "CL_OUT_OF_RESOURCES (-5)" of an error; for messages, until the next call */
 const char *opencl_error(int32_t error);
 

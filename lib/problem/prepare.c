@@ -11,24 +11,24 @@
 
 /* Whether the blocks that freedoms couple fit into the machine, W and its rows in the sweep's
    order */
-static int prepare_check_memory(const struct problem *p, struct why *why)
+static int prepare_check_memory(const struct problem *p, struct failure *failure)
 {
     double blocks = couplings_pairs(p->coupling), size = 8.0 * p->d * p->d + 4;
     double need = 2 * blocks * size;
     double have = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (need <= have) return 0;
-    return why_set(why, EX_SOFTWARE,
+    return failure_set(failure, EX_SOFTWARE,
                    "the loads couple %.0f pairs of contacts: needs %.3g GB, the machine has %.3g",
                    blocks, need / GB, have / GB);
 }
 
 /* W of the bodies and the freedoms */
-static int assemble_free(const struct problem *bodies, struct delassus *W, struct why *why)
+static int assemble_free(const struct problem *bodies, struct delassus *W, struct failure *failure)
 {
     struct assembly A = { 0 };
-    if (prepare_check_memory(bodies, why)) return why->status;
-    int e = assembly_init(&A, bodies, why);
-    if (!e) e = assembly_blocks(&A, W, why);
+    if (prepare_check_memory(bodies, failure)) return failure->status;
+    int e = assembly_init(&A, bodies, failure);
+    if (!e) e = assembly_blocks(&A, W, failure);
     assembly_free(&A);
     return e;
 }
@@ -44,11 +44,11 @@ static void besides(const struct problem *bodies, int64_t i, const double u[3], 
 
 /* W, with the pushes of the reactions found; NULL and why where it fails */
 static struct delassus *prepare_assemble(const struct problem *bodies, const struct contacts *s,
-                                 struct why *why)
+                                 struct failure *failure)
 {
     struct delassus *W = calloc(1, sizeof *W);
-    if (!W) return why_set(why, EX_SOFTWARE, "no memory for the contact problem"), NULL;
-    int e = bodies->kind.extra ? bonded_blocks(bodies, W, why) : assemble_free(bodies, W, why);
+    if (!W) return failure_set(failure, EX_SOFTWARE, "no memory for the contact problem"), NULL;
+    int e = bodies->kind.extra ? bonded_blocks(bodies, W, failure) : assemble_free(bodies, W, failure);
     if (e) return free(W), NULL;
     for (int64_t i = 0; s->found && i < bodies->slots; i++) {
         int64_t c = bodies->contact[i];
@@ -117,35 +117,35 @@ static void describe(struct problem *p, const struct problem *bodies, const stru
 }
 
 static int prepare_by_W(struct problem *p, const struct packing *pack, const struct contacts *s,
-                        const struct prepare_opt *o, struct why *why)
+                        const struct prepare_opt *o, struct failure *failure)
 {
     struct problem bodies;
     struct prepare_opt unordered = *o;
     unordered.order = ORDER_NATURAL, unordered.kept = NULL;
     struct contacts unsolved = *s; // only W and q are wanted of the bodies
     unsolved.found = NULL;
-    if (problem_prepare(&bodies, pack, &unsolved, &unordered, why)) return why->status;
+    if (problem_prepare(&bodies, pack, &unsolved, &unordered, failure)) return failure->status;
     if (bodies.kind.rolls) {
         problem_free(&bodies);
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "rolling friction where loads push contacts, or by another "
                        "solver than auto, anderson and nlgs: not known");
     }
-    struct delassus *W = prepare_assemble(&bodies, s, why);
-    if (W && !problem_prepare_delassus(p, W, o, why)) {
+    struct delassus *W = prepare_assemble(&bodies, s, failure);
+    if (W && !problem_prepare_delassus(p, W, o, failure)) {
         p->own = W;
         if (copy_ties(p, &bodies)) {
             describe(p, &bodies, s);
         } else {
             problem_free(p);
-            why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+            failure_set(failure, EX_SOFTWARE, "no memory for the contact problem");
         }
     } else if (W) {
         delassus_free(W);
         free(W);
     }
     problem_free(&bodies);
-    return why->status;
+    return failure->status;
 }
 
 static bool bonded(const struct contacts *s)
@@ -156,14 +156,14 @@ static bool bonded(const struct contacts *s)
 }
 
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, const struct prepare_opt *o, struct why *why)
+                    bool sweeps, const struct prepare_opt *o, struct failure *failure)
 {
     bool by_W = !sweeps && bonded(s);
     if (!by_W && freedoms_in(pack)) {
         struct couplings touched;
-        if (couplings_init(&touched, pack, s, why)) return why->status;
+        if (couplings_init(&touched, pack, s, failure)) return failure->status;
         by_W = touched.n > 0;
         couplings_free(&touched);
     }
-    return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, o, why);
+    return (by_W ? prepare_by_W : problem_prepare)(p, pack, s, o, failure);
 }

@@ -20,6 +20,6 @@
    [problem/bonded.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger than the memory of
    the machine. */
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, const struct prepare_opt *o, struct why *why);
+                    bool sweeps, const struct prepare_opt *o, struct failure *failure);
 
 #endif

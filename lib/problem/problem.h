@@ -34,7 +34,7 @@ enum {
 };
 
 struct exchange;
-struct brake;
+struct mass_splitting;
 struct device;
 struct plan;
 
@@ -63,7 +63,7 @@ struct problem {
         *exchange; /* borrowed: the other processes that have a part of it; NULL: none */
     struct device
         *device;         /* borrowed: it has the iterate [problem/device.h]; NULL: the slots have */
-    struct brake *brake; /* slots that the sweeps have to solve by shorter steps; NULL: none */
+    struct mass_splitting *brake; /* slots that the sweeps have to solve by shorter steps; NULL: none */
     int64_t bodies;      /* of body[]; 0: given by W */
     struct body *body;   /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
@@ -115,10 +115,10 @@ struct prepare_opt {
  * EX_SOFTWARE, or EX_DATAERR where there are too many bodies, with nothing to free.
  */
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    const struct prepare_opt *o, struct why *why);
+                    const struct prepare_opt *o, struct failure *failure);
 /* The same for a problem given by W, which it borrows; r from W->r. It is whole, and has a plan of its own. */
 int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct prepare_opt *o,
-                             struct why *why);
+                             struct failure *failure);
 void problem_free(struct problem *p);
 
 /* What of an iterate is beyond r: z and m of a slot's contact */

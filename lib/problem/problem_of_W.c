@@ -16,7 +16,7 @@ static bool like_balls(const double D[9])
 }
 
 int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct prepare_opt *o,
-                             struct why *why)
+                             struct failure *failure)
 {
     *p = (struct problem){ .d = W->d, .n = W->n, .W = W, .dt = 1, .scale_v = 1, .scale_r = 1 };
     bool full = W->common > 0;
@@ -24,9 +24,9 @@ int problem_prepare_delassus(struct problem *p, struct delassus *W, const struct
     p->kind = full ? kind_BLOCKS : kind_DIAGONALS;
     p->plan = plan_of_blocks(o->order, W);
     bool room = p->plan && lay_plan(p, p->plan) && lay_bundles(p);
-    if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, why)) {
+    if (!room || delassus_sort(&p->sorted, W, p->slots, p->contact, failure)) {
         problem_free(p);
-        return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the contact problem");
     }
     delassus_begin(W);
     double trace = 0, speeds = 0;

@@ -17,10 +17,10 @@ enum {
     PER_THREAD = 4096 /* bodies, contacts or slots that are worth a thread: 100 us of work */
 };
 
-static int problem_of_bodies_no_memory(struct problem *p, struct why *why)
+static int problem_of_bodies_no_memory(struct problem *p, struct failure *failure)
 {
     problem_free(p);
-    return why_set(why, EX_SOFTWARE, "no memory for the contact problem");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the contact problem");
 }
 
 /* Sets bodies first .. end-1, with their velocities before the step. */
@@ -45,7 +45,7 @@ static vec3 torque_gain(const struct problem *p, int64_t i)
     vec3 torque = pack->outside.torque ? pack->outside.torque[i] : v3(0, 0, 0);
     if (pack->pulls.n) torque = v3_add(torque, packing_pull(pack, i, pack->t + pack->dt / 2, true));
     vec3 moment = v3_scale(pack->dt, torque);
-    return p->spin ? top_inverse_root(pack, i, top_predict(pack, i), moment)
+    return p->spin ? rotation_inverse_root(pack, i, rotation_predict(pack, i), moment)
                    : v3_scale(1 / pack->inertia[i], moment);
 }
 
@@ -107,8 +107,8 @@ static bool find_spins(struct problem *p, const struct packing *pack, quat **hal
     for (int64_t i = 0; i < pack->n; i++) {
         p->spin[i] = pack->w[i];
         if (!(pack->mass[i] > 0)) continue;
-        (*half)[i] = top_is(pack, i) ? top_predict(pack, i) : pack->q[i];
-        p->spin[i] = top_root(pack, i, (*half)[i], top_predict_spin(pack, i, (*half)[i]));
+        (*half)[i] = rotation_is(pack, i) ? rotation_predict(pack, i) : pack->q[i];
+        p->spin[i] = rotation_root(pack, i, (*half)[i], rotation_predict_spin(pack, i, (*half)[i]));
     }
     return true;
 }
@@ -166,7 +166,7 @@ static double problem_of_bodies_fastest(void *arg, int64_t first, int64_t end)
 
 /* m/s: the speed of the fastest point of a body or wall, plus g dt. The velocities at contacts are
    differences of such speeds, and have their rounding. */
-static double top_speed(const struct packing *p)
+static double rotation_speed(const struct packing *p)
 {
     double most = team_most(team_size(), p->n, PER_THREAD, problem_of_bodies_fastest, (void *)p), images = 0;
     for (int32_t k = 0; k < p->walls; k++)
@@ -238,7 +238,7 @@ static double sum_of_slots(const struct problem *p, const double *x)
 }
 
 static int prepare_by_plan(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           const struct plan *plan, const struct prepare_opt *o, struct why *why)
+                           const struct plan *plan, const struct prepare_opt *o, struct failure *failure)
 {
     struct exchange *exchange = o->exchange;
     const struct lattice cell = lattice_of(pack);
@@ -249,7 +249,7 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     p->bodies = pack->n + 2 + plan->copies;
     p->exchange = exchange;
     if (exchange) p->n = exchange->contacts;
-    if (p->bodies > BODIES_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", BODIES_MAX);
+    if (p->bodies > BODIES_MAX) return failure_set(failure, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
     bool room = p->body && lay_plan(p, plan);
     bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
@@ -259,31 +259,31 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     if (rebounds) p->kind.arrays |= HAS_rebound;
     quat *half = NULL;
     room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
-    if (!room) return free(half), problem_of_bodies_no_memory(p, why);
+    if (!room) return free(half), problem_of_bodies_no_memory(p, failure);
     team_share(team_size(), pack->n, PER_THREAD, set_some, p);
     lay_seats(p, plan, s);
     if (!(p->held = malloc((size_t)(p->bodies - pack->n) * sizeof *p->held)))
-        return free(half), problem_of_bodies_no_memory(p, why);
+        return free(half), problem_of_bodies_no_memory(p, failure);
     memcpy(p->held, p->body + pack->n, (size_t)(p->bodies - pack->n) * sizeof *p->held);
     struct filling f = { p, s, &cell, o->alpha, o->rho_factor, half };
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, fill_bundles, &f);
-    room = !exchange || !exchange->slower || !brake_make(p, &f, exchange->slower);
+    room = !exchange || !exchange->slower || !mass_splitting_make(p, &f, exchange->slower);
     free(half);
-    if (!room) return problem_of_bodies_no_memory(p, why);
+    if (!room) return problem_of_bodies_no_memory(p, failure);
     if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return problem_of_bodies_no_memory(p, why);
-        if (couplings_init(p->coupling, pack, s, why)) return problem_free(p), why->status;
+        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return problem_of_bodies_no_memory(p, failure);
+        if (couplings_init(p->coupling, pack, s, failure)) return problem_free(p), failure->status;
     }
 
     double g = v3_norm(pack->g);
     p->fall = g * pack->dt;
     p->scale_v = (g > 0 ? g : 9.81) * pack->dt;
     p->scale_r = p->scale_v * (exchange ? exchange->mean_mass : packing_mean_mass(pack));
-    p->speed = top_speed(pack);
+    p->speed = rotation_speed(pack);
     if (exchange) p->speed = exchange->most(exchange, p->speed);
     problem_set_free_motion(p);
     struct measuring m = { p, malloc((size_t)(p->slots + 1) * sizeof *m.q2) };
-    if (!m.q2) return problem_of_bodies_no_memory(p, why);
+    if (!m.q2) return problem_of_bodies_no_memory(p, failure);
     team_share(team_size(), p->bundles, PER_THREAD / BUNDLE, measure_some, &m);
     p->norm_q = sqrt(sum_of_slots(p, m.q2));
     for (int64_t i = 0; i < p->slots; i++) {
@@ -303,7 +303,7 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
 }
 
 int problem_prepare(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    const struct prepare_opt *o, struct why *why)
+                    const struct prepare_opt *o, struct failure *failure)
 {
     const enum order order = o->schedule ? ORDER_COLOUR : o->order;
     struct plan *plan = o->kept ? *o->kept : NULL;
@@ -313,8 +313,8 @@ int problem_prepare(struct problem *p, const struct packing *pack, const struct 
     }
     if (o->kept) *o->kept = plan;
     *p = (struct problem){ 0 };
-    if (!plan) return problem_of_bodies_no_memory(p, why);
-    int e = prepare_by_plan(p, pack, s, plan, o, why);
+    if (!plan) return problem_of_bodies_no_memory(p, failure);
+    int e = prepare_by_plan(p, pack, s, plan, o, failure);
     if (o->kept) return e;
     if (e)
         plan_free(plan);

@@ -61,7 +61,7 @@ static void *bisection_begin(struct comm *t)
                                           { "IMBALANCE_TOL", "1.02" },  { "RCB_OUTPUT_LEVEL", "0" },
                                           { "REDUCE_DIMENSIONS", "0" }, { NULL, NULL } };
     struct bisection *y = comm_new(t, 1, sizeof *y);
-    y->comm = t, y->zz = territory_zoltan(t, set);
+    y->comm = t, y->zz = decomposition_zoltan(t, set);
     Zoltan_Set_Num_Obj_Fn(y->zz, bisection_count, y), Zoltan_Set_Obj_List_Fn(y->zz, bisection_list, y);
     Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
     return y;

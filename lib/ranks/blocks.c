@@ -117,7 +117,7 @@ static void blocks_begin_solve(struct exchange *s, struct problem *p)
 static void blocks_judging(struct exchange *s, struct problem *p, bool begins)
 {
     (void)s;
-    brake_hold(p, !begins);
+    mass_splitting_hold(p, !begins);
 }
 
 static void blocks_add(struct exchange *s, double *x, int n)
@@ -299,10 +299,10 @@ static void project_here(struct blocks *b, const struct contacts *s, const bool 
                          struct projected *did)
 {
     struct comm *t = b->part->comm;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct apart a = { b, letters(t, b->touched, 3) };
     const struct project_share share = { &a, own, b->slower, in_any, after_sweep };
-    if (project_shared(&b->part->p, s, &share, did, &why)) comm_fail(t, why.status, why.text);
+    if (project_shared(&b->part->p, s, &share, did, &failure)) comm_fail(t, failure.status, failure.text);
     letters_free(t, a.since);
     subdomain_refresh(b->part);
 }
@@ -322,9 +322,9 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
                     struct balance *told)
 {
     struct subdomain *y = b->part;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool *own = blocks_own_of(y);
-    if (balance_step(told, &y->p, s, sum, own, &why)) comm_fail(y->comm, why.status, why.text);
+    if (balance_step(told, &y->p, s, sum, own, &failure)) comm_fail(y->comm, failure.status, failure.text);
     free(own);
     blocks_add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }
@@ -343,7 +343,7 @@ static double **begun(const struct blocks *b, const vec3 *acts)
 
 void blocks_add_impulses(struct blocks *b, struct impulses *sum)
 {
-    const struct outside *o = &b->part->p.outside;
+    const struct external_force *o = &b->part->p.outside;
     double **from = begun(b, o->force);
     add_up(b, 3, impulse_of, sum, from);
     letters_free(b->part->comm, from), from = begun(b, o->torque);

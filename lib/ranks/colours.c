@@ -18,8 +18,8 @@ static struct colours *colours_of(struct exchange *s)
 static void colours_after_group(struct exchange *s, struct problem *p, int64_t group)
 {
     struct colours *c = colours_of(s);
-    if (group % PARTS == COPIES) wires_send(&c->wires, p, group / PARTS);
-    if (group % PARTS == QUIET) wires_wait(&c->wires, p, group / PARTS);
+    if (group % PARTS == COPIES) halo_send(&c->wires, p, group / PARTS);
+    if (group % PARTS == QUIET) halo_wait(&c->wires, p, group / PARTS);
 }
 
 static void colours_begin_solve(struct exchange *s, struct problem *p)
@@ -29,7 +29,7 @@ static void colours_begin_solve(struct exchange *s, struct problem *p)
 
 static void colours_settle(struct exchange *s, struct problem *p)
 {
-    wires_refresh(colours_of(s)->part, p);
+    halo_refresh(colours_of(s)->part, p);
 }
 
 static void colours_judging(struct exchange *s, struct problem *p, bool begins)
@@ -128,7 +128,7 @@ static void colours_lay_plan(struct colours *c, const struct comm *t, int64_t gr
 
 static int by_errand(const void *a, const void *b)
 {
-    const struct errand *x = a, *y = b;
+    const struct halo_item *x = a, *y = b;
     if (x->rank != y->rank) return x->rank < y->rank ? -1 : 1;
     if (x->group != y->group) return x->group < y->group ? -1 : 1;
     return x->body < y->body ? -1 : x->body > y->body;
@@ -140,7 +140,7 @@ void colours_begin(struct colours *c, struct subdomain *y, const struct contacts
     struct comm *t = y->comm;
     struct holders h;
     int64_t errands = 0, room = 0;
-    struct errand *errand = NULL;
+    struct halo_item *errand = NULL;
     int32_t *rank = comm_new(t, t->n, sizeof *rank);
     struct stop *stop = comm_new(t, s->n, sizeof *stop);
     *c = (struct colours){ .part = y };
@@ -168,7 +168,7 @@ void colours_begin(struct colours *c, struct subdomain *y, const struct contacts
                 if (!errand) comm_fail(t, EX_SOFTWARE, "no memory for the borders");
             }
             for (int m = 0; m < n; m++)
-                errand[errands++] = (struct errand){ verdict[i].group, rank[m], body[j] };
+                errand[errands++] = (struct halo_item){ verdict[i].group, rank[m], body[j] };
         }
         int in = !mine ? COPIES : tells ? 0 : QUIET;
         stop[i] = (struct stop){ PARTS * verdict[i].group + in, verdict[i].slot, i };
@@ -178,13 +178,13 @@ void colours_begin(struct colours *c, struct subdomain *y, const struct contacts
     colours_lay_plan(c, t, groups, s->n, stop);
     free(stop);
     if (errands) qsort(errand, (size_t)errands, sizeof *errand, by_errand);
-    wires_lay(&c->wires, y, groups, errands, errand);
+    halo_lay(&c->wires, y, groups, errands, errand);
     free(errand);
 }
 
 void colours_free(struct colours *c)
 {
-    wires_free(&c->wires);
+    halo_free(&c->wires);
     if (c->tallied) tally_free(&c->tally);
     free(c->slot), free(c->exchange.copies);
     schedule_free(&c->plan);

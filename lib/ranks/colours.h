@@ -23,7 +23,7 @@
 struct colours {
     struct exchange exchange; /* first: what solvers are given leads back here */
     struct subdomain *part;
-    struct wires wires;
+    struct halo wires;
     struct tally_order tally;
     bool tallied;  /* tally is made */
     int64_t *slot; /* [contacts here] in the order of all; -1: another counts it */

@@ -132,14 +132,14 @@ static bool all_see(const struct comm *t, const char *path)
 static void rows_check_bodies(const struct rows *r, const struct subdomain *y)
 {
     int64_t bad = INT64_MAX, least;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     for (int64_t i = 0; y && i < y->p.n && bad == INT64_MAX; i++) {
         struct packing one = packing_with_bodies(&y->p, &y->p, i, 1);
         if (y->owner[i] != y->comm->me) continue;
-        if (packing_check_bodies(&one, y->row[i], &why)) bad = y->row[i];
+        if (packing_check_bodies(&one, y->row[i], &failure)) bad = y->row[i];
     }
     MPI_Allreduce(&bad, &least, 1, MPI_INT64_T, MPI_MIN, r->comm->mpi);
-    if (bad == least && bad < INT64_MAX) comm_fail(r->comm, why.status, why.text);
+    if (bad == least && bad < INT64_MAX) comm_fail(r->comm, failure.status, failure.text);
     if (least < INT64_MAX) MPI_Barrier(r->comm->mpi);
 }
 
@@ -171,7 +171,7 @@ static struct target *spread_targets(struct comm *t, const struct files_wish *wi
 }
 
 int files_fill(const struct rows *r, const struct subdomain *y, const struct files_wish *wish,
-               struct why *why)
+               struct failure *failure)
 {
     struct comm *t = r->comm;
     struct haul h;
@@ -201,5 +201,5 @@ int files_fill(const struct rows *r, const struct subdomain *y, const struct fil
     if (ours >= 0) good &= H5Fclose(ours) >= 0;
     int mine = good, all;
     MPI_Allreduce(&mine, &all, 1, MPI_INT, MPI_MIN, t->mpi);
-    return all ? 0 : why_set(why, EX_IOERR, "bodies cannot be written (disk full?)");
+    return all ? 0 : failure_set(failure, EX_IOERR, "bodies cannot be written (disk full?)");
 }

@@ -20,7 +20,7 @@ struct files_wish {
 /* Collective. y NULL: the bodies lie in the rows. Returns 0, or at the first EX_IOERR; EX_DATAERR: what no reader
    accepts. */
 int files_fill(const struct rows *r, const struct subdomain *y, const struct files_wish *wish,
-               struct why *why);
+               struct failure *failure);
 /* Is libhdf5 the one that knows MPI? */
 bool files_parallel(void);
 

@@ -164,7 +164,7 @@ static void *hypergraph_begin(struct comm *t)
                                           { "SEED", "1" },
                                           { NULL, NULL } };
     struct hypergraph_cells *c = comm_new(t, 1, sizeof *c);
-    c->comm = t, c->zz = territory_zoltan(t, set);
+    c->comm = t, c->zz = decomposition_zoltan(t, set);
     Zoltan_Set_Num_Obj_Fn(c->zz, hypergraph_count, c), Zoltan_Set_Obj_List_Fn(c->zz, hypergraph_list, c);
     Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
     Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);

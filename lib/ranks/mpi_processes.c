@@ -64,16 +64,16 @@ static enum mpi_processes_word mpi_processes_next(enum mpi_processes_word w)
 
 static void mpi_processes_begin(enum mpi_processes_word w, const struct packing *p)
 {
-    struct territory *space = territory_new(&self.comm, options.cut);
+    struct decomposition *space = decomposition_new(&self.comm, options.cut);
     rank_step_begin(&self.step, &self.comm, space, p, w == BEGIN_ROWS ? &self.rows : NULL);
     self.begun = true;
 }
 
 static int mpi_processes_fill(hid_t file, const char *path, const struct unfilled *place, int places,
-                struct why *why)
+                struct failure *failure)
 {
     const struct files_wish wish = { file, path, place, places, getenv("NSD_GATHER") != NULL };
-    return files_fill(&self.rows, self.begun ? &self.step.part : NULL, &wish, why);
+    return files_fill(&self.rows, self.begun ? &self.step.part : NULL, &wish, failure);
 }
 
 /* ---- bodies that no process has all of ---- */
@@ -85,20 +85,20 @@ static bool wants(struct distributed *e, const struct packing *settings, int64_t
     return rank_step_scatters(settings, &o);
 }
 
-static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first, struct why *why)
+static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first, struct failure *failure)
 {
-    (void)why;
+    (void)failure;
     mpi_processes_next(TAKE);
     rows_take(&self.rows, &self.comm, block, first, e->n);
     return 0;
 }
 
 static int mpi_processes_give(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,
-                int places, struct why *why)
+                int places, struct failure *failure)
 {
     (void)e;
     mpi_processes_next(FILL);
-    return mpi_processes_fill(file, path, place, places, why);
+    return mpi_processes_fill(file, path, place, places, failure);
 }
 
 struct distributed *processes_take_bodies(bool contacts)
@@ -115,16 +115,16 @@ int processes_follow(void)
     struct packing none = { 0 };
     struct contacts s = { 0 };
     struct report rep = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     for (enum mpi_processes_word w; (w = mpi_processes_next(LEAVE)) != LEAVE;) {
         if (w == BEGIN || w == BEGIN_ROWS) mpi_processes_begin(w, &none);
         if (w == TAKE) rows_take(&self.rows, &self.comm, NULL, 0, 0);
-        if (w == FILL) mpi_processes_fill(-1, NULL, NULL, 0, &why); // the leader says what was wrong
+        if (w == FILL) mpi_processes_fill(-1, NULL, NULL, 0, &failure); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
         if (w == ACT) rank_step_act(&self.step, &none);
         if (w != STEP) continue;
         const struct step_opt o = options_step(self.step.part.p.dt, false);
-        rank_step_make(&self.step, &none, &s, &o, &rep, &why);
+        rank_step_make(&self.step, &none, &s, &o, &rep, &failure);
     }
     processes_leave();
     report_free(&rep);
@@ -132,7 +132,7 @@ int processes_follow(void)
 }
 
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
-                   const struct step_opt *o, struct why *why)
+                   const struct step_opt *o, struct failure *failure)
 {
     (void)m;
     if (!self.begun)
@@ -142,7 +142,7 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
     if (changes.acts) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
     mpi_processes_next(STEP);
-    return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, why);
+    return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, failure);
 }
 
 const char *processes_leave(void)

@@ -26,7 +26,7 @@ enum {
 /* Contacts of the rank that has most over the mean: from here on cuts are made anew. */
 #define IMBALANCE 1.1
 
-void rank_step_begin(struct rank_step *y, struct comm *t, struct territory *space,
+void rank_step_begin(struct rank_step *y, struct comm *t, struct decomposition *space,
                      const struct packing *whole, struct rows *rows)
 {
     int varies = packing_varies(whole);
@@ -59,9 +59,9 @@ void rank_step_free(struct rank_step *y)
     subdomain_free(&y->part);
 }
 
-static void rank_step_fail(const struct rank_step *y, const struct why *why)
+static void rank_step_fail(const struct rank_step *y, const struct failure *failure)
 {
-    comm_fail(y->part.comm, why->status, why->text);
+    comm_fail(y->part.comm, failure->status, failure->text);
 }
 
 /* Keeps the contacts for which keep[] is true, with all that is known of them. */
@@ -82,15 +82,15 @@ static void rank_step_sift(struct contacts *s, const bool *keep)
 static void find_contacts(struct rank_step *y, double gap, double reach, struct contacts *s)
 {
     struct subdomain *part = &y->part;
-    struct why why = { 0 };
-    double ahead = comm_most(part->comm, swift_reach(&part->p));
+    struct failure failure = { 0 };
+    double ahead = comm_most(part->comm, tunnelling_reach(&part->p));
     if (subdomain_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
-    if (detect_near(s, &part->p, reach, &y->near, &why)) rank_step_fail(y, &why);
+    if (detect_near(s, &part->p, reach, &y->near, &failure)) rank_step_fail(y, &failure);
     bool *keep = comm_new(part->comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_has(part, &s->c[i]);
     rank_step_sift(s, keep);
     free(keep);
-    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &why)) rank_step_fail(y, &why);
+    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &failure)) rank_step_fail(y, &failure);
 }
 
 /* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
@@ -162,7 +162,7 @@ struct rank_step_gathered {
 /* The first rank chooses by the laws which of all are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct rank_step *y, const struct packing *whole,
                           const struct rank_step_gathered *g, const struct step_opt *o, double reach,
-                          struct why *why)
+                          struct failure *failure)
 {
     struct contact_list *list = g->list;
     struct contacts *s = g->here, *all = g->all;
@@ -173,8 +173,8 @@ static int choose_by_laws(struct rank_step *y, const struct packing *whole,
                    *mine = comm_new(t, s->n, sizeof *mine);
     if (!t->me) {
         if (contacts_copy(&before, all))
-            return free(of), free(mine), why_set(why, EX_SOFTWARE, "no memory for the contacts");
-        if (detect_choose(all, whole, o->gap, reach, why)) return free(of), free(mine), why->status;
+            return free(of), free(mine), failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
+        if (detect_choose(all, whole, o->gap, reach, failure)) return free(of), free(mine), failure->status;
         rank_step_compare(t, &before, all, of, &added);
     }
     contact_list_tell(list, &y->part, s, of, mine);
@@ -202,12 +202,12 @@ struct ordered {
 /* Sets it, by the first. */
 static int order_all(const struct rank_step *y, const struct packing *whole,
                      const struct contacts *all, enum order order, struct ordered *to,
-                     struct why *why)
+                     struct failure *failure)
 {
     int64_t size[3];
     struct schedule plan = { 0 };
     if (!y->part.comm->me && schedule_bodies(&plan, order, all, whole))
-        return why_set(why, EX_SOFTWARE, "no memory for the order of the contacts");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the order of the contacts");
     size[0] = plan.groups, size[1] = 0, size[2] = plan.rest > 0;
     for (int64_t g = 0; g < plan.groups; g++) {
         int64_t first = plan.group[g], n = plan.group[g + 1] - first;
@@ -249,7 +249,7 @@ static void rank_step_solve(struct rank_step *y, struct problem *p, struct conta
 /* In the order of all; returns whether it is solved: else one process has to have all of it. */
 static bool solve_in_order(struct rank_step *y, const struct packing *whole,
                            const struct rank_step_gathered *g, const struct step_opt *o, struct report *rep,
-                           struct why *why)
+                           struct failure *failure)
 {
     const struct contact_list *list = g->list;
     struct contacts *s = g->here;
@@ -258,7 +258,7 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
     struct problem p;
     struct ordered order = { .of = comm_new(t, t->me ? 0 : list->n, sizeof *order.of) };
     struct verdict *mine = comm_new(t, s->n, sizeof *mine);
-    if (order_all(y, whole, g->all, o->order, &order, why)) rank_step_fail(y, why);
+    if (order_all(y, whole, g->all, o->order, &order, failure)) rank_step_fail(y, failure);
     contact_list_tell(list, &y->part, s, order.of, mine);
     free(order.of);
     colours_begin(&c, &y->part, s, mine, order.groups, order.bundles);
@@ -269,7 +269,7 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
                                       .rho_factor = o->solve.method->rho,
                                       .schedule = &c.plan,
                                       .exchange = &c.exchange };
-    if (problem_prepare(&p, &y->part.p, s, &form, why)) rank_step_fail(y, why);
+    if (problem_prepare(&p, &y->part.p, s, &form, failure)) rank_step_fail(y, failure);
     rank_step_solve(y, &p, s, o, rep);
     bool solved = !c.exchange.wants_whole;
     problem_free(&p);
@@ -281,7 +281,7 @@ static bool solve_in_order(struct rank_step *y, const struct packing *whole,
 static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct packing *whole,
                             struct contacts *s, const struct step_opt *o, struct report *rep)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct problem p;
     bool *keep = comm_new(y->part.comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_counts(&y->part, &s->c[i]);
@@ -293,7 +293,7 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
                                       .rho_factor = o->solve.method->rho,
                                       .schedule = &b->plan,
                                       .exchange = &b->exchange };
-    if (problem_prepare(&p, &y->part.p, s, &form, &why)) rank_step_fail(y, &why);
+    if (problem_prepare(&p, &y->part.p, s, &form, &failure)) rank_step_fail(y, &failure);
     rank_step_solve(y, &p, s, o, rep);
     problem_free(&p);
 }
@@ -335,18 +335,18 @@ static void detect_here(struct rank_step *y, const struct packing *whole, struct
 
 /* The contacts, and what they start from */
 static int rank_step_detect(struct rank_step *y, struct packing *whole, const struct rank_step_gathered *g,
-                  const struct step_opt *o, struct why *why)
+                  const struct step_opt *o, struct failure *failure)
 {
     struct contact_list *list = g->list;
     struct contacts *s = g->here, *all = g->all;
     struct comm *t = y->part.comm;
     double reach;
     if (!t->me) memory_set(&whole->memory, o->warm), packing_wrap(whole, NULL);
-    if (!t->me && touching_bond(whole, why)) return why->status;
+    if (!t->me && touching_bond(whole, failure)) return failure->status;
     detect_here(y, whole, s, o, &reach);
     contact_list_gather(list, &y->part, s, all);
-    int e = y->part.p.law ? choose_by_laws(y, whole, g, o, reach, why) : 0;
-    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), why);
+    int e = y->part.p.law ? choose_by_laws(y, whole, g, o, reach, failure) : 0;
+    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), failure);
     if (!e && (y->part.p.law || o->warm)) contact_list_tell_laws(list, &y->part, s, all);
     return e;
 }
@@ -375,14 +375,14 @@ struct by_first {
 };
 
 static int detect_by_first(struct step_makers *m, struct packing *whole, struct contacts *all,
-                           const struct step_opt *o, struct why *why)
+                           const struct step_opt *o, struct failure *failure)
 {
     struct by_first *f = (struct by_first *)m;
-    return rank_step_detect(f->y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, why);
+    return rank_step_detect(f->y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, failure);
 }
 
 static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
-                          const struct step_opt *o, struct report *rep, struct why *why)
+                          const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct by_first *f = (struct by_first *)m;
     struct rank_step *y = f->y;
@@ -392,18 +392,18 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
         solve_in_blocks(y, &b, whole, &f->here, o, rep), blocks_free(&b);
     else if (solved)
         solved =
-            solve_in_order(y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, rep, why);
+            solve_in_order(y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, rep, failure);
     if (solved) contact_list_found(&f->list, &y->part, &f->here, all);
     y->alone += !solved;
     if (m->helps) return 0;
-    return solved ? step_bound_impacts(whole, all, NULL, o, rep, why)
-                  : step_solve_contacts(whole, all, NULL, o, rep, why);
+    return solved ? step_bound_impacts(whole, all, NULL, o, rep, failure)
+                  : step_solve_contacts(whole, all, NULL, o, rep, failure);
 }
 
 static int watch_by_first(struct step_makers *m, const struct packing *whole, struct windows watch,
-                          struct report *rep, struct why *why)
+                          struct report *rep, struct failure *failure)
 {
-    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, watch, rep, why);
+    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, watch, rep, failure);
 }
 
 /* Of a substep: how far the step is, and whether it ends where bodies meet */
@@ -414,7 +414,7 @@ struct rank_step_turn {
 
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
                          const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
-                         struct why *why)
+                         struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct by_first f = { .makers = { .helps = t->me,
@@ -428,7 +428,7 @@ static int step_by_first(struct rank_step *y, struct packing *whole, struct cont
                                       .substeps = turn->steps,
                                       .meets = turn->meets },
                           .y = y };
-    if (step_make(&f.makers, whole, all, o, rep, why)) return why->status;
+    if (step_make(&f.makers, whole, all, o, rep, failure)) return failure->status;
     if (!t->me) settings_copy_motion(&y->part.p, whole);
     settings_follow(t, &y->part.p);
     subdomain_follow(&y->part, whole);
@@ -462,9 +462,9 @@ static bool *own_bodies(const struct rank_step *y)
 static void measure_depth(struct rank_step *y, const struct contacts *s, struct depth *d)
 {
     struct comm *t = y->part.comm;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool *own = own_bodies(y);
-    if (depth_of(d, &y->part.p, s, own, &why)) rank_step_fail(y, &why);
+    if (depth_of(d, &y->part.p, s, own, &failure)) rank_step_fail(y, &failure);
     free(own);
     const double most = comm_most(t, d->deepest), none = -1e300;
     bool here = d->deepest == most;
@@ -483,9 +483,9 @@ static struct fast_list fast_of_all(struct rank_step *y, const bool *own)
 {
     struct comm *t = y->part.comm;
     struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct fast_list here, all = { 0 };
-    if (fast_find(&here, &y->part.p, own, &why)) rank_step_fail(y, &why);
+    if (fast_find(&here, &y->part.p, own, &failure)) rank_step_fail(y, &failure);
     if (comm_sum(t, here.n) > 0) {
         parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
         comm_gather(t, &mine, in);
@@ -505,13 +505,13 @@ static struct fast_list fast_of_all(struct rank_step *y, const bool *own)
 static void watch_here(struct rank_step *y, struct windows watch, struct report *rep)
 {
     struct comm *t = y->part.comm;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct passed here = { 0 }, all = { 0 };
     const struct packing *p = &y->part.p;
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
-    if (watch.fixed.length > 0) swift_passed(&here, p, own, y->near.surface, watch.fixed);
-    if (crossing_count(&here, p, own, &fast, watch.bodies, watch.beyond, &why)) rank_step_fail(y, &why);
+    if (watch.fixed.length > 0) tunnelling_passed(&here, p, own, y->near.surface, watch.fixed);
+    if (tunnelling_count(&here, p, own, &fast, watch.bodies, watch.beyond, &failure)) rank_step_fail(y, &failure);
     free(fast.of), free(own);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
@@ -530,33 +530,33 @@ struct by_all {
 };
 
 static int detect_by_all(struct step_makers *m, struct packing *p, struct contacts *s,
-                         const struct step_opt *o, struct why *why)
+                         const struct step_opt *o, struct failure *failure)
 {
     struct by_all *a = (struct by_all *)m;
     double reach;
-    (void)p, (void)why;
+    (void)p, (void)failure;
     detect_here(a->y, a->whole, s, o, &reach);
     return 0;
 }
 
 static int measure_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                          struct report *rep, struct why *why)
+                          struct report *rep, struct failure *failure)
 {
     struct rank_step *y = ((struct by_all *)m)->y;
-    (void)p, (void)why;
+    (void)p, (void)failure;
     rep->err.max_overlap = comm_most(y->part.comm, contacts_max_overlap(s));
     measure_depth(y, s, &rep->depth);
     return 0;
 }
 
 static int solve_by_all(struct step_makers *m, const struct packing *p, struct contacts *s,
-                        const struct step_opt *o, struct report *rep, struct why *why)
+                        const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct by_all *a = (struct by_all *)m;
     (void)p;
     solve_in_blocks(a->y, &a->blocks, a->whole, s, o, rep);
     if (a->all && !o->bare && isfinite(rep->err.paper.eps_glob)) tell_contacts(a->y, a->all, s);
-    return why->status;
+    return failure->status;
 }
 
 static void add_impulses_by_all(struct step_makers *m, struct impulses *sum)
@@ -565,9 +565,9 @@ static void add_impulses_by_all(struct step_makers *m, struct impulses *sum)
 }
 
 static int balance_by_all(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                          const struct impulses *sum, struct balance *b, struct why *why)
+                          const struct impulses *sum, struct balance *b, struct failure *failure)
 {
-    (void)p, (void)why;
+    (void)p, (void)failure;
     blocks_balance(&((struct by_all *)m)->blocks, s, sum, b);
     return 0;
 }
@@ -600,17 +600,17 @@ static void agree_by_all(struct step_makers *m, struct report *rep)
 }
 
 static int move_apart_by_all(struct step_makers *m, struct packing *p, const struct contacts *s,
-                             struct projected *did, struct why *why)
+                             struct projected *did, struct failure *failure)
 {
-    (void)p, (void)why;
+    (void)p, (void)failure;
     blocks_move_apart(&((struct by_all *)m)->blocks, s, did);
     return 0;
 }
 
 static int watch_by_all(struct step_makers *m, const struct packing *p, struct windows watch,
-                        struct report *rep, struct why *why)
+                        struct report *rep, struct failure *failure)
 {
-    (void)p, (void)why;
+    (void)p, (void)failure;
     if (!report_made(rep))
         rep->balanced = false;
     else
@@ -620,7 +620,7 @@ static int watch_by_all(struct step_makers *m, const struct packing *p, struct w
 
 static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
                        const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
-                       struct why *why)
+                       struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct contacts s = { 0 };
@@ -642,7 +642,7 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                         .y = y,
                         .whole = whole,
                         .all = told[1] ? all : NULL };
-    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, why)) rank_step_fail(y, why);
+    if (step_make(&a.makers, &y->part.p, &s, &of_first, rep, failure)) rank_step_fail(y, failure);
     if (!t->me && report_made(rep)) settings_copy_motion(whole, &y->part.p);
     // with such a step the run ends, and keeps this
     const bool ends = !report_made(rep) || (told[2] && account_step_fails(rep));
@@ -660,18 +660,18 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
 {
     struct comm *t = y->part.comm;
     struct packing *p = &y->part.p;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct passed passed = { 0 };
     substeps_whole(s, p);
     packing_wrap(p, NULL);
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
-    if (fast.n && meeting_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &why))
-        rank_step_fail(y, &why);
+    if (fast.n && time_of_impact_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &failure))
+        rank_step_fail(y, &failure);
     if (fast.n) c->length = -comm_most(t, -c->length);
     for (bool passes = fast.n > 0; passes && c->length > substeps_least(s);) {
         p->dt = c->length;
-        swift_passed(&passed, p, own, y->near.surface, window_before(p));
+        tunnelling_passed(&passed, p, own, y->near.surface, window_before(p));
         passes = comm_sum(t, passed.n) > 0;
         if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
     }
@@ -680,15 +680,15 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
 
 /* Collective */
 static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank_step_turn *turn, struct packing *whole,
-                  bool by_all, const struct step_opt *o, struct why *why)
+                  bool by_all, const struct step_opt *o, struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct substep_choice c = step_substep(s, o);
     turn->steps = s;
-    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, why)) rank_step_fail(y, why);
+    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, failure)) rank_step_fail(y, failure);
     if (c.meets && by_all) choose_here(y, &c, s);
-    if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, why))
-        return why->status;
+    if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, failure))
+        return failure->status;
     if (c.meets && !by_all) MPI_Bcast(&c.length, 1, MPI_DOUBLE, 0, t->mpi);
     step_substep_fit(&c, s);
     turn->meets = c.meets;
@@ -699,24 +699,24 @@ static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank
 /* Collective: the substep, of all packings that know the time */
 static int make_substep(struct rank_step *y, struct substeps *s, const struct rank_step_turn *turn,
                         struct packing *whole, struct contacts *all, bool by_all,
-                        const struct step_opt *o, struct report *rep, struct why *why)
+                        const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     const bool first = !y->part.comm->me;
     const struct step_opt part = step_opt_part(o, s);
-    if (first && substeps_remember(s, whole, why)) return why->status;
+    if (first && substeps_remember(s, whole, failure)) return failure->status;
     substeps_enter(s, &y->part.p);
     if (first) substeps_enter(s, whole);
-    if ((by_all ? step_by_all : step_by_first)(y, whole, all, &part, turn, rep, why))
-        return why->status;
+    if ((by_all ? step_by_all : step_by_first)(y, whole, all, &part, turn, rep, failure))
+        return failure->status;
     substeps_leave(s, &y->part.p);
     if (first) substeps_leave(s, whole), substeps_recall(s, whole);
-    if (first) return substeps_add(s, whole, all, rep, why);
+    if (first) return substeps_add(s, whole, all, rep, failure);
     substeps_count(s);
     return 0;
 }
 
 int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *all,
-                   const struct step_opt *o, struct report *rep, struct why *why)
+                   const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     bool by_all = rank_step_scatters(&y->part.p, o) && !y->varies;
     double since = comm_busy() - y->part.comm->waited;
@@ -725,8 +725,8 @@ int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *
     int e = 0;
     substeps_begin(&steps, &y->part.p);
     for (int ends = 0; !ends && !e;) {
-        e = rank_step_choose(y, &steps, &turn, whole, by_all, o, why);
-        if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, why);
+        e = rank_step_choose(y, &steps, &turn, whole, by_all, o, failure);
+        if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, failure);
         ends = steps.ends;
         // one whose solve diverges ends the step, which the first knows
         if (!e && !substeps_alone(&steps)) MPI_Bcast(&ends, 1, MPI_INT, 0, y->part.comm->mpi);

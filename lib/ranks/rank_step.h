@@ -43,7 +43,7 @@ struct rank_step {
 
 /* Collective. The first rank's packing; in others it is not looked at. space is taken over. rows: those of all
    ranks, where the packing has everything but bodies, and nobody has the whole; NULL: the first rank has it. */
-void rank_step_begin(struct rank_step *y, struct comm *t, struct territory *space,
+void rank_step_begin(struct rank_step *y, struct comm *t, struct decomposition *space,
                      const struct packing *whole, struct rows *rows);
 /* Can the steps be made so that nobody has the whole? settings: a packing, its bodies are not looked at */
 bool rank_step_scatters(const struct packing *settings, const struct step_opt *o);
@@ -54,7 +54,7 @@ void rank_step_act(struct rank_step *y, const struct packing *whole);
 /* As step_advance(): whole, s, rep are those of the first rank. Returns 0, or a status at the first, which
    then has to end the run: the others wait. */
 int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *s,
-                   const struct step_opt *o, struct report *rep, struct why *why);
+                   const struct step_opt *o, struct report *rep, struct failure *failure);
 void rank_step_free(struct rank_step *y);
 
 #endif

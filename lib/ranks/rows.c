@@ -11,20 +11,20 @@ struct rows_block {
     uint32_t optional; /* packing_optional() */
 };
 
-static void rows_fail(const struct comm *t, const struct why *why)
+static void rows_fail(const struct comm *t, const struct failure *failure)
 {
-    comm_fail(t, why->status, why->text);
+    comm_fail(t, failure->status, failure->text);
 }
 
 static void rows_make_room(struct rows *r, const struct rows_block *b)
 {
     struct comm *t = r->comm;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     rows_free(r);
     *r = (struct rows){ .comm = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
     int64_t n = rows_begin(b->all, t->n, t->me + 1) - r->first;
-    if (packing_init(&r->p, b->dim, n, &why) || packing_alloc_optional(&r->p, b->optional, &why))
-        rows_fail(t, &why);
+    if (packing_init(&r->p, b->dim, n, &failure) || packing_alloc_optional(&r->p, b->optional, &failure))
+        rows_fail(t, &failure);
 }
 
 /* Rows first .. end - 1 that a block and rank k both have; false: none */
@@ -62,7 +62,7 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
     parcel_free(&mine), parcels_free(t, out);
 }
 
-void rows_deal(struct rows *r, struct subdomain *y, struct territory *space,
+void rows_deal(struct rows *r, struct subdomain *y, struct decomposition *space,
                const struct packing *settings)
 {
     subdomain_begin_rows(y, r->comm, space, settings,

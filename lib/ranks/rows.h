@@ -29,7 +29,7 @@ static inline int64_t rows_begin(int64_t all, int ranks, int k)
 void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
                int64_t all);
 /* They become a part's own bodies, of which the first has all else in `settings`. */
-void rows_deal(struct rows *r, struct subdomain *y, struct territory *space,
+void rows_deal(struct rows *r, struct subdomain *y, struct decomposition *space,
                const struct packing *settings);
 void rows_free(struct rows *r);
 

@@ -64,15 +64,15 @@ static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *li
     }
 }
 
-static void settings_fail(struct comm *t, const struct why *why)
+static void settings_fail(struct comm *t, const struct failure *failure)
 {
-    comm_fail(t, why->status, why->text);
+    comm_fail(t, failure->status, failure->text);
 }
 
 static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes *list, int dim)
 {
     int32_t n;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     shapes_free(list);
     parcel_take(t, o, &n, sizeof n);
     for (int32_t k = 1; k < n; k++) {
@@ -87,7 +87,7 @@ static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes
         s.faces -= s.faces > 0;
         s.corners = (int32_t)parcel_take_array(t, o, &s.corner, sizeof *s.corner);
         const double volume = s.volume, moment[3] = { s.moment[0], s.moment[1], s.moment[2] };
-        if (shape_finish(&s, dim, &why) || shapes_add(list, dim, &s, &why)) settings_fail(t, &why);
+        if (shape_finish(&s, dim, &failure) || shapes_add(list, dim, &s, &failure)) settings_fail(t, &failure);
         struct shape *made = &list->s[list->n - 1];
         made->volume = volume;
         for (int j = 0; j < 3; j++) made->moment[j] = moment[j];
@@ -149,10 +149,10 @@ static void settings_put(struct comm *t, struct parcel *o, const struct packing 
 static void settings_take(struct comm *t, struct parcel *o, struct packing *p)
 {
     struct settings_numbers n;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     parcel_take(t, o, &n, sizeof n);
     packing_free(p);
-    if (packing_init(p, n.dim, 0, &why) || packing_alloc_kinds(p, n.kinds, &why)) settings_fail(t, &why);
+    if (packing_init(p, n.dim, 0, &failure) || packing_alloc_kinds(p, n.kinds, &failure)) settings_fail(t, &failure);
     p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
     p->pulls_most = n.pulls_most;
     p->t0 = n.t0, p->step0 = n.step0;
@@ -171,7 +171,7 @@ static void settings_take(struct comm *t, struct parcel *o, struct packing *p)
     EVERY_PAIR_COLUMN(TAKE)
 #undef TAKE
     if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
-    if (packing_alloc_optional(p, n.optional, &why)) settings_fail(t, &why);
+    if (packing_alloc_optional(p, n.optional, &failure)) settings_fail(t, &failure);
 }
 
 void settings_spread(struct comm *t, struct packing *p)
@@ -186,16 +186,16 @@ void settings_spread(struct comm *t, struct packing *p)
 /* *x exists where it shall, for n bodies, all zero. */
 static void keep_forces(struct comm *t, vec3 **x, bool wanted, int64_t n)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (!wanted) free(*x), *x = NULL;
-    if (wanted && outside_alloc(x, n, &why)) settings_fail(t, &why);
+    if (wanted && external_force_alloc(x, n, &failure)) settings_fail(t, &failure);
 }
 
 void settings_act(struct comm *t, struct packing *p, const struct packing *whole)
 {
     struct parcel o = { 0 };
-    struct outside *to = &p->outside;
-    const struct outside *from = &whole->outside;
+    struct external_force *to = &p->outside;
+    const struct external_force *from = &whole->outside;
     const size_t pairs = (size_t)p->kinds * (size_t)p->kinds * sizeof *p->mu;
     const size_t walls = (size_t)p->walls;
     struct {
@@ -217,9 +217,9 @@ void settings_act(struct comm *t, struct packing *p, const struct packing *whole
     parcel_take(t, &o, &now, sizeof now);
     parcel_take(t, &o, p->mu, pairs);
     parcel_take(t, &o, p->wall, walls * sizeof *p->wall);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (!now.push) free(to->push), to->push = NULL;
-    if (now.push && outside_alloc_push(to, p->walls, &why)) settings_fail(t, &why);
+    if (now.push && external_force_alloc_push(to, p->walls, &failure)) settings_fail(t, &failure);
     if (now.push) parcel_take(t, &o, to->push, walls * sizeof *to->push);
     p->g = now.g, to->most = now.most;
     keep_forces(t, &to->force, now.force, p->n), keep_forces(t, &to->torque, now.torque, p->n);

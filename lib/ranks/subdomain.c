@@ -21,22 +21,22 @@ struct traveller {
     int32_t row, owner, load;
 };
 
-static void subdomain_fail(const struct subdomain *y, const struct why *why)
+static void subdomain_fail(const struct subdomain *y, const struct failure *failure)
 {
-    comm_fail(y->comm, why->status, why->text);
+    comm_fail(y->comm, failure->status, failure->text);
 }
 
 /* What acts on body i from outside, where anything does */
 static void put_force(struct comm *t, struct parcel *to, const struct packing *p, int64_t i)
 {
-    const struct outside *o = &p->outside;
+    const struct external_force *o = &p->outside;
     if (o->force) parcel_put(t, to, &o->force[i], sizeof *o->force);
     if (o->torque) parcel_put(t, to, &o->torque[i], sizeof *o->torque);
 }
 
 static void take_force(struct comm *t, struct parcel *from, struct packing *p, int64_t i)
 {
-    struct outside *o = &p->outside;
+    struct external_force *o = &p->outside;
     if (o->force) parcel_take(t, from, &o->force[i], sizeof *o->force);
     if (o->torque) parcel_take(t, from, &o->torque[i], sizeof *o->torque);
 }
@@ -81,9 +81,9 @@ void borders_free(const struct comm *t, struct border *b)
 /* Room for n bodies, none of them set */
 static void resize(struct subdomain *y, int64_t n)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing *p = &y->p;
-    if (packing_resize(p, n, &why)) subdomain_fail(y, &why);
+    if (packing_resize(p, n, &failure)) subdomain_fail(y, &failure);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     y->row = comm_new(y->comm, n, sizeof *y->row),
     y->owner = comm_new(y->comm, n, sizeof *y->owner);
@@ -117,22 +117,22 @@ static void take_all(struct subdomain *y, const struct packing *whole)
     take_own(y, whole, y->comm->me ? 0 : whole->n, 0);
 }
 
-static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct territory *space,
+static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct decomposition *space,
                   const struct packing *settings)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *y = (struct subdomain){ .comm = t, .territory = space };
     if (!t->me) {
         struct packing none = *settings;
         none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
-        none.memory = (struct memory){ 0 }, none.outside = (struct outside){ 0 };
-        if (packing_copy(&y->p, &none, &why)) subdomain_fail(y, &why);
+        none.memory = (struct memory){ 0 }, none.outside = (struct external_force){ 0 };
+        if (packing_copy(&y->p, &none, &failure)) subdomain_fail(y, &failure);
     }
     settings_spread(t, &y->p);
     y->p.whole = &y->whole;
 }
 
-void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
+void subdomain_begin(struct subdomain *y, struct comm *t, struct decomposition *space,
                      const struct packing *whole)
 {
     subdomain_begin_empty(y, t, space, whole);
@@ -140,7 +140,7 @@ void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *spac
     subdomain_recut(y);
 }
 
-void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
+void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct decomposition *space,
                           const struct packing *settings, const struct own_rows *rows)
 {
     subdomain_begin_empty(y, t, space, settings);
@@ -159,7 +159,7 @@ void subdomain_free(struct subdomain *y)
     borders_free(y->comm, y->lent), borders_free(y->comm, y->here);
     free(y->row), free(y->owner), free(y->dealt), free(y->load);
     packing_free(&y->p);
-    territory_free(y->territory);
+    decomposition_free(y->territory);
     *y = (struct subdomain){ 0 };
 }
 
@@ -168,7 +168,7 @@ void subdomain_measure(struct subdomain *y)
     struct packing *p = &y->p;
     p->whole = NULL;
     struct whole w = packing_whole(p);
-    double most[5] = { w.speed, w.top_speed, -w.small, w.large, w.apart }, all[5];
+    double most[5] = { w.speed, w.rotation_speed, -w.small, w.large, w.apart }, all[5];
     MPI_Allreduce(most, all, 5, MPI_DOUBLE, MPI_MAX, y->comm->mpi);
     y->whole = (struct whole){ all[0], all[1], -all[2], all[3], all[4] };
     p->whole = &y->whole;
@@ -196,7 +196,7 @@ void subdomain_recut(struct subdomain *y)
     for (int64_t i = 0; i < y->p.n; i++)
         if (y->owner[i] == y->comm->me)
             x[n] = y->p.x[i], weight[n++] = A_BODY + 0.5f * (float)y->load[i];
-    territory_cut(y->territory, n, x, weight);
+    decomposition_cut(y->territory, n, x, weight);
     free(x), free(weight);
     y->margin = -1, y->cuts++;
 }
@@ -226,7 +226,7 @@ static void mark_ranks(const struct subdomain *y, const vec3 x, double half, int
             for (int k = -most[2]; k <= most[2]; k++) {
                 const int8_t shift[3] = { (int8_t)i, (int8_t)j, (int8_t)k };
                 vec3 at = v3_add(x, cell_shift(c->edge, shift)), d = v3(half, half, half);
-                int n = territory_meets(y->territory, v3_sub(at, d), v3_add(at, d), met);
+                int n = decomposition_meets(y->territory, v3_sub(at, d), v3_add(at, d), met);
                 for (int m = 0; m < n; m++) mark[met[m]] = true;
             }
 }
@@ -304,7 +304,7 @@ static void send_bodies(struct subdomain *y, double reach, struct parcel *out)
     bool *mark = comm_new(t, t->n, sizeof *mark);
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != t->me) continue;
-        int owner = territory_owner(y->territory, y->p.x[i]);
+        int owner = decomposition_owner(y->territory, y->p.x[i]);
         memset(mark, 0, (size_t)t->n * sizeof *mark);
         mark_ranks(y, y->p.x[i], y->p.radius[i] + y->whole.large + reach + y->margin, met, mark);
         mark[owner] = true;

@@ -21,7 +21,7 @@ void borders_free(const struct comm *t, struct border *b);
 
 struct subdomain {
     struct comm *comm;
-    struct territory *territory;
+    struct decomposition *territory;
     struct packing p; /* own bodies and copies */
     int64_t all;      /* bodies of the whole */
     int64_t own;
@@ -39,7 +39,7 @@ struct subdomain {
 
 /* The first rank's packing becomes parts: its bodies are copied from it, and it stays as it is. Those of the
    others are not looked at. space is taken over. Collective, as all that follows. */
-void subdomain_begin(struct subdomain *y, struct comm *t, struct territory *space,
+void subdomain_begin(struct subdomain *y, struct comm *t, struct decomposition *space,
                      const struct packing *whole);
 void subdomain_free(struct subdomain *y);
 /* Rows of the bodies that a rank has */
@@ -49,7 +49,7 @@ struct own_rows {
 };
 /* The same where each rank has some rows of the bodies: they become its own. settings: the first rank's packing, all
    but its bodies. */
-void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct territory *space,
+void subdomain_begin_rows(struct subdomain *y, struct comm *t, struct decomposition *space,
                           const struct packing *settings, const struct own_rows *rows);
 /* The same of a packing that has other bodies than before */
 void subdomain_begin_again(struct subdomain *y, const struct packing *whole);

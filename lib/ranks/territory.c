@@ -8,40 +8,40 @@
 
 static const struct cuts *const ways[] = { &cuts_bisection, &cuts_hypergraph }; // as --cut has them
 
-struct territory {
+struct decomposition {
     const struct cuts *way;
     void *made;
 };
 
-struct territory *territory_new(struct comm *t, int way)
+struct decomposition *decomposition_new(struct comm *t, int way)
 {
-    struct territory *y = comm_new(t, 1, sizeof *y);
-    *y = (struct territory){ ways[way], ways[way]->begin(t) };
+    struct decomposition *y = comm_new(t, 1, sizeof *y);
+    *y = (struct decomposition){ ways[way], ways[way]->begin(t) };
     return y;
 }
 
-void territory_free(struct territory *y)
+void decomposition_free(struct decomposition *y)
 {
     if (y) y->way->end(y->made);
     free(y);
 }
 
-void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *weight)
+void decomposition_cut(struct decomposition *y, int64_t n, const vec3 *x, const float *weight)
 {
     y->way->cut(y->made, n, x, weight);
 }
 
-int territory_owner(const struct territory *y, vec3 x)
+int decomposition_owner(const struct decomposition *y, vec3 x)
 {
     return y->way->owner(y->made, x);
 }
 
-int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank)
+int decomposition_meets(const struct decomposition *y, vec3 lo, vec3 hi, int *rank)
 {
     return y->way->meets(y->made, lo, hi, rank);
 }
 
-struct Zoltan_Struct *territory_zoltan(struct comm *t, const char *const set[][2])
+struct Zoltan_Struct *decomposition_zoltan(struct comm *t, const char *const set[][2])
 {
     struct Zoltan_Struct *zz = NULL;
     float version;

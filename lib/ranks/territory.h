@@ -8,16 +8,16 @@
 #include "base/vec.h"
 #include "ranks/comm.h"
 
-struct territory;
+struct decomposition;
 
 /* way: 0 by bisection, 1 by the hypergraph */
-struct territory *territory_new(struct comm *t, int way);
-void territory_free(struct territory *y);
+struct decomposition *decomposition_new(struct comm *t, int way);
+void decomposition_free(struct decomposition *y);
 /* New cuts, so that the weights of the points x[n] of all ranks are shared out evenly. Collective. */
-void territory_cut(struct territory *y, int64_t n, const vec3 *x, const float *weight);
+void decomposition_cut(struct decomposition *y, int64_t n, const vec3 *x, const float *weight);
 /* The owner of a point; the ranks that meet the box lo .. hi, into rank[t->n]: returns how many. */
-int territory_owner(const struct territory *y, vec3 x);
-int territory_meets(const struct territory *y, vec3 lo, vec3 hi, int *rank);
+int decomposition_owner(const struct decomposition *y, vec3 x);
+int decomposition_meets(const struct decomposition *y, vec3 lo, vec3 hi, int *rank);
 
 /* A way: the same of what its begin() has made */
 struct cuts {
@@ -30,6 +30,6 @@ struct cuts {
 extern const struct cuts cuts_bisection, cuts_hypergraph;
 
 /* Zoltan, with these parameters, pairs of a name and a value up to a NULL */
-struct Zoltan_Struct *territory_zoltan(struct comm *t, const char *const set[][2]);
+struct Zoltan_Struct *decomposition_zoltan(struct comm *t, const char *const set[][2]);
 
 #endif

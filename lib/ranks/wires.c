@@ -11,7 +11,7 @@ enum {
     TAG = 8
 };
 
-static struct wire *wire_to(struct wires *w, int rank)
+static struct wire *wire_to(struct halo *w, int rank)
 {
     for (int k = 0; k < w->n; k++)
         if (w->wire[k].rank == rank) return &w->wire[k];
@@ -31,7 +31,7 @@ static int64_t halo_largest(const int64_t *first, int64_t groups)
 }
 
 /* What comes from a rank: groups and rows, as it has told */
-static void take_list(struct wires *w, const struct subdomain *y, struct parcel *in, int rank)
+static void take_list(struct halo *w, const struct subdomain *y, struct parcel *in, int rank)
 {
     int64_t n = 0;
     if (!in->size) return;
@@ -50,12 +50,12 @@ static void take_list(struct wires *w, const struct subdomain *y, struct parcel 
     }
 }
 
-void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64_t n,
-               const struct errand *errand)
+void halo_lay(struct halo *w, const struct subdomain *y, int64_t groups, int64_t n,
+               const struct halo_item *errand)
 {
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
-    *w = (struct wires){ .comm = t, .groups = groups };
+    *w = (struct halo){ .comm = t, .groups = groups };
     w->wire = comm_new(t, t->n, sizeof *w->wire);
     w->request = comm_new(t, 2 * t->n, sizeof(MPI_Request));
     int64_t *many = comm_new(t, t->n, sizeof *many), *next = comm_new(t, t->n, sizeof *next);
@@ -79,7 +79,7 @@ void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64
     }
 }
 
-void wires_free(struct wires *w)
+void halo_free(struct halo *w)
 {
     for (int k = 0; k < w->n; k++) {
         struct wire *x = &w->wire[k];
@@ -87,7 +87,7 @@ void wires_free(struct wires *w)
         free(x->go_v), free(x->come_v);
     }
     free(w->wire), free(w->request);
-    *w = (struct wires){ 0 };
+    *w = (struct halo){ 0 };
 }
 
 static void read_twist(const struct problem *p, int32_t body, double v[TWIST])
@@ -102,7 +102,7 @@ static void write_twist(struct problem *p, int32_t body, const double v[TWIST])
     memcpy(b->v, v, sizeof b->v), memcpy(b->w, v + 3, sizeof b->w);
 }
 
-void wires_send(struct wires *w, const struct problem *p, int64_t g)
+void halo_send(struct halo *w, const struct problem *p, int64_t g)
 {
     w->requests = 0;
     for (int k = 0; k < w->n; k++) {
@@ -124,7 +124,7 @@ void wires_send(struct wires *w, const struct problem *p, int64_t g)
     }
 }
 
-void wires_wait(struct wires *w, struct problem *p, int64_t g)
+void halo_wait(struct halo *w, struct problem *p, int64_t g)
 {
     if (!w->requests) return;
     double since = comm_busy();
@@ -138,7 +138,7 @@ void wires_wait(struct wires *w, struct problem *p, int64_t g)
     }
 }
 
-void wires_refresh(const struct subdomain *y, struct problem *p)
+void halo_refresh(const struct subdomain *y, struct problem *p)
 {
     struct comm *t = y->comm;
     double v[TWIST];

@@ -16,7 +16,7 @@ struct wire {
     double *go_v, *come_v; /* [most of a group][6] */
 };
 
-struct wires {
+struct halo {
     struct comm *comm;
     int64_t groups;
     int n;
@@ -26,20 +26,20 @@ struct wires {
 };
 
 /* A body that is to be told to a rank after a group */
-struct errand {
+struct halo_item {
     int64_t group;
     int32_t rank, body;
 };
 
 /* Collective. errand[n], in the order of groups for each rank, of bodies that this rank owns; the others learn
    from it what will come. */
-void wires_lay(struct wires *w, const struct subdomain *y, int64_t groups, int64_t n,
-               const struct errand *errand);
-void wires_free(struct wires *w);
+void halo_lay(struct halo *w, const struct subdomain *y, int64_t groups, int64_t n,
+               const struct halo_item *errand);
+void halo_free(struct halo *w);
 /* Sends what goes after group g, and waits for what comes: between them there is time for other work. */
-void wires_send(struct wires *w, const struct problem *p, int64_t g);
-void wires_wait(struct wires *w, struct problem *p, int64_t g);
+void halo_send(struct halo *w, const struct problem *p, int64_t g);
+void halo_wait(struct halo *w, struct problem *p, int64_t g);
 /* All copies become what their bodies are. */
-void wires_refresh(const struct subdomain *y, struct problem *p);
+void halo_refresh(const struct subdomain *y, struct problem *p);
 
 #endif

@@ -36,23 +36,23 @@ struct fit {
 /* ---- the surface ---- */
 
 /* By the divergence theorem; the triangles as a shape of its own, of which nothing else is asked */
-static int clump_fit_moments_of(struct solid *out, const struct mesh *m, struct why *why)
+static int clump_fit_moments_of(struct solid *out, const struct mesh *m, struct failure *failure)
 {
     struct shape s = { 0 };
-    if (shape_alloc(&s, m->vertices, m->elements, 3 * m->elements, why)) return why->status;
+    if (shape_alloc(&s, m->vertices, m->elements, 3 * m->elements, failure)) return failure->status;
     s.form = SHAPE_HULL;
     memcpy(s.vertex, m->vertex, (size_t)m->vertices * sizeof *s.vertex);
     for (int32_t i = 0; i < 3 * m->elements; i++) s.corner[i] = m->element[i / 3][i % 3];
     for (int32_t f = 0; f <= m->elements; f++) s.first[f] = 3 * f;
-    solid_of(out, &s, 3, why);
+    solid_of(out, &s, 3, failure);
     shape_free(&s);
-    if (why->status) return why->status;
+    if (failure->status) return failure->status;
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < i; j++) out->second[i][j] = out->second[j][i]; // to the last bit
     if (out->volume < 0)
-        return why_set(why, EX_DATAERR, "is turned inside out: turn its faces outward");
+        return failure_set(failure, EX_DATAERR, "is turned inside out: turn its faces outward");
     return out->volume > 0 && v3_finite(out->centre) ? 0
-                                                     : why_set(why, EX_DATAERR, "has no volume");
+                                                     : failure_set(failure, EX_DATAERR, "has no volume");
 }
 
 static double clump_fit_area_of(const struct mesh *m)
@@ -68,13 +68,13 @@ static double clump_fit_area_of(const struct mesh *m)
 }
 
 /* Places on each triangle, apart by a distance that gives SAMPLES_MOST at most; its corners among them */
-static int sample_surface(struct fit *f, struct why *why)
+static int sample_surface(struct fit *f, struct failure *failure)
 {
     const double apart = fmax(f->grid.h, sqrt(2 * clump_fit_area_of(f->mesh) / SAMPLES_MOST));
     const int64_t room = SAMPLES_MOST + (int64_t)6 * f->mesh->elements;
     f->sample = malloc((size_t)room * sizeof *f->sample);
     f->gap = malloc((size_t)room * sizeof *f->gap);
-    if (!f->sample || !f->gap) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    if (!f->sample || !f->gap) return failure_set(failure, EX_SOFTWARE, "no memory for a clump");
     for (int32_t e = 0; e < f->mesh->elements; e++) {
         const int32_t *c = f->mesh->element[e];
         const vec3 a = f->mesh->vertex[c[0]], u = v3_sub(f->mesh->vertex[c[1]], a),
@@ -194,12 +194,12 @@ static double clump_fit_farthest(const struct fit *f, double growth)
     return most;
 }
 
-static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, struct why *why)
+static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, struct failure *failure)
 {
     const struct clump_grid *g = &f->grid;
     struct candidate *heap = malloc((size_t)g->inside * sizeof *heap);
     int64_t n = 0;
-    if (!heap) return why_set(why, EX_SOFTWARE, "no memory for a clump");
+    if (!heap) return failure_set(failure, EX_SOFTWARE, "no memory for a clump");
     for (int64_t k = 0; k < g->points; k++) {
         f->field[k] = INFINITY, f->covered[k] = g->depth[k] == 0; // what is outside is no gain
         const double r = g->depth[k] / g->h + 1;
@@ -230,9 +230,9 @@ static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, st
 
 /* ---- the clump ---- */
 
-static int clump_fit_make_shape(struct shape *s, const struct fit *f, double growth, struct why *why)
+static int clump_fit_make_shape(struct shape *s, const struct fit *f, double growth, struct failure *failure)
 {
-    if (shape_alloc(s, f->balls, 0, 0, why)) return why->status;
+    if (shape_alloc(s, f->balls, 0, 0, failure)) return failure->status;
     s->form = SHAPE_CLUMP;
     for (int32_t i = 0; i < f->balls; i++)
         s->vertex[i] = f->centre[i], s->ball[i] = f->radius[i] + growth;
@@ -240,23 +240,23 @@ static int clump_fit_make_shape(struct shape *s, const struct fit *f, double gro
 }
 
 static int set_growth(struct shape *s, struct solid *balls, const struct fit *f, double growth,
-                      struct why *why)
+                      struct failure *failure)
 {
     for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
-    return solid_of(balls, s, 3, why);
+    return solid_of(balls, s, 3, failure);
 }
 
 /* Where Newton has not found the volume: between no growth and balls that are larger than the surface */
 static int search_growth(struct shape *s, struct solid *balls, const struct fit *f, double volume,
-                         struct why *why)
+                         struct failure *failure)
 {
     double lo = 0, hi = 2 * f->reach, below = 0, above = 0;
-    if (set_growth(s, balls, f, hi, why)) return why->status;
+    if (set_growth(s, balls, f, hi, failure)) return failure->status;
     above = balls->volume;
     for (int k = 0; k < ROUNDS_MORE && fabs(balls->volume / volume - 1) > 0.1 * VOLUME_MOST; k++) {
         const double share = fmin(0.9, fmax(0.1, (volume - below) / (above - below)));
         const double growth = lo + share * (hi - lo);
-        if (set_growth(s, balls, f, growth, why)) return why->status;
+        if (set_growth(s, balls, f, growth, failure)) return failure->status;
         *(balls->volume < volume ? &lo : &hi) = growth;
         *(balls->volume < volume ? &below : &above) = balls->volume;
     }
@@ -265,19 +265,19 @@ static int search_growth(struct shape *s, struct solid *balls, const struct fit 
 
 /* The radii grow until the balls have the volume; d volume / d growth is about the surface's area. */
 static int clump_fit_grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
-                struct why *why)
+                struct failure *failure)
 {
     const double area = clump_fit_area_of(f->mesh);
     double growth = growth_of(f), least = INFINITY;
     for (int32_t i = 0; i < f->balls; i++) least = fmin(least, f->radius[i]);
-    if (clump_fit_make_shape(s, f, growth, why)) return why->status;
-    for (int round = 0; !solid_of(balls, s, 3, why) && round < ROUNDS; round++) {
+    if (clump_fit_make_shape(s, f, growth, failure)) return failure->status;
+    for (int round = 0; !solid_of(balls, s, 3, failure) && round < ROUNDS; round++) {
         growth = fmax(-0.5 * least, growth + (of->volume - balls->volume) / area);
         for (int32_t i = 0; i < f->balls; i++) s->ball[i] = f->radius[i] + growth;
     }
-    if (!why->status && fabs(balls->volume / of->volume - 1) > VOLUME_MOST)
-        search_growth(s, balls, f, of->volume, why);
-    return why->status;
+    if (!failure->status && fabs(balls->volume / of->volume - 1) > VOLUME_MOST)
+        search_growth(s, balls, f, of->volume, failure);
+    return failure->status;
 }
 
 /* The k-th of DIRECTIONS places on the unit sphere, on a spiral */
@@ -323,9 +323,9 @@ static double moments_error(const struct solid *a, const struct solid *of)
     return sqrt(sum) * scale;
 }
 
-static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t balls, struct why *why)
+static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t balls, struct failure *failure)
 {
-    if (clump_grid_init(&f->grid, f->mesh, why)) return why->status;
+    if (clump_grid_init(&f->grid, f->mesh, failure)) return failure->status;
     for (int32_t e = 0; e < f->mesh->elements; e++)
         for (int k = 0; k < 3; k++)
             f->reach = fmax(f->reach,
@@ -336,17 +336,17 @@ static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t ball
     f->sorted = malloc((size_t)f->grid.points * sizeof *f->sorted);
     f->covered = malloc((size_t)f->grid.points);
     if (!f->centre || !f->radius || !f->field || !f->sorted || !f->covered)
-        return why_set(why, EX_SOFTWARE, "no memory for a clump");
-    return sample_surface(f, why);
+        return failure_set(failure, EX_SOFTWARE, "no memory for a clump");
+    return sample_surface(f, failure);
 }
 
-static int clump_fit_judge(const struct clump_errors *e, struct why *why)
+static int clump_fit_judge(const struct clump_errors *e, struct failure *failure)
 {
     if (fabs(e->volume) <= VOLUME_MOST && e->moments <= MOMENTS_MOST &&
         e->distance <= DISTANCE_MOST)
         return 0;
-    return why_set(
-        why, EX_DATAERR,
+    return failure_set(
+        failure, EX_DATAERR,
         "is not what %d balls fill: volume %+.2g, distance %.2g of the radius around it, "
         "moments %.2g of their sum, and %g, %g, %g are allowed: more balls, or thicker "
         "walls",
@@ -354,24 +354,24 @@ static int clump_fit_judge(const struct clump_errors *e, struct why *why)
 }
 
 int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
-              const struct clump_limits *limits, struct clump_errors *errors, struct why *why)
+              const struct clump_limits *limits, struct clump_errors *errors, struct failure *failure)
 {
     struct fit f = { .mesh = m };
     struct solid got = { 0 };
-    if (mesh_check(m, 3, why) || mesh_closed(m, why) || clump_fit_moments_of(of, m, why) ||
-        crossings_judge(m, why))
-        return why->status;
-    if (!clump_fit_prepare(&f, of, limits->balls, why) && !clump_fit_choose(&f, limits, why) &&
-        !clump_fit_grow(s, &got, &f, of, why)) {
+    if (mesh_check(m, 3, failure) || mesh_closed(m, failure) || clump_fit_moments_of(of, m, failure) ||
+        crossings_judge(m, failure))
+        return failure->status;
+    if (!clump_fit_prepare(&f, of, limits->balls, failure) && !clump_fit_choose(&f, limits, failure) &&
+        !clump_fit_grow(s, &got, &f, of, failure)) {
         *errors = (struct clump_errors){ .balls = f.balls,
                                          .volume = got.volume / of->volume - 1,
                                          .distance = distance_of(&f, s) / f.reach,
                                          .moments = moments_error(&got, of) };
-        clump_fit_judge(errors, why);
+        clump_fit_judge(errors, failure);
     }
-    if (why->status) shape_free(s);
+    if (failure->status) shape_free(s);
     clump_grid_free(&f.grid);
     free(f.sample), free(f.gap), free(f.field), free(f.sorted), free(f.covered);
     free(f.centre), free(f.radius);
-    return why->status;
+    return failure->status;
 }

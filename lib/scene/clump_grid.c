@@ -21,7 +21,7 @@ static void clump_fit_span(const struct clump_grid *g, int axis, double a, doubl
 }
 
 /* A line's points between where it goes in and where it comes out, all at depth -1 */
-static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
+static void fill_line(struct clump_grid *g, const struct tunnelling *c, int64_t n)
 {
     int within = 0, sum = 0;
     for (int64_t i = 0; i < n; i++) sum += c[i].way;
@@ -39,20 +39,20 @@ static void fill_line(struct clump_grid *g, const struct crossing *c, int64_t n)
     }
 }
 
-static int find_inside(struct clump_grid *g, struct why *why)
+static int find_inside(struct clump_grid *g, struct failure *failure)
 {
     struct crossings t = { 0 };
     const struct lines along_x = { .n = { g->n[1], g->n[2] }, .h = g->h, .origin = g->origin };
-    crossings_find(&t, g->mesh, &along_x, why);
-    for (int64_t i = 0, end; i < t.n && !why->status; i = end) {
+    crossings_find(&t, g->mesh, &along_x, failure);
+    for (int64_t i = 0, end; i < t.n && !failure->status; i = end) {
         for (end = i; end < t.n && t.c[end].line == t.c[i].line;) end++;
         fill_line(g, t.c + i, end - i);
     }
     crossings_free(&t);
-    if (!why->status && g->inside < INSIDE_LEAST)
-        why_set(why, EX_DATAERR, "is too thin for balls: %lld points of a grid of %d are within it",
+    if (!failure->status && g->inside < INSIDE_LEAST)
+        failure_set(failure, EX_DATAERR, "is too thin for balls: %lld points of a grid of %d are within it",
                 (long long)g->inside, CLUMP_GRID);
-    return why->status;
+    return failure->status;
 }
 
 double clump_grid_distance(const struct clump_grid *g, vec3 c, double most)
@@ -79,7 +79,7 @@ static void find_depths(struct clump_grid *g, double extent)
     }
 }
 
-int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct why *why)
+int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure)
 {
     vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
     *g = (struct clump_grid){ .mesh = m };
@@ -90,16 +90,16 @@ int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct why *why)
         }
     const vec3 d = v3_sub(hi, lo);
     const double extent = fmax(d.x, fmax(d.y, d.z));
-    if (!(extent > 0 && isfinite(extent))) return why_set(why, EX_DATAERR, "has no extent");
+    if (!(extent > 0 && isfinite(extent))) return failure_set(failure, EX_DATAERR, "has no extent");
     g->h = extent / CLUMP_GRID;
     g->n[0] = (int)(d.x / g->h) + 1, g->n[1] = (int)(d.y / g->h) + 1,
     g->n[2] = (int)(d.z / g->h) + 1;
     g->origin = v3(lo.x + ASIDE[0] * g->h, lo.y + ASIDE[1] * g->h, lo.z + ASIDE[2] * g->h);
     g->points = (int64_t)g->n[0] * g->n[1] * g->n[2];
     g->depth = calloc((size_t)g->points, sizeof *g->depth);
-    if (!g->depth) return why_set(why, EX_SOFTWARE, "no memory for a clump");
-    if (surface_init(&g->surface, m, 0, m->elements, 0, why) || find_inside(g, why))
-        return why->status;
+    if (!g->depth) return failure_set(failure, EX_SOFTWARE, "no memory for a clump");
+    if (surface_init(&g->surface, m, 0, m->elements, 0, failure) || find_inside(g, failure))
+        return failure->status;
     find_depths(g, v3_norm(d));
     return 0;
 }

@@ -20,7 +20,7 @@ struct clump_grid {
 };
 
 /* Returns 0, EX_DATAERR where the surface has too little within it, or EX_SOFTWARE; clump_grid_free in any case. */
-int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct why *why);
+int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure);
 void clump_grid_free(struct clump_grid *g);
 
 static inline vec3 clump_grid_at(const struct clump_grid *g, int64_t k)

@@ -40,19 +40,19 @@ static int find_groups(struct scene *s, const struct packing *p)
     return 0;
 }
 
-int flow_read(struct flow *f, const struct packing *p, struct why *why)
+int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
 {
     *f = (struct flow){ 0 };
     if (!packing_varies(p)) return 0;
     if (!p->scene)
-        return why_set(why, EX_DATAERR, "inlets or outlets, but no scene that describes them");
-    if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, why)) return why->status;
+        return failure_set(failure, EX_DATAERR, "inlets or outlets, but no scene that describes them");
+    if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, failure)) return failure->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
         f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p) &&
         !find_groups(&f->scene, p))
         return 0;
     flow_free(f);
-    return why_set(why, EX_DATAERR,
+    return failure_set(failure, EX_DATAERR,
                    "the scene's pours, removals, kinds, shapes or names are not the packing's");
 }
 
@@ -61,11 +61,11 @@ void flow_free(struct flow *f)
     scene_free(&f->scene);
 }
 
-static void inlet_note(struct packing *p, int64_t i, bool came, int32_t which, struct why *why)
+static void inlet_note(struct packing *p, int64_t i, bool came, int32_t which, struct failure *failure)
 {
     struct event e = { p->step,      p->t,       p->id[i], came,   which,
                        p->radius[i], p->mass[i], p->x[i],  p->v[i] };
-    events_add(&p->events, &e, why);
+    events_add(&p->events, &e, failure);
 }
 
 /* ---- removals ---- */
@@ -113,7 +113,7 @@ static int32_t taken_by(const struct flow *f, const struct packing *p, const vec
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
-static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct why *why)
+static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct failure *failure)
 {
     int64_t kept = 0;
     vec3 inverse[3];
@@ -126,11 +126,11 @@ static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, 
             continue;
         }
         p->removed[k].bodies++, p->removed[k].mass += p->mass[i];
-        inlet_note(p, i, false, k, why);
-        if (why->status) return why->status; // the tool ends here
+        inlet_note(p, i, false, k, failure);
+        if (failure->status) return failure->status; // the tool ends here
     }
-    outside_follow(&p->outside, row, p->n);
-    return packing_resize(p, kept, why);
+    external_force_follow(&p->outside, row, p->n);
+    return packing_resize(p, kept, failure);
 }
 
 /* The contacts of bodies that are still there, in their new rows, in the same order */
@@ -165,21 +165,21 @@ static void follow_bonds(struct bonds *s, const int32_t *row)
     s->n = kept;
 }
 
-int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct why *why)
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct failure *failure)
 {
     int64_t kept = 0;
     for (int64_t i = 0; i < p->n; i++)
         if (row[i] >= 0) packing_copy_body(p, kept++, p, i);
     follow_bonds(&p->bonds, row);
     memory_follow(&p->memory, row);
-    outside_follow(&p->outside, row, p->n);
+    external_force_follow(&p->outside, row, p->n);
     if (last) inlet_follow(last, row);
-    return packing_resize(p, kept, why);
+    return packing_resize(p, kept, failure);
 }
 
 /* ---- pours ---- */
 
-static bool inlet_is_due(const struct scene_pour *o, const struct passage *so_far, double t)
+static bool inlet_is_due(const struct scene_pour *o, const struct flow_count *so_far, double t)
 {
     if (t < o->from || t > o->until || (double)so_far->bodies >= o->count) return false;
     double had = o->by_mass ? so_far->mass : (double)so_far->bodies;
@@ -267,7 +267,7 @@ static bool may_meet(const struct scene_pour *o, const struct packing *p, const 
 }
 
 static int crowd_gather(struct crowd *c, const struct packing *p, const struct scene_pour *o,
-                        struct why *why)
+                        struct failure *failure)
 {
     size_t room = (size_t)p->n + 1;
     *c = (struct crowd){ .p = *p };
@@ -280,7 +280,7 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     c->p.shape = p->shape ? calloc(room, sizeof *c->p.shape) : NULL;
     if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body ||
         !c->p.q || (p->shape && !c->p.shape))
-        return why_set(why, EX_SOFTWARE, "no memory to pour");
+        return failure_set(failure, EX_SOFTWARE, "no memory to pour");
     vec3 inverse[3];
     cell_inverse(p->cell.edge, inverse);
     for (int64_t i = 0; i < p->n; i++) {
@@ -304,7 +304,7 @@ struct newcomer {
 
 /* Would it meet nothing, neither now nor at the predicted positions? */
 static bool inlet_is_free(struct crowd *c, const struct scene_pour *o, const struct newcomer *g,
-                    struct why *why)
+                    struct failure *failure)
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
@@ -313,20 +313,20 @@ static bool inlet_is_free(struct crowd *c, const struct scene_pour *o, const str
     c->p.q[last] = g->q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;
     c->now[last] = g->x, c->then[last] = v3_axpy(g->x, ahead, o->v);
-    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, why) && !met.n &&
-                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, why) && !met.n;
+    bool clear = !detect_contacts_at(&met, &c->p, c->now, c->p.t, 0, failure) && !met.n &&
+                 !detect_contacts_at(&met, &c->p, c->then, c->p.t + ahead, 0, failure) && !met.n;
     contacts_free(&met);
-    return clear && !why->status;
+    return clear && !failure->status;
 }
 
 static int add_grain(struct packing *p, const struct scene_pour *o, int32_t which,
-                     const struct newcomer *g, struct why *why)
+                     const struct newcomer *g, struct failure *failure)
 {
     const double r = g->r;
     int64_t i = p->n, id = p->first_id;
     for (int32_t k = 0; k < p->pours; k++) id += p->poured[k].bodies;
-    if (id >= INT32_MAX) return why_set(why, EX_DATAERR, "more than %d bodies", INT32_MAX);
-    if (packing_resize(p, i + 1, why)) return why->status;
+    if (id >= INT32_MAX) return failure_set(failure, EX_DATAERR, "more than %d bodies", INT32_MAX);
+    if (packing_resize(p, i + 1, failure)) return failure->status;
     if (o->form.shape)
         packing_solid_shape(p->dim, &p->shapes.s[o->form.shape], r, o->density, &p->mass[i],
                             &p->inertia[i]);
@@ -334,19 +334,19 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
         packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
     if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
     if (!(p->mass[i] > 0 && p->inertia[i] > 0))
-        return why_set(why, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
+        return failure_set(failure, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
     p->x[i] = g->x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
     p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = g->q;
     if (p->shape) p->shape[i] = o->form.shape;
     if (p->group) p->group[i] = o->group;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
-    inlet_note(p, i, true, which, why);
-    return why->status;
+    inlet_note(p, i, true, which, failure);
+    return failure->status;
 }
 
 /* The next grain of a pour, if it finds a place. */
 static bool pour_one(const struct scene *s, struct packing *p, int32_t which, gsl_rng *rng,
-                     struct why *why)
+                     struct failure *failure)
 {
     const struct scene_pour *o = &s->pour[which];
     struct newcomer g = { .q = { 1, 0, 0, 0 } };
@@ -360,17 +360,17 @@ static bool pour_one(const struct scene *s, struct packing *p, int32_t which, gs
     }
     counter_start(rng, p->seed, COUNTER_PLACE, k, n, (uint64_t)p->step);
     bool poured = false;
-    crowd_gather(&c, p, o, why);
-    for (int try = 0; try < TRIES && !poured && !why->status; try++) {
+    crowd_gather(&c, p, o, failure);
+    for (int try = 0; try < TRIES && !poured && !failure->status; try++) {
         g.x = inlet_draw_place(o, p->dim, rng);
-        poured = inlet_is_free(&c, o, &g, why) && !add_grain(p, o, which, &g, why);
+        poured = inlet_is_free(&c, o, &g, failure) && !add_grain(p, o, which, &g, failure);
     }
     crowd_free(&c);
     return poured;
 }
 
 int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bool *changed,
-              struct why *why)
+              struct failure *failure)
 {
     *changed = false;
     if (!packing_varies(p)) return 0;
@@ -378,19 +378,19 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
     int32_t *row = malloc(((size_t)p->n + 1) * sizeof *row);
     gsl_rng *rng = counter_alloc();
     if (!row || !rng)
-        why_set(why, EX_SOFTWARE, "no memory for inlets and outlets");
-    else if (!remove_bodies(f, p, row, why)) {
+        failure_set(failure, EX_SOFTWARE, "no memory for inlets and outlets");
+    else if (!remove_bodies(f, p, row, failure)) {
         follow_bonds(&p->bonds, row);
         memory_follow(&p->memory, row);
         if (last) inlet_follow(last, row);
     }
-    for (int32_t k = 0; k < f->scene.pours && !why->status; k++)
-        for (int n = 0; n < POURED_MOST && !why->status; n++)
+    for (int32_t k = 0; k < f->scene.pours && !failure->status; k++)
+        for (int n = 0; n < POURED_MOST && !failure->status; n++)
             if (!inlet_is_due(&f->scene.pour[k], &p->poured[k], p->t) ||
-                !pour_one(&f->scene, p, k, rng, why))
+                !pour_one(&f->scene, p, k, rng, failure))
                 break;
     *changed = p->events.n > before;
     free(row);
     gsl_rng_free(rng);
-    return why->status;
+    return failure->status;
 }

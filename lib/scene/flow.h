@@ -27,7 +27,7 @@ struct flow {
 
 /* Of the scene that the packing keeps. Returns 0, EX_DATAERR (the scene is not the packing's) or
    EX_SOFTWARE; *flow needs to be freed only after 0. */
-int flow_read(struct flow *flow, const struct packing *p, struct why *why);
+int flow_read(struct flow *flow, const struct packing *p, struct failure *failure);
 void flow_free(struct flow *flow);
 
 /*
@@ -36,10 +36,10 @@ void flow_free(struct flow *flow);
  * new rows, and those of bodies that are gone are dropped. Returns 0, EX_DATAERR or EX_SOFTWARE.
  */
 int flow_step(const struct flow *flow, struct packing *p, struct contacts *last, bool *changed,
-              struct why *why);
+              struct failure *failure);
 
 /* Bodies are taken away by another program: row[i] is where body i goes, in the same order; < 0: it is gone. Returns 0 or
    EX_SOFTWARE. */
-int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct why *why);
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct failure *failure);
 
 #endif

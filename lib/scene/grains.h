@@ -30,18 +30,18 @@ struct grains {
 struct grain grain_at(vec3 x, double r);
 
 /* Returns 0 or EX_SOFTWARE. */
-int grains_add(struct grains *list, const struct grain *grain, struct why *why);
+int grains_add(struct grains *list, const struct grain *grain, struct failure *failure);
 void grains_free(struct grains *list);
 
 /* scene/scene_table.c: those of a table [scene/scene.h]; dir as of scene_build. Returns 0,
    EX_DATAERR with file:line, EX_NOINPUT or EX_SOFTWARE. */
 int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
-                    struct why *why);
+                    struct failure *failure);
 /* The scene's kind for kind k of a document: of its name; of another program's file as "types" has it, else of its
    name, else the first, where it has just one. -1: none */
 int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k);
 /* scene/grains.c: those of a document's frame: EX_DATAERR where a kind is none of the scene's. */
 int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
-                       struct why *why);
+                       struct failure *failure);
 
 #endif

@@ -18,14 +18,14 @@ struct hull {
     struct facet *facet; /* [facets] of these points */
 };
 
-static int hull_no_memory(struct why *why)
+static int hull_no_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "no memory for a hull");
+    return failure_set(failure, EX_SOFTWARE, "no memory for a hull");
 }
 
-static int hull_is_flat(struct why *why)
+static int hull_is_flat(struct failure *failure)
 {
-    return why_set(why, EX_DATAERR, "is flat: its points have no volume");
+    return failure_set(failure, EX_DATAERR, "is flat: its points have no volume");
 }
 
 /* ---- qhull ---- */
@@ -53,18 +53,18 @@ static struct facet facet_of(qhT *qh, facetT *f, const int32_t *number)
     return to;
 }
 
-static int take_facets(struct hull *h, qhT *qh, struct why *why)
+static int take_facets(struct hull *h, qhT *qh, struct failure *failure)
 {
     facetT *facet;
     int32_t *number = calloc((size_t)qh->facet_id + 1, sizeof *number), n = 0;
     h->facet = malloc(((size_t)qh->num_facets + 1) * sizeof *h->facet);
-    if (!number || !h->facet) hull_no_memory(why);
+    if (!number || !h->facet) hull_no_memory(failure);
     // cppcheck-suppress uninitvar ; the loop sets it
-    FORALLfacets if (!why->status) number[facet->id] = n++;
+    FORALLfacets if (!failure->status) number[facet->id] = n++;
     // cppcheck-suppress uninitvar
-    FORALLfacets if (!why->status) h->facet[h->facets++] = facet_of(qh, facet, number);
+    FORALLfacets if (!failure->status) h->facet[h->facets++] = facet_of(qh, facet, number);
     free(number);
-    return why->status;
+    return failure->status;
 }
 
 /* All are turned alike: outward, if their volume, in the plane their area, is positive. */
@@ -79,7 +79,7 @@ static void turn_outward(struct hull *h)
     for (int32_t i = 0; i < h->facets && volume < 0; i++) turn_over(&h->facet[i]);
 }
 
-static int ask_qhull(struct hull *h, struct why *why)
+static int ask_qhull(struct hull *h, struct failure *failure)
 {
     qhT state, *qh = &state;
     double *flat = malloc(((size_t)h->n * 3 + 1) * sizeof *flat);
@@ -87,7 +87,7 @@ static int ask_qhull(struct hull *h, struct why *why)
     if (!flat || !silent) {
         free(flat);
         if (silent) fclose(silent);
-        return hull_no_memory(why);
+        return hull_no_memory(failure);
     }
     for (int64_t i = 0; i < h->n; i++) {
         const double of[3] = { h->x[i].x, h->x[i].y, h->x[i].z };
@@ -96,15 +96,15 @@ static int ask_qhull(struct hull *h, struct why *why)
     char command[] = "qhull QJ";
     qh_zero(qh, silent);
     if (qh_new_qhull(qh, h->dim, (int)h->n, flat, False, command, NULL, silent))
-        hull_is_flat(why);
-    else if (!take_facets(h, qh, why))
+        hull_is_flat(failure);
+    else if (!take_facets(h, qh, failure))
         turn_outward(h);
     int left, total;
     qh_freeqhull(qh, !qh_ALL);
     qh_memfreeshort(qh, &left, &total);
     free(flat);
     fclose(silent);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- the shape ---- */
@@ -120,7 +120,7 @@ static bool hull_comes_before(const struct shape *s, const int32_t a[2], const i
 }
 
 /* Faces in the order of their corners: qhull's is its own affair. */
-static int sort_faces(struct shape *s, struct why *why)
+static int sort_faces(struct shape *s, struct failure *failure)
 {
     int32_t(*face)[2] = malloc(((size_t)s->faces + 1) * sizeof *face);
     int32_t *corner = malloc(((size_t)s->corners + 1) * sizeof *corner), n = 0;
@@ -138,9 +138,9 @@ static int sort_faces(struct shape *s, struct why *why)
     if (face && corner)
         memcpy(s->corner, corner, (size_t)n * sizeof *corner);
     else
-        hull_no_memory(why);
+        hull_no_memory(failure);
     free(face), free(corner);
-    return why->status;
+    return failure->status;
 }
 
 /* Points that are corners, numbered: number[i] from 0, -1 those that are none */
@@ -155,54 +155,54 @@ static int32_t count_corners(const struct loops *l, int64_t points, int32_t *num
 }
 
 static int hull_make_shape(struct shape *s, const struct hull *h, const struct loops *l, const vec3 *x,
-                      struct why *why)
+                      struct failure *failure)
 {
     int32_t *number = malloc(((size_t)h->n + 1) * sizeof *number), corners = l->first[l->faces];
     int32_t n = number ? count_corners(l, h->n, number) : 0;
-    if (!number) hull_no_memory(why);
+    if (!number) hull_no_memory(failure);
     if (n > SHAPE_VERTICES_MOST)
-        why_set(why, EX_DATAERR,
+        failure_set(failure, EX_DATAERR,
                 "its hull has %d corners, and a shape has %d at most: leave out points "
                 "(decimate the mesh), or make a \"clump\" of it",
                 n, SHAPE_VERTICES_MOST);
-    if (!why->status && !shape_alloc(s, n, l->faces, corners, why)) {
+    if (!failure->status && !shape_alloc(s, n, l->faces, corners, failure)) {
         for (int64_t i = 0; i < h->n; i++)
             if (number[i] >= 0) s->vertex[number[i]] = x[h->kept[i]];
         for (int32_t f = 0; f <= l->faces; f++) s->first[f] = l->first[f];
         for (int32_t i = 0; i < corners; i++) s->corner[i] = number[l->corner[i]];
-        sort_faces(s, why);
+        sort_faces(s, failure);
     }
     free(number);
-    return why->status;
+    return failure->status;
 }
 
 /* Of the points those that are apart, from the first one, in units of the extent */
-static int take_points(struct hull *h, int64_t n, const vec3 *x, struct why *why)
+static int take_points(struct hull *h, int64_t n, const vec3 *x, struct failure *failure)
 {
     double size = thin_extent(x, n);
-    if (!(size > 0)) return hull_is_flat(why);
-    if (!isfinite(size)) return why_set(why, EX_DATAERR, "the extent of its points is not finite");
+    if (!(size > 0)) return hull_is_flat(failure);
+    if (!isfinite(size)) return failure_set(failure, EX_DATAERR, "the extent of its points is not finite");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
     h->x = calloc((size_t)n + 1, sizeof *h->x);
-    if (!h->kept || !h->x) return hull_no_memory(why);
-    if (thin_out(h->kept, x, n, HULL_APART * size, why)) return why->status;
+    if (!h->kept || !h->x) return hull_no_memory(failure);
+    if (thin_out(h->kept, x, n, HULL_APART * size, failure)) return failure->status;
     for (int32_t i = 0; i < n; i++)
         if (h->kept[i] == i) h->kept[h->n++] = i; // not behind what is read
     for (int64_t i = 0; i < h->n; i++) h->x[i] = v3_scale(1 / size, v3_sub(x[h->kept[i]], x[0]));
-    return h->n > h->dim ? 0 : hull_is_flat(why);
+    return h->n > h->dim ? 0 : hull_is_flat(failure);
 }
 
-int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, struct why *why)
+int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *x, struct failure *failure)
 {
     struct hull h = { .dim = dim };
     struct loops l = { 0 };
-    if (n <= dim) return hull_is_flat(why);
-    if (!take_points(&h, n, x, why) && !ask_qhull(&h, why)) {
+    if (n <= dim) return hull_is_flat(failure);
+    if (!take_points(&h, n, x, failure) && !ask_qhull(&h, failure)) {
         const struct facets all = { h.facets, h.facet, (int32_t)h.n, h.x };
-        if (!(dim == 2 ? hull_loop : hull_faces)(&l, &all, HULL_FLAT, why))
-            hull_make_shape(s, &h, &l, x, why);
+        if (!(dim == 2 ? hull_loop : hull_faces)(&l, &all, HULL_FLAT, failure))
+            hull_make_shape(s, &h, &l, x, failure);
     }
     loops_free(&l);
     free(h.kept), free(h.x), free(h.facet);
-    return why->status;
+    return failure->status;
 }

@@ -19,6 +19,6 @@ static const double HULL_FLAT = 2e-7, HULL_APART = 1e-6;
 /* s's vertices, faces and corners from n points (m; in the plane z = 0): corners in the order of the
    points, faces in that of their corners. Returns 0, EX_DATAERR where the points have no volume, or
    EX_SOFTWARE. */
-int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *point, struct why *why);
+int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *point, struct failure *failure);
 
 #endif

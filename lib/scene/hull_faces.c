@@ -4,14 +4,14 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
-static int hull_faces_no_memory(struct why *why)
+static int hull_faces_no_memory(struct failure *failure)
 {
-    return why_set(why, EX_SOFTWARE, "no memory for a hull");
+    return failure_set(failure, EX_SOFTWARE, "no memory for a hull");
 }
 
-static int hull_faces_is_flat(struct why *why)
+static int hull_faces_is_flat(struct failure *failure)
 {
-    return why_set(why, EX_DATAERR, "is flat to rounding");
+    return failure_set(failure, EX_DATAERR, "is flat to rounding");
 }
 
 void loops_free(struct loops *l)
@@ -20,11 +20,11 @@ void loops_free(struct loops *l)
     *l = (struct loops){ 0 };
 }
 
-static int loops_alloc(struct loops *l, int32_t faces, int32_t corners, struct why *why)
+static int loops_alloc(struct loops *l, int32_t faces, int32_t corners, struct failure *failure)
 {
     l->first = calloc((size_t)faces + 1, sizeof *l->first);
     l->corner = calloc((size_t)corners + 1, sizeof *l->corner);
-    return l->first && l->corner ? 0 : hull_faces_no_memory(why);
+    return l->first && l->corner ? 0 : hull_faces_no_memory(failure);
 }
 
 /* ---- faces grow ---- */
@@ -106,7 +106,7 @@ static int by_tail(const void *one, const void *other)
 }
 
 /* Goes around each face, from its least corner. */
-static int close_loops(struct loops *l, struct hull_side *side, int32_t sides, struct why *why)
+static int close_loops(struct loops *l, struct hull_side *side, int32_t sides, struct failure *failure)
 {
     int32_t n = 0;
     qsort(side, (size_t)sides, sizeof *side, by_tail);
@@ -117,7 +117,7 @@ static int close_loops(struct loops *l, struct hull_side *side, int32_t sides, s
             l->corner[n++] = at->tail;
             const struct hull_side next = { at->face, at->head, 0 };
             at = bsearch(&next, side + start, (size_t)(end - start), sizeof *side, by_tail);
-            if (!at || (at == &side[start]) != (k == end - 1)) return hull_faces_is_flat(why);
+            if (!at || (at == &side[start]) != (k == end - 1)) return hull_faces_is_flat(failure);
         }
     }
     return 0;
@@ -144,27 +144,27 @@ static bool thin_loops(struct loops *l, int32_t *of, int32_t points)
     return n < all;
 }
 
-int hull_faces(struct loops *l, const struct facets *hull, double flat, struct why *why)
+int hull_faces(struct loops *l, const struct facets *hull, double flat, struct failure *failure)
 {
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;
     int32_t faces = hull_join(hull, flat), sides = 0;
     struct hull_side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
     int32_t *of = calloc((size_t)hull->points + 1, sizeof *of);
-    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, why)) hull_faces_no_memory(why);
-    for (int32_t i = 0; i < facets && !why->status; i++)
+    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, failure)) hull_faces_no_memory(failure);
+    for (int32_t i = 0; i < facets && !failure->status; i++)
         for (int k = 0; k < 3; k++) {
             const struct facet *f = &facet[i];
             if (facet[f->next[k]].face == f->face) continue;
             side[sides++] = (struct hull_side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
         }
-    if (!why->status && !close_loops(l, side, sides, why)) {
+    if (!failure->status && !close_loops(l, side, sides, failure)) {
         while (thin_loops(l, of, hull->points)) {
         }
-        if (l->faces < 4) hull_faces_is_flat(why);
+        if (l->faces < 4) hull_faces_is_flat(failure);
     }
     free(side), free(of);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- in the plane ---- */
@@ -176,16 +176,16 @@ static double off_line(vec3 a, vec3 b, vec3 c)
     return fabs(d.x * e.y - d.y * e.x) / v3_norm(d);
 }
 
-int hull_loop(struct loops *l, const struct facets *hull, double flat, struct why *why)
+int hull_loop(struct loops *l, const struct facets *hull, double flat, struct failure *failure)
 {
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;
     const vec3 *x = hull->x;
     struct hull_side *side = malloc(((size_t)facets + 1) * sizeof *side);
-    if (!side || loops_alloc(l, facets, facets, why)) hull_faces_no_memory(why);
-    for (int32_t i = 0; i < facets && !why->status; i++)
+    if (!side || loops_alloc(l, facets, facets, failure)) hull_faces_no_memory(failure);
+    for (int32_t i = 0; i < facets && !failure->status; i++)
         side[i] = (struct hull_side){ 0, facet[i].point[0], facet[i].point[1] };
-    if (!why->status && !close_loops(l, side, facets, why)) {
+    if (!failure->status && !close_loops(l, side, facets, failure)) {
         int32_t m = l->first[1], kept = 0;
         for (int32_t k = 0; k < m; k++) { // corners from the last one that is kept to the next one
             vec3 a = x[kept ? l->corner[kept - 1] : l->corner[m - 1]], b = x[l->corner[k]];
@@ -193,8 +193,8 @@ int hull_loop(struct loops *l, const struct facets *hull, double flat, struct wh
                 l->corner[kept++] = l->corner[k];
         }
         l->first[1] = kept;
-        if (kept < 3) hull_faces_is_flat(why);
+        if (kept < 3) hull_faces_is_flat(failure);
     }
     free(side);
-    return why->status;
+    return failure->status;
 }

@@ -36,9 +36,9 @@ struct loops {
 
 /* The faces of a hull; in a plane: what is closer to it than `flat`. Returns 0, EX_DATAERR where
    no body is left, or EX_SOFTWARE; loops_free() in any case. */
-int hull_faces(struct loops *l, const struct facets *hull, double flat, struct why *why);
+int hull_faces(struct loops *l, const struct facets *hull, double flat, struct failure *failure);
 /* The same in the plane: one loop, of segments. */
-int hull_loop(struct loops *l, const struct facets *hull, double flat, struct why *why);
+int hull_loop(struct loops *l, const struct facets *hull, double flat, struct failure *failure);
 void loops_free(struct loops *l);
 
 #endif

@@ -16,32 +16,32 @@ static void make_printable(char *s)
 }
 
 /* jansson takes a zero byte behind a number for a blank, and the text would end there. */
-static int refuse_zero(const char *text, size_t length, struct why *why)
+static int refuse_zero(const char *text, size_t length, struct failure *failure)
 {
     const char *zero = memchr(text, 0, length), *line = text;
     int lines = 1;
     if (!zero) return 0;
     for (const char *s = text; s < zero; s++)
         if (*s == '\n') lines++, line = s + 1;
-    return why_set(why, EX_DATAERR, "%d:%d: a zero byte", lines, (int)(zero - line) + 1);
+    return failure_set(failure, EX_DATAERR, "%d:%d: a zero byte", lines, (int)(zero - line) + 1);
 }
 
-int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct why *why)
+int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct failure *failure)
 {
     json_error_t e;
     size_t mark = mark_length(text, length);
-    *t = (struct json_doc){ .why = why };
+    *t = (struct json_doc){ .failure = failure };
     text += mark, length -= mark;
-    if (refuse_zero(text, length, why)) return why->status;
+    if (refuse_zero(text, length, failure)) return failure->status;
     t->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &e);
     if (!t->root) {
         make_printable(e.text);
-        return why_set(why, EX_DATAERR, "%d:%d: %s", e.line, e.column, e.text);
+        return failure_set(failure, EX_DATAERR, "%d:%d: %s", e.line, e.column, e.text);
     }
     t->text = malloc(length + 1);
     if (!t->text) {
         json_doc_free(t);
-        return why_set(why, EX_SOFTWARE, "no memory for a text of %zu bytes", length);
+        return failure_set(failure, EX_SOFTWARE, "no memory for a text of %zu bytes", length);
     }
     memcpy(t->text, text, length);
     t->text[length] = 0;
@@ -164,7 +164,7 @@ int json_node_fault(jnode n, const char *format, ...)
     size_t length = write_path(&n, way, sizeof way);
     make_printable(way), make_printable(trouble);
     line_and_column(&n, &line, &column);
-    return why_set(n.in->why, EX_DATAERR, "%d:%d: %s%s%s", line, column, way, length ? ": " : "",
+    return failure_set(n.in->failure, EX_DATAERR, "%d:%d: %s%s%s", line, column, way, length ? ": " : "",
                    trouble);
 }
 
@@ -296,7 +296,7 @@ int json_node_vector(jnode n, int dim, vec3 *out)
     if (!json_is_array(n.json) || json_array_size(n.json) != (size_t)dim)
         return json_node_fault(n, "needs %s", dim == 2 ? "[x, y], for dim is 2" : "[x, y, z]");
     for (int i = 0; i < dim; i++)
-        if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i])) return n.in->why->status;
+        if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i])) return n.in->failure->status;
     *out = v3(x[0], x[1], x[2]);
     return 0;
 }

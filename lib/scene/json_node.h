@@ -22,7 +22,7 @@
 struct json_doc {
     char *text;   /* as given, with a final 0 */
     json_t *root; /* jansson's: an object or array */
-    struct why *why;
+    struct failure *failure;
 };
 
 typedef struct json_node {
@@ -36,7 +36,7 @@ typedef struct json_node {
 enum json_range { J_ANY, J_POSITIVE, J_NOT_NEGATIVE, J_UNIT /* [0, 1] */ };
 
 /* Returns 0, EX_DATAERR (syntax error, repeated key, not an object or array) or EX_SOFTWARE. */
-int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct why *why);
+int json_doc_parse(struct json_doc *t, const char *text, size_t length, struct failure *failure);
 void json_doc_free(struct json_doc *t);
 jnode json_doc_root(struct json_doc *t);
 

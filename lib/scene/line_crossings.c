@@ -11,14 +11,14 @@ static const double ROUNDING = 1e-6; /* of the extent: solids that touch overlap
 /* Shares of h by which lines pass beside what surfaces have at round numbers */
 static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
 
-static int line_crossings_add(struct crossings *t, struct crossing c, struct why *why)
+static int line_crossings_add(struct crossings *t, struct tunnelling c, struct failure *failure)
 {
     if (t->n == CROSSINGS_MOST)
-        return why_set(why, EX_DATAERR, "has too many triangles above one another");
+        return failure_set(failure, EX_DATAERR, "has too many triangles above one another");
     if (t->n == t->room) {
         int64_t room = t->room ? 2 * t->room : 4096;
-        struct crossing *more = realloc(t->c, (size_t)room * sizeof *more);
-        if (!more) return why_set(why, EX_SOFTWARE, "no memory for a surface");
+        struct tunnelling *more = realloc(t->c, (size_t)room * sizeof *more);
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a surface");
         t->c = more, t->room = room;
     }
     t->c[t->n++] = c;
@@ -67,7 +67,7 @@ static void line_crossings_cut(const vec3 v[3], double z, double hair, double *f
     }
 }
 
-static int line_crossings_cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct why *why)
+static int line_crossings_cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct failure *failure)
 {
     int j0, j1, k0, k1;
     const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
@@ -77,9 +77,9 @@ static int line_crossings_cross(struct crossings *t, const struct lines *l, cons
         line_crossings_cut(v, l->origin.z + k * l->h, 1e-6 * l->h, &from, &to);
         line_crossings_span(l->origin.y, l->h, l->n[0], fmax(from, lo.y), fmin(to, hi.y), &j0, &j1);
         for (int j = j0; j <= j1; j++) {
-            struct crossing c = { k * l->n[0] + j, 0, 0 };
+            struct tunnelling c = { k * l->n[0] + j, 0, 0 };
             c.way = crossing_of(v, l->origin.y + j * l->h, l->origin.z + k * l->h, &c.x);
-            if (c.way && line_crossings_add(t, c, why)) return why->status;
+            if (c.way && line_crossings_add(t, c, failure)) return failure->status;
         }
     }
     return 0;
@@ -87,23 +87,23 @@ static int line_crossings_cross(struct crossings *t, const struct lines *l, cons
 
 static int line_crossings_by_place(const void *one, const void *other)
 {
-    const struct crossing *a = one, *b = other;
+    const struct tunnelling *a = one, *b = other;
     if (a->line != b->line) return a->line < b->line ? -1 : 1;
     if (a->x != b->x) return a->x < b->x ? -1 : 1;
     return a->way - b->way;
 }
 
 int crossings_find(struct crossings *t, const struct mesh *m, const struct lines *l,
-                   struct why *why)
+                   struct failure *failure)
 {
     *t = (struct crossings){ 0 };
-    for (int32_t e = 0; e < m->elements && !why->status; e++) {
+    for (int32_t e = 0; e < m->elements && !failure->status; e++) {
         vec3 v[3];
         for (int k = 0; k < 3; k++) v[k] = turned(m->vertex[m->element[e][k]], l->axis);
-        line_crossings_cross(t, l, v, why);
+        line_crossings_cross(t, l, v, failure);
     }
-    if (!why->status && t->n) qsort(t->c, (size_t)t->n, sizeof *t->c, line_crossings_by_place);
-    return why->status;
+    if (!failure->status && t->n) qsort(t->c, (size_t)t->n, sizeof *t->c, line_crossings_by_place);
+    return failure->status;
 }
 
 void crossings_free(struct crossings *t)
@@ -120,7 +120,7 @@ struct windings {
     vec3 place; /* m */
 };
 
-static void line_crossings_add_line(struct windings *w, const struct lines *l, const struct crossing *c, int64_t n,
+static void line_crossings_add_line(struct windings *w, const struct lines *l, const struct tunnelling *c, int64_t n,
                      double rounding)
 {
     int winding = 0;
@@ -141,24 +141,24 @@ static void line_crossings_add_line(struct windings *w, const struct lines *l, c
     }
 }
 
-static int line_crossings_judge(const struct windings *w, struct why *why)
+static int line_crossings_judge(const struct windings *w, struct failure *failure)
 {
     const vec3 x = w->place;
     if (w->inside_out > WRONG_MOST * (w->body + w->inside_out))
-        return why_set(why, EX_DATAERR,
+        return failure_set(failure, EX_DATAERR,
                        "is turned inside out in parts, as around (%.4g, %.4g, %.4g): turn their "
                        "faces outward",
                        x.x, x.y, x.z);
     if (w->twice > WRONG_MOST * w->body)
-        return why_set(
-            why, EX_DATAERR,
+        return failure_set(
+            failure, EX_DATAERR,
             "overlaps or encloses itself, as around (%.4g, %.4g, %.4g): %.2g of its "
             "volume counts twice; unite its solids, and turn the faces of cavities inward",
             x.x, x.y, x.z, w->twice / w->body);
     return 0;
 }
 
-int crossings_judge(const struct mesh *m, struct why *why)
+int crossings_judge(const struct mesh *m, struct failure *failure)
 {
     vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
     for (int32_t i = 0; i < m->elements; i++)
@@ -168,20 +168,20 @@ int crossings_judge(const struct mesh *m, struct why *why)
         }
     const vec3 d = v3_sub(hi, lo);
     const double extent = fmax(d.x, fmax(d.y, d.z));
-    for (int axis = 0; axis < 3 && !why->status; axis++) {
+    for (int axis = 0; axis < 3 && !failure->status; axis++) {
         const vec3 sides = turned(d, axis), from = turned(lo, axis);
         struct lines l = { .axis = axis, .h = extent / LINES };
         struct crossings t = { 0 };
         struct windings w = { 0 };
         l.n[0] = (int)(sides.y / l.h) + 1, l.n[1] = (int)(sides.z / l.h) + 1;
         l.origin = v3(0, from.y + ASIDE[1] * l.h, from.z + ASIDE[2] * l.h);
-        crossings_find(&t, m, &l, why);
-        for (int64_t i = 0, end; i < t.n && !why->status; i = end) {
+        crossings_find(&t, m, &l, failure);
+        for (int64_t i = 0, end; i < t.n && !failure->status; i = end) {
             for (end = i; end < t.n && t.c[end].line == t.c[i].line;) end++;
             line_crossings_add_line(&w, &l, t.c + i, end - i, ROUNDING * extent);
         }
         crossings_free(&t);
-        if (!why->status) line_crossings_judge(&w, why);
+        if (!failure->status) line_crossings_judge(&w, failure);
     }
-    return why->status;
+    return failure->status;
 }

@@ -17,19 +17,19 @@ struct lines {
 };
 
 /* Where a line goes through a triangle; way: +1 out of the body, -1 into it */
-struct crossing {
+struct tunnelling {
     int32_t line, way;
     double x; /* m */
 };
 
 struct crossings {
     int64_t n, room;
-    struct crossing *c; /* [n] by line, x and way */
+    struct tunnelling *c; /* [n] by line, x and way */
 };
 
 /* Returns 0, EX_DATAERR where there are too many, or EX_SOFTWARE; crossings_free() in any case. */
 int crossings_find(struct crossings *out, const struct mesh *m, const struct lines *l,
-                   struct why *why);
+                   struct failure *failure);
 void crossings_free(struct crossings *c);
 
 /* The way of the line y, z along x through a triangle, as above, and where; 0: it passes beside. Of two triangles at a side a
@@ -38,6 +38,6 @@ int crossing_of(const vec3 v[3], double y, double z, double *x);
 
 /* Is a closed surface that of a body: nowhere twice around a place, and nowhere inside out? Lines along each axis, 128
    along the longest side, look for parts of 1e-3 of the volume. Returns 0, EX_DATAERR or EX_SOFTWARE. */
-int crossings_judge(const struct mesh *m, struct why *why);
+int crossings_judge(const struct mesh *m, struct failure *failure);
 
 #endif

@@ -28,63 +28,63 @@ static const struct mesh_format *format_of(const struct mesh_bytes *b)
 
 /* Faces first .. end-1 of the surface are of this part: each of its names */
 static int give_part(struct scene_files *files, const char *part, int32_t first, int32_t end,
-                     struct why *why)
+                     struct failure *failure)
 {
     char name[NAME_BYTES + 1];
     for (const char *at = part, *next; *at; at = next + 1) {
         next = strchr(at, '\n');
         snprintf(name, sizeof name, "%.*s", (int)(next - at), at);
-        if (names_give(files->parts, name, files->wall, first, end - first, why)) break;
+        if (names_give(files->parts, name, files->wall, first, end - first, failure)) break;
     }
-    return why->status;
+    return failure->status;
 }
 
 /* The parts of a surface are named: each run of triangles that are of one. */
-static int give_names(struct scene_files *files, const struct soup *s, struct why *why)
+static int give_names(struct scene_files *files, const struct soup *s, struct failure *failure)
 {
     if (!s->parts)
-        return why_set(why, EX_DATAERR, "%s: has no groups: \"parts\": [{name, faces}, ...]",
+        return failure_set(failure, EX_DATAERR, "%s: has no groups: \"parts\": [{name, faces}, ...]",
                        s->name);
-    for (int32_t i = 0, end; i < s->triangles && !why->status; i = end) {
+    for (int32_t i = 0, end; i < s->triangles && !failure->status; i = end) {
         for (end = i + 1; end < s->triangles && s->part_of[end] == s->part_of[i];) end++;
-        if (s->part_of[i] >= 0) give_part(files, s->part[s->part_of[i]], i, end, why);
+        if (s->part_of[i] >= 0) give_part(files, s->part[s->part_of[i]], i, end, failure);
     }
-    return why->status;
+    return failure->status;
 }
 
 int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mesh_bytes *b,
-                    int32_t *left_out, struct why *why)
+                    int32_t *left_out, struct failure *failure)
 {
     struct soup s = {
-        .name = b->name, .why = why, .work = MESH_WORK_MOST - files->mesh_work, .now = -1
+        .name = b->name, .failure = failure, .work = MESH_WORK_MOST - files->mesh_work, .now = -1
     };
     const struct mesh_format *format = format_of(b);
     if (!format)
-        return why_set(why, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
+        return failure_set(failure, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
                        b->name);
     s.grouped = files->parts != NULL;
     if (s.grouped && format != &mesh_obj)
-        why_set(why, EX_DATAERR, "%s: only OBJ files have groups: name ranges of faces instead",
+        failure_set(failure, EX_DATAERR, "%s: only OBJ files have groups: name ranges of faces instead",
                 b->name);
     else if (!format->read(&s, b->at, b->n) && !soup_mesh(to, &s, b->scale, left_out) && s.grouped)
-        give_names(files, &s, why);
+        give_names(files, &s, failure);
     files->mesh_work = MESH_WORK_MOST - s.work;
     soup_free(&s);
-    return why->status;
+    return failure->status;
 }
 
 /* Opens a plain file; nothing else has an end that is known. Returns -1 after a fault. */
-static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, struct why *why)
+static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, struct failure *failure)
 {
     struct stat st;
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // of a FIFO it would wait
     if (fd < 0 || fstat(fd, &st))
-        why_set(why, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
+        failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
     else if (!S_ISREG(st.st_mode))
-        why_set(why, EX_NOINPUT, "%s: no plain file: a mesh is not read from a %s", path,
+        failure_set(failure, EX_NOINPUT, "%s: no plain file: a mesh is not read from a %s", path,
                 S_ISDIR(st.st_mode) ? "directory" : "pipe or device");
     else if (st.st_size > most)
-        why_set(why, EX_DATAERR, "%s: meshes of more than %d bytes in all", path, MESH_BYTES_MOST);
+        failure_set(failure, EX_DATAERR, "%s: meshes of more than %d bytes in all", path, MESH_BYTES_MOST);
     else
         return *size = st.st_size, fd;
     if (fd >= 0) close(fd);
@@ -92,14 +92,14 @@ static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, s
 }
 
 /* The bytes that the file had when it was opened, and a 0 */
-static char *slurp(int fd, const char *path, int64_t size, int64_t *n, struct why *why)
+static char *slurp(int fd, const char *path, int64_t size, int64_t *n, struct failure *failure)
 {
     char *bytes = malloc((size_t)size + 1);
-    if (!bytes) why_set(why, EX_SOFTWARE, "%s: no memory for %lld bytes", path, (long long)size);
+    if (!bytes) failure_set(failure, EX_SOFTWARE, "%s: no memory for %lld bytes", path, (long long)size);
     for (*n = 0; bytes && *n < size;) {
         ssize_t more = read(fd, bytes + *n, (size_t)(size - *n));
         if (more < 0 && errno == EINTR) continue;
-        if (more < 0) why_set(why, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
+        if (more < 0) failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
         if (more <= 0) break;
         *n += more;
     }
@@ -108,39 +108,39 @@ static char *slurp(int fd, const char *path, int64_t size, int64_t *n, struct wh
 }
 
 static int read_path(struct mesh *to, struct scene_files *files, const char *path, double scale,
-                     int32_t *left_out, struct why *why)
+                     int32_t *left_out, struct failure *failure)
 {
     int64_t size, n;
-    int fd = mesh_file_open_plain(path, MESH_BYTES_MOST - files->mesh_bytes, &size, why);
-    if (fd < 0) return why->status;
+    int fd = mesh_file_open_plain(path, MESH_BYTES_MOST - files->mesh_bytes, &size, failure);
+    if (fd < 0) return failure->status;
     files->mesh_bytes += size;
-    char *bytes = slurp(fd, path, size, &n, why);
+    char *bytes = slurp(fd, path, size, &n, failure);
     close(fd);
     const struct mesh_bytes all = { path, bytes, n, scale };
-    if (!why->status) mesh_bytes_read(to, files, &all, left_out, why);
+    if (!failure->status) mesh_bytes_read(to, files, &all, left_out, failure);
     free(bytes);
-    return why->status;
+    return failure->status;
 }
 
 int mesh_file_read(struct mesh *to, struct scene_files *files, const char *name, double scale,
-                   int32_t *left_out, struct why *why)
+                   int32_t *left_out, struct failure *failure)
 {
     char *path = scene_path(files->dir, name);
-    if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
-    read_path(to, files, path, scale, left_out, why);
+    if (!path) return failure_set(failure, EX_SOFTWARE, "no memory for a name");
+    read_path(to, files, path, scale, left_out, failure);
     free(path);
-    return why->status;
+    return failure->status;
 }
 
-int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why)
+int mesh_files_read(struct scene *s, struct scene_files *files, struct failure *failure)
 {
-    for (int32_t k = 0; k < s->meshes && !why->status; k++) {
+    for (int32_t k = 0; k < s->meshes && !failure->status; k++) {
         struct scene_mesh *m = &s->mesh_file[k];
         struct wall *w = &s->wall[m->wall];
         w->first_element = s->mesh.elements;
         files->parts = m->groups ? &s->names : NULL, files->wall = m->wall;
-        if (mesh_file_read(&s->mesh, files, m->file, m->scale, &m->left_out, why))
-            return why->status;
+        if (mesh_file_read(&s->mesh, files, m->file, m->scale, &m->left_out, failure))
+            return failure->status;
         w->elements = s->mesh.elements - w->first_element;
     }
     return 0;

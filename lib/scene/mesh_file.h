@@ -17,9 +17,9 @@ enum {
    to its accounts; *left_out: triangles that are not there [scene/soup.h]. Returns 0, EX_NOINPUT,
    EX_DATAERR or EX_SOFTWARE. */
 int mesh_file_read(struct mesh *to, struct scene_files *files, const char *name, double scale,
-                   int32_t *left_out, struct why *why);
+                   int32_t *left_out, struct failure *failure);
 /* Reads the files of all meshes of the scene, and adds their triangles, as above. */
-int mesh_files_read(struct scene *s, struct scene_files *files, struct why *why);
+int mesh_files_read(struct scene *s, struct scene_files *files, struct failure *failure);
 /* What a file has */
 struct mesh_bytes {
     const char *name;
@@ -29,6 +29,6 @@ struct mesh_bytes {
 };
 /* The same of bytes */
 int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mesh_bytes *b,
-                    int32_t *left_out, struct why *why);
+                    int32_t *left_out, struct failure *failure);
 
 #endif

@@ -103,7 +103,7 @@ int words_number(struct words *w, double *x)
 int words_whole(struct words *w, int64_t *i)
 {
     double x = 0;
-    if (words_number(w, &x)) return w->soup->why->status;
+    if (words_number(w, &x)) return w->soup->failure->status;
     if (!(x == floor(x) && fabs(x) < 1e15)) return soup_fault(w->soup, "%g is no whole number", x);
     *i = (int64_t)x;
     return 0;

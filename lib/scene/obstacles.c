@@ -63,7 +63,7 @@ static bool is_loop(const struct surface *s)
 /* Is the wall's part of the mesh closed? */
 static bool is_closed(const struct packing *p, const struct wall *w, const struct surface *s)
 {
-    struct why none = { 0 };
+    struct failure none = { 0 };
     const struct mesh part = { p->mesh.vertices, w->elements, p->mesh.vertex,
                                p->mesh.element + w->first_element };
     return s->n > 0 && (p->dim == 2 ? is_loop(s) : !mesh_closed(&part, &none));
@@ -203,19 +203,19 @@ static void obstacles_judge_sides(struct obstacles *all, const struct scene_box 
 }
 
 int obstacles_init(struct obstacles *all, const struct packing *p, const struct scene_box *box,
-                   const struct cell *cell, struct why *why)
+                   const struct cell *cell, struct failure *failure)
 {
     *all = (struct obstacles){ .p = p, .free = 1 };
     all->o = calloc((size_t)p->walls + 1, sizeof *all->o);
-    if (!all->o) return why_set(why, EX_SOFTWARE, "no memory for the walls");
+    if (!all->o) return failure_set(failure, EX_SOFTWARE, "no memory for the walls");
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         if (!wall_there(wall, p->t)) continue;
         struct obstacle *o = &all->o[all->n++];
         o->wall = w, o->pose = wall_pose(p, wall, p->t);
         if (wall->shape == BOUNDARY_MESH && surface_init(&o->surface, &p->mesh, wall->first_element,
-                                                         wall->elements, wall->weld, why))
-            return why->status;
+                                                         wall->elements, wall->weld, failure))
+            return failure->status;
         o->surface.seen = &all->seen, o->surface.seen_most = OBSTACLES_SEEN;
         o->sided = has_sides(p, o);
     }

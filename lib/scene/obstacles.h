@@ -36,7 +36,7 @@ struct obstacles {
 /* The walls of p at its time, for a group in the box, or in its cell where `cell`. Returns 0, EX_DATAERR or EX_SOFTWARE;
    obstacles_free() in any case. */
 int obstacles_init(struct obstacles *all, const struct packing *p, const struct scene_box *box,
-                   const struct cell *cell, struct why *why);
+                   const struct cell *cell, struct failure *failure);
 void obstacles_free(struct obstacles *all);
 
 /* Does the ball at x with radius r (m) touch a wall, or lie on the wrong side of one? */

@@ -184,15 +184,15 @@ static vec3 random_start_draw_place(const struct random_start_all *s, int64_t i,
     return v3(x[0], x[1], x[2]);
 }
 
-static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, struct why *why)
+static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, struct failure *failure)
 {
     struct random_start_placed t;
     int64_t all = TRIES_FREE + TRIES_MEAN * s->p.n;
     if (!placed_alloc(&t, s)) {
         random_start_placed_free(&t);
-        return why_set(why, EX_SOFTWARE, "no memory for a random start");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a random start");
     }
-    for (int64_t i = 0; i < s->p.n && !why->status; i++) {
+    for (int64_t i = 0; i < s->p.n && !failure->status; i++) {
         int tries = 0;
         bool found;
         do {
@@ -200,7 +200,7 @@ static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, 
             found = random_start_is_free(&t, s, i, s->p.x[i]);
         } while (!found && ++tries < TRIES && --all > 0);
         if (!found)
-            why_set(why, EX_DATAERR,
+            failure_set(failure, EX_DATAERR,
                     "%lld of %lld bodies found a place at random between the walls; they are to "
                     "fill %.3g of the box, of which %.3g is free: a smaller phi or count, or a "
                     "wider box",
@@ -212,7 +212,7 @@ static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, 
         l->head[random_start_bucket(l, c)] = i;
     }
     random_start_placed_free(&t);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- growth ---- */
@@ -289,13 +289,13 @@ static void push_in(struct random_start_all *s, int64_t i)
 
 /* Sweeps over the pairs until no overlap is above `most` (smaller radii); *left: the largest. */
 static int push_apart(struct random_start_all *s, struct neighbours *near, double most, int sweeps,
-                      double *left, struct why *why)
+                      double *left, struct failure *failure)
 {
     double sum = 0;
     for (int64_t i = 0; i < s->p.n; i++) sum += radius(s, i);
     double reach = REACH * sum / (double)(s->p.n ? s->p.n : 1);
     vec3 *listed = malloc(((size_t)s->p.n + 1) * sizeof *listed);
-    if (!listed) return why_set(why, EX_SOFTWARE, "no memory for a random start");
+    if (!listed) return failure_set(failure, EX_SOFTWARE, "no memory for a random start");
     bool fresh = false;
     for (int k = 0; k < sweeps; k++) {
         double moved = 0;
@@ -306,7 +306,7 @@ static int push_apart(struct random_start_all *s, struct neighbours *near, doubl
         if (!fresh || moved > 0.2 * reach * reach) { // 0.45 reach: each of a pair
             wrap(s);
             const struct positions at = positions_now(&s->p);
-            if (neighbours_find(near, &s->p, &at, reach, false, why)) break;
+            if (neighbours_find(near, &s->p, &at, reach, false, failure)) break;
             memcpy(listed, s->p.x, (size_t)s->p.n * sizeof *listed);
             fresh = true;
         }
@@ -316,21 +316,21 @@ static int push_apart(struct random_start_all *s, struct neighbours *near, doubl
         for (int64_t i = 0; i < s->p.n; i++) push_in(s, i);
         for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
         if (s->walls.seen > OBSTACLES_SEEN)
-            why_set(why, EX_DATAERR,
+            failure_set(failure, EX_DATAERR,
                     "a mesh is much finer than the grains, or crowded: a coarser one");
-        if (*left <= most || why->status) break;
+        if (*left <= most || failure->status) break;
     }
     free(listed);
-    return why->status;
+    return failure->status;
 }
 
 /* What overlaps in the end, all pushing done, in smaller radii */
-static int worst(struct random_start_all *s, struct neighbours *near, double *left, struct why *why)
+static int worst(struct random_start_all *s, struct neighbours *near, double *left, struct failure *failure)
 {
     *left = 0;
     wrap(s);
     const struct positions at = positions_now(&s->p);
-    if (neighbours_find(near, &s->p, &at, 0, false, why)) return why->status;
+    if (neighbours_find(near, &s->p, &at, 0, false, failure)) return failure->status;
     for (int64_t i = 0; i < near->list.n; i++) {
         int64_t a = near->list.pair[i].a, b = near->list.pair[i].b;
         double r = s->p.radius[a] + s->p.radius[b];
@@ -352,25 +352,25 @@ static double height_of(const struct random_start_all *s, double volume)
 }
 
 /* From s->scale to 1 */
-static int random_start_grow(struct random_start_all *s, double phi, struct why *why)
+static int random_start_grow(struct random_start_all *s, double phi, struct failure *failure)
 {
     struct neighbours near = { 0 };
     double step = pow(s->scale, -1.0 / STEPS), left = 0;
-    while (s->scale < 1 && !why->status) {
+    while (s->scale < 1 && !failure->status) {
         s->scale = fmin(1, s->scale * step);
-        push_apart(s, &near, BETWEEN, SWEEPS, &left, why);
+        push_apart(s, &near, BETWEEN, SWEEPS, &left, failure);
     }
-    for (int k = 0; k < 50 && !why->status; k++) { // the last sweep moves grains, too
-        push_apart(s, &near, 0, LAST / 50, &left, why);
-        if (why->status || worst(s, &near, &left, why) || left == 0) break;
+    for (int k = 0; k < 50 && !failure->status; k++) { // the last sweep moves grains, too
+        push_apart(s, &near, 0, LAST / 50, &left, failure);
+        if (failure->status || worst(s, &near, &left, failure) || left == 0) break;
     }
-    if (!why->status && left > 0)
-        why_set(why, EX_DATAERR,
+    if (!failure->status && left > 0)
+        failure_set(failure, EX_DATAERR,
                 "phi %g: the grains do not go in, %.2g of a radius overlaps: they need a height of "
                 "about %.4g m along %c",
                 phi, left, height_of(s, s->volume), "xyz"[s->dim - 1]);
     neighbours_free(&near);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- */
@@ -392,7 +392,7 @@ static double box_volume(const struct scene_box *b, int dim)
 /* The radii: `count` of them, or as many as fill phi of the room (m^3, m^2) best. Returns what the balls around
    them fill, which are what is placed; of a count that is too large, what those fill that were drawn. */
 static double draw_radii(struct grains *out, const struct scene_bodies *b, int dim, double room,
-                         gsl_rng *rng, struct why *why)
+                         gsl_rng *rng, struct failure *failure)
 {
     double filled = 0, least = (double)b->count * random_start_volume(dim, b->size.min) / room;
     int64_t most = b->phi > 0 ? FILL_MOST : b->count;
@@ -403,14 +403,14 @@ static double draw_radii(struct grains *out, const struct scene_bodies *b, int d
         if (b->phi > 0 && filled + v > b->phi * room &&
             filled + v - b->phi * room > b->phi * room - filled)
             break;
-        if (grains_add(out, &g, why)) break;
+        if (grains_add(out, &g, failure)) break;
         filled += v;
         if (b->phi > 0 && filled >= b->phi * room) break;
         if (i >= FILL_MOST && filled > FULL * b->form.fill * room) break;
     }
     if (b->phi > 0 && out->n == FILL_MOST && filled < b->phi * room)
-        why_set(
-            why, EX_DATAERR,
+        failure_set(
+            failure, EX_DATAERR,
             "phi %g takes more than %d grains of such radii, these fill %.2g: larger ones, or a "
             "smaller box",
             b->phi, FILL_MOST, filled / room);
@@ -430,15 +430,15 @@ static int random_start_larger_first(const void *one, const void *other)
 }
 
 /* The bodies of s, the largest first; from[]: which of the radii each has */
-static int sort_radii(struct random_start_all *s, const struct grains *g, struct why *why)
+static int sort_radii(struct random_start_all *s, const struct grains *g, struct failure *failure)
 {
-    int e = packing_init(&s->p, s->dim, g->n, why);
+    int e = packing_init(&s->p, s->dim, g->n, failure);
     if (e) return e;
     struct drawn *d = malloc(((size_t)g->n + 1) * sizeof *d);
     s->from = malloc(((size_t)g->n + 1) * sizeof *s->from);
     if (!d || !s->from) {
         free(d);
-        return why_set(why, EX_SOFTWARE, "no memory for a random start");
+        return failure_set(failure, EX_SOFTWARE, "no memory for a random start");
     }
     for (int64_t i = 0; i < g->n; i++) d[i] = (struct drawn){ g->g[i].r, i };
     qsort(d, (size_t)g->n, sizeof *d, random_start_larger_first);
@@ -458,46 +458,46 @@ static double cell_volume(const struct cell *c, int dim)
 }
 
 /* The grains are in this cell, at rest, for the search of pairs. */
-static int random_start_set_cell(struct random_start_all *s, struct why *why)
+static int random_start_set_cell(struct random_start_all *s, struct failure *failure)
 {
     if (!s->cell) return 0;
     for (int k = 0; k < 3; k++)
         s->p.cell.edge[k] = s->cell->edge[k], s->p.cell.repeats[k] = s->cell->repeats[k];
     s->p.cell.origin = s->cell->origin;
-    return cell_repeats(s->cell) ? packing_alloc_images(&s->p, why) : 0;
+    return cell_repeats(s->cell) ? packing_alloc_images(&s->p, failure) : 0;
 }
 
 int random_start(struct grains *out, const struct scene_bodies *b, int dim, const struct cell *cell,
-                 const struct packing *walls, gsl_rng *rng, struct why *why)
+                 const struct packing *walls, gsl_rng *rng, struct failure *failure)
 {
     /* cells of the grid count from the corner of b->box, wherever the cell is */
     struct random_start_all s = { .dim = dim, .box = &b->box, .cell = cell, .scale = 1 };
     if (cell) cell_inverse(cell->edge, s.inverse), cell_heights(cell, s.height);
-    if (walls && obstacles_init(&s.walls, walls, &b->box, cell, why)) {
+    if (walls && obstacles_init(&s.walls, walls, &b->box, cell, failure)) {
         obstacles_free(&s.walls);
-        return why->status;
+        return failure->status;
     }
     if (!walls) s.walls.free = 1;
     double room = s.walls.free * (cell ? cell_volume(cell, dim) : box_volume(&b->box, dim));
     if (!isfinite(room)) {
         obstacles_free(&s.walls);
-        return why_set(why, EX_DATAERR, "the box is too large: its volume is not a finite number");
+        return failure_set(failure, EX_DATAERR, "the box is too large: its volume is not a finite number");
     }
-    double phi = draw_radii(out, b, dim, room, rng, why);
+    double phi = draw_radii(out, b, dim, room, rng, failure);
     s.volume = phi * room;
-    if (!why->status && !(phi <= FULL))
-        why_set(
-            why, EX_DATAERR,
+    if (!failure->status && !(phi <= FULL))
+        failure_set(
+            failure, EX_DATAERR,
             "a random start cannot fill %.3g of its box, of which %.3g is free of walls: at %g it "
             "is %.4g m high",
             phi * s.walls.free, s.walls.free, dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
-    if (!why->status && !sort_radii(&s, out, why) && !random_start_set_cell(&s, why)) {
+    if (!failure->status && !sort_radii(&s, out, failure) && !random_start_set_cell(&s, failure)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
-        if (!add_one_by_one(&s, phi, rng, why) && s.scale < 1) random_start_grow(&s, phi, why);
-        for (int64_t i = 0; i < out->n && !why->status; i++) out->g[s.from[i]].x = s.p.x[i];
+        if (!add_one_by_one(&s, phi, rng, failure) && s.scale < 1) random_start_grow(&s, phi, failure);
+        for (int64_t i = 0; i < out->n && !failure->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);
     obstacles_free(&s.walls);
     free(s.from);
-    return why->status;
+    return failure->status;
 }

@@ -21,6 +21,6 @@
    [scene/obstacles.h]. Returns 0, EX_DATAERR where they do not go in, or EX_SOFTWARE. */
 int random_start(struct grains *out, const struct scene_bodies *group, int dim,
                  const struct cell *cell, const struct packing *walls, gsl_rng *rng,
-                 struct why *why);
+                 struct failure *failure);
 
 #endif

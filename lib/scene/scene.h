@@ -231,7 +231,7 @@ struct scene_pour {
     int32_t kind;
     int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
-    struct passage poured; /* what it has brought before the scene begins */
+    struct flow_count poured; /* what it has brought before the scene begins */
 };
 
 /* Which grains go, and when: bodies whose centre is there */
@@ -244,7 +244,7 @@ struct scene_removal {
     int32_t *id;        /* [ids], rising */
     int32_t group;      /* only bodies of this group, 1 + row of the scene's names; 0: of all */
     double from, until; /* s */
-    struct passage removed; /* what it has taken before the scene begins */
+    struct flow_count removed; /* what it has taken before the scene begins */
 };
 
 /* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the
@@ -344,13 +344,13 @@ struct scene_files {
         *parts; /* of the mesh that is read its groups are wanted, for this wall; else NULL */
     int32_t wall;
     int (*read_mesh)(struct mesh *to, struct scene_files *files, const char *name, double scale,
-                     int32_t *left_out, struct why *why);
+                     int32_t *left_out, struct failure *failure);
 };
 
 /* files: NULL where shapes of grains must not be in files; the scene's text then has what was in them.
    Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE; *s needs to be freed only after 0. */
 int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
-                struct why *why);
+                struct failure *failure);
 void scene_free(struct scene *s);
 /* A file that the scene names, where names are relative to dir (NULL: to the current folder); to be freed.
    NULL: no memory. */
@@ -362,6 +362,6 @@ char *scene_path(const char *dir, const char *name);
  * rounded and at least 1 (in the plane 25 (n/500)^(1/2)), so that all heaps have the same
  * proportions. n = 0 is an empty box. Parsed from its JSON text like any other scene.
  */
-int scene_paper(struct scene *s, int dim, int64_t n, struct why *why);
+int scene_paper(struct scene *s, int dim, int64_t n, struct failure *failure);
 
 #endif

@@ -106,7 +106,7 @@ static int scene_bodies_read_document(jnode o, struct scene_bodies *b)
         json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest))
         return 1;
     b->file = strdup(name);
-    return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
+    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
 }
 
 /* "types": which kind each type of the file is */
@@ -125,7 +125,7 @@ static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
             return json_node_fault(n, "types are whole numbers");
         if (scene_read_kind(n, s, &b->type[b->types].kind)) return 1;
         if (!(b->type[b->types++].name = strdup(name)))
-            return why_set(o.in->why, EX_SOFTWARE, "no memory for the types of a file");
+            return failure_set(o.in->failure, EX_SOFTWARE, "no memory for the types of a file");
     }
     return 0;
 }
@@ -153,7 +153,7 @@ static int read_import(jnode o, const struct scene *s, struct scene_bodies *b)
         scene_bodies_read_repeats(json_node_key(&o, "repeats"), s->dim, b))
         return 1;
     b->foreign = true, b->file = strdup(name);
-    return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
+    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
 }
 
 static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
@@ -179,7 +179,7 @@ static int scene_bodies_read_table(jnode o, struct scene_bodies *b)
         json_node_text(json_node_key(&o, "file"), &name))
         return 1;
     b->file = strdup(name);
-    return b->file ? 0 : why_set(o.in->why, EX_SOFTWARE, "no memory for a file name");
+    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
 }
 
 int scene_read_spin(jnode n, int dim, vec3 *w)

@@ -10,6 +10,6 @@
  * name are looked for in dir (NULL: the working directory). Returns 0, EX_DATAERR (also for bodies
  * that overlap), EX_NOINPUT (a table cannot be read) or EX_SOFTWARE; p needs freeing only after 0.
  */
-int scene_build(struct packing *p, const struct scene *s, const char *dir, struct why *why);
+int scene_build(struct packing *p, const struct scene *s, const char *dir, struct failure *failure);
 
 #endif

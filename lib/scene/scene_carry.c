@@ -66,7 +66,7 @@ static vec3 move_anchor(const struct carried *y, int32_t wall, vec3 at)
     return quat_turn_back(now.q, v3_sub(pose_of(&was, at), now.shift));
 }
 
-static int carry_bonds(const struct carried *y, struct why *why)
+static int carry_bonds(const struct carried *y, struct failure *failure)
 {
     struct packing *p = y->p;
     for (int64_t i = 0; p->law && i < y->from->bonds.n; i++) {
@@ -80,18 +80,18 @@ static int carry_bonds(const struct carried *y, struct why *why)
         if (!has_images(y, b.shift) || (!bonds && !b.wet)) continue;
         if (!bonds) b.beta = 0;
         if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
-        if (!bonds_add(&p->bonds, &b)) return why_set(why, EX_SOFTWARE, "no memory for the bonds");
+        if (!bonds_add(&p->bonds, &b)) return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     }
     return 0;
 }
 
-static int carry_memory(const struct carried *y, struct why *why)
+static int carry_memory(const struct carried *y, struct failure *failure)
 {
     struct memory *m = &y->p->memory;
     const struct memory *from = &y->from->memory;
     if (!from->on || !continues(y->s, y->from)) return 0;
     struct recall *more = realloc(m->recall, (size_t)(m->n + from->n + 1) * sizeof *more);
-    if (!more) return why_set(why, EX_SOFTWARE, "no memory for the last reactions");
+    if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     m->recall = more, m->room = m->n + from->n + 1, m->on = true;
     for (int64_t i = 0; i < from->n; i++) {
         struct recall x = from->recall[i];
@@ -102,37 +102,37 @@ static int carry_memory(const struct carried *y, struct why *why)
     return 0;
 }
 
-static int carry_force(const struct carried *y, const vec3 *from, vec3 **to, struct why *why)
+static int carry_force(const struct carried *y, const vec3 *from, vec3 **to, struct failure *failure)
 {
     if (!from) return 0;
-    if (outside_alloc(to, y->p->n, why)) return why->status;
+    if (external_force_alloc(to, y->p->n, failure)) return failure->status;
     memcpy(*to + y->row, from, (size_t)y->from->n * sizeof *from);
     return 0;
 }
 
-static int carry_forces(const struct carried *y, struct why *why)
+static int carry_forces(const struct carried *y, struct failure *failure)
 {
     const struct lasting *from = &y->from->outside.lasts;
     struct lasting *to = &y->p->outside.lasts;
-    if (carry_force(y, from->force, &to->force, why) ||
-        carry_force(y, from->torque, &to->torque, why))
-        return why->status;
+    if (carry_force(y, from->force, &to->force, failure) ||
+        carry_force(y, from->torque, &to->torque, failure))
+        return failure->status;
     if (!from->push || !same_walls(y->p, y->s, y->from)) return 0;
     free(to->push);
     to->push = calloc((size_t)y->p->walls + 1, sizeof *to->push);
-    if (!to->push) return why_set(why, EX_SOFTWARE, "no memory for forces on walls");
+    if (!to->push) return failure_set(failure, EX_SOFTWARE, "no memory for forces on walls");
     memcpy(to->push, from->push, (size_t)y->p->walls * sizeof *to->push);
     return 0;
 }
 
-static int carry_run(const struct carried *y, struct why *why)
+static int carry_run(const struct carried *y, struct failure *failure)
 {
     struct packing *p = y->p;
     if (!continues(y->s, y->from)) return 0;
     for (int64_t i = 0; p->image && y->from->image && i < y->from->n; i++)
         memcpy(p->image[y->row + i], y->from->image[i], sizeof *p->image);
     if (p->overlap == OVERLAP_UNSAID) p->overlap = y->from->overlap;
-    return carry_forces(y, why);
+    return carry_forces(y, failure);
 }
 
 /* Grains of pours are numbered from the first number that the document has for them. */
@@ -150,18 +150,18 @@ static void carry_account(struct packing *p, const struct scene *s, const struct
     p->first_id = (int32_t)first;
 }
 
-int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct why *why)
+int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct failure *failure)
 {
     const struct packing *first = NULL;
-    for (int64_t g = 0; g < s->groups && !why->status; g++) {
+    for (int64_t g = 0; g < s->groups && !failure->status; g++) {
         const struct carried y = { p, s, s->bodies[g].document, row[g] };
         if (!y.from || s->bodies[g].foreign) continue;
         if (!first) first = y.from;
-        if (!carry_bonds(&y, why) && !carry_memory(&y, why)) carry_run(&y, why);
+        if (!carry_bonds(&y, failure) && !carry_memory(&y, failure)) carry_run(&y, failure);
     }
     bonds_sort(&p->bonds), memory_sort(&p->memory);
     carry_account(p, s, first);
-    return why->status;
+    return failure->status;
 }
 
 void scene_carry_dt(struct packing *p, const struct scene *s)

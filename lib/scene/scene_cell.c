@@ -194,7 +194,7 @@ static int read_stress(jnode o, int dim, struct scene_cell *out)
 int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cell *out)
 {
     struct cell *c = &out->cell;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *c = cell_none();
     if (!o.json) return 0;
     if (json_is_null(o.json)) return out->none = true, 0;
@@ -215,5 +215,5 @@ int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cel
         return 1;
     if (out->goes_on) return 0;
     cell_set_rate(c, t);
-    return cell_check(c, dim, 0, &why) ? json_node_fault(o, "%s", why.text) : 0;
+    return cell_check(c, dim, 0, &failure) ? json_node_fault(o, "%s", failure.text) : 0;
 }

@@ -7,7 +7,7 @@
 static void *scene_drives_grown(jnode at, void *array, int32_t n, size_t more, size_t size)
 {
     void *new = realloc(array, ((size_t)n + more + 1) * size);
-    if (!new) why_set(at.in->why, EX_SOFTWARE, "no memory for the drives");
+    if (!new) failure_set(at.in->failure, EX_SOFTWARE, "no memory for the drives");
     return new;
 }
 

@@ -28,7 +28,7 @@ static int read_opening(jnode o, int dim, struct scene_pour *p)
 }
 
 /* What a pour or a removal has done before the scene begins, as nsd-info --scene prints it */
-static int read_passage(jnode o, struct passage *p)
+static int read_passage(jnode o, struct flow_count *p)
 {
     if (!o.json) return 0;
     return json_node_only(o, "bodies mass") || json_node_need(&o, "bodies mass") ||

@@ -42,7 +42,7 @@ static int add_kind(jnode n, struct scene *s, const char *name, double density)
     const char *trouble = name_trouble_of_kind(name, strlen(name));
     if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
     s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
-    if (!s->kind[s->kinds].name) return why_set(n.in->why, EX_SOFTWARE, "no memory for a kind");
+    if (!s->kind[s->kinds].name) return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
     s->kinds++;
     return 0;
 }

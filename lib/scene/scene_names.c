@@ -21,7 +21,7 @@ int scene_read_group(jnode n, struct scene *s, int32_t *group)
     const char *name;
     int32_t which = -1;
     if (scene_read_name(n, s, &name)) return 1;
-    if (name && names_add(&s->names, name, &which, n.in->why)) return 1;
+    if (name && names_add(&s->names, name, &which, n.in->failure)) return 1;
     *group = which + 1;
     return 0;
 }
@@ -40,8 +40,8 @@ static int scene_material_read_part(jnode o, struct scene *s)
         json_node_integer(json_node_item(&faces, 1), 0, INT32_MAX - 1, &last))
         return 1;
     if (first > last) return json_node_fault(faces, "its first face is behind its last");
-    struct why *why = o.in->why;
-    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1), why);
+    struct failure *failure = o.in->failure;
+    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1), failure);
 }
 
 int scene_read_parts(jnode a, struct scene *s, bool *groups)

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-int scene_paper(struct scene *s, int dim, int64_t n, struct why *why)
+int scene_paper(struct scene *s, int dim, int64_t n, struct failure *failure)
 {
     char text[1000], y[64] = "";
     bool two = n == 4;
@@ -22,5 +22,5 @@ int scene_paper(struct scene *s, int dim, int64_t n, struct why *why)
                  (long long)n, dim == 2 ? "disc" : "ball", n == 1 ? "" : "s", dim,
                  two ? "1e-4" : "5e-5", two ? 9 : 1, dim == 2 ? "[0, -9.81]" : "[0, 0, -9.81]",
                  (long long)n, two ? "4e-4" : "2.5e-4", half, half, y, dim == 2 ? 'y' : 'z');
-    return scene_parse(s, text, (size_t)length, NULL, why);
+    return scene_parse(s, text, (size_t)length, NULL, failure);
 }

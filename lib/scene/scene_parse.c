@@ -7,7 +7,7 @@
 void *scene_alloc(jnode n, size_t count, size_t size)
 {
     void *p = calloc(count ? count : 1, size);
-    if (!p) why_set(n.in->why, EX_SOFTWARE, "no memory for the scene");
+    if (!p) failure_set(n.in->failure, EX_SOFTWARE, "no memory for the scene");
     return p;
 }
 
@@ -90,16 +90,16 @@ static int scene_parse_read_scene(jnode o, struct scene *s)
 }
 
 int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
-                struct why *why)
+                struct failure *failure)
 {
     struct json_doc t;
     *s = (struct scene){ .theta = 0.5, .files = files };
-    if (json_doc_parse(&t, text, length, why)) return why->status;
+    if (json_doc_parse(&t, text, length, failure)) return failure->status;
     int bad = scene_parse_read_scene(json_doc_root(&t), s);
     s->files = NULL;
     if (!bad && !(s->text = s->rewritten ? json_dumps(t.root, JSON_COMPACT) : compact(t.text)))
-        bad = why_set(why, EX_SOFTWARE, "no memory for the scene's text");
+        bad = failure_set(failure, EX_SOFTWARE, "no memory for the scene's text");
     json_doc_free(&t);
     if (bad) scene_free(s);
-    return why->status;
+    return failure->status;
 }

@@ -8,6 +8,6 @@
 #include "scene/scene.h"
 
 /* When meshes have been read. Returns 0, EX_SOFTWARE, or EX_DATAERR where faces do not exist or are named twice. */
-int scene_parts_split(struct scene *s, struct why *why);
+int scene_parts_split(struct scene *s, struct failure *failure);
 
 #endif

@@ -121,7 +121,7 @@ static int scene_shapes_read_mesh(jnode o, struct scene *s, struct wall *w)
         return 1;
     struct scene_mesh *more = realloc(s->mesh_file, ((size_t)s->meshes + 1) * sizeof *more);
     if (more) s->mesh_file = more, m.file = strdup(name);
-    if (!m.file) return why_set(o.in->why, EX_SOFTWARE, "no memory for a mesh");
+    if (!m.file) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for a mesh");
     s->mesh_file[s->meshes++] = m;
     return 0;
 }
@@ -216,7 +216,7 @@ static int scene_shapes_read_polygon(jnode o, struct scene *s, struct wall *w)
     int32_t(*element)[3];
     w->first_element = s->mesh.elements, w->elements = segments;
     int32_t first = s->mesh.vertices;
-    if (mesh_grow(&s->mesh, (int32_t)n, segments, &vertex, &element, a.in->why)) return 1;
+    if (mesh_grow(&s->mesh, (int32_t)n, segments, &vertex, &element, a.in->failure)) return 1;
     for (size_t i = 0; i < n; i++)
         if (json_node_vector(json_node_item(&a, i), 2, &vertex[i])) return 1;
     for (int32_t k = 0; k < segments; k++) {

@@ -15,13 +15,13 @@ enum {
 };
 
 /* A box by its faces, corners from -a/2 to a/2 */
-static int make_box(struct shape *s, int dim, vec3 sides, struct why *why)
+static int make_box(struct shape *s, int dim, vec3 sides, struct failure *failure)
 {
     static const int32_t face[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
                                         { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
     static const int32_t loop[4] = { 0, 1, 3, 2 };
-    if (shape_alloc(s, dim == 2 ? 4 : 8, dim == 2 ? 1 : 6, dim == 2 ? 4 : 24, why))
-        return why->status;
+    if (shape_alloc(s, dim == 2 ? 4 : 8, dim == 2 ? 1 : 6, dim == 2 ? 4 : 24, failure))
+        return failure->status;
     for (int32_t i = 0; i < s->vertices; i++)
         s->vertex[i] = v3((i & 1 ? 0.5 : -0.5) * sides.x, (i & 2 ? 0.5 : -0.5) * sides.y,
                           dim == 2 ? 0 : (i & 4 ? 0.5 : -0.5) * sides.z);
@@ -37,7 +37,7 @@ static int scene_solids_read_box(jnode o, struct shape *s, int dim)
     if (json_node_vector(box, dim, &a)) return 1;
     if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
         return json_node_fault(box, "its sides must be positive");
-    return make_box(s, dim, a, o.in->why);
+    return make_box(s, dim, a, o.in->failure);
 }
 
 static int read_capsule(jnode o, struct shape *s)
@@ -49,7 +49,7 @@ static int read_capsule(jnode o, struct shape *s)
         json_node_number(json_node_key(&c, "radius"), J_POSITIVE, &s->round))
         return 1;
     double round = s->round;
-    if (shape_alloc(s, 2, 0, 0, o.in->why)) return 1;
+    if (shape_alloc(s, 2, 0, 0, o.in->failure)) return 1;
     s->form = SHAPE_CAPSULE, s->round = round;
     s->vertex[0] = v3(-length / 2, 0, 0), s->vertex[1] = v3(length / 2, 0, 0);
     return 0;
@@ -78,7 +78,7 @@ static int read_balls(jnode o, struct shape *s, int dim)
     if (json_node_array(balls, &n)) return 1;
     if (n < 1 || n > SHAPE_VERTICES_MOST)
         return json_node_fault(balls, "needs 1 to %d balls", SHAPE_VERTICES_MOST);
-    if (shape_alloc(s, (int32_t)n, 0, 0, o.in->why)) return 1;
+    if (shape_alloc(s, (int32_t)n, 0, 0, o.in->failure)) return 1;
     s->form = SHAPE_CLUMP;
     for (size_t i = 0; i < n; i++)
         if (read_ball(json_node_item(&balls, i), dim, &s->vertex[i], &s->ball[i])) return 1;
@@ -107,19 +107,19 @@ static int read_hull(jnode o, struct shape *s, int dim)
     size_t n;
     jnode points = json_node_key(&o, "points");
     vec3 *x = read_points(points, dim, (size_t)dim + 1, POINTS_MOST, &n);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (!x) return 1;
-    hull_of_points(s, dim, (int64_t)n, x, &why);
+    hull_of_points(s, dim, (int64_t)n, x, &failure);
     free(x);
-    if (why.status == EX_DATAERR) return json_node_fault(points, "%s", why.text);
-    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+    if (failure.status == EX_DATAERR) return json_node_fault(points, "%s", failure.text);
+    return failure.status ? failure_set(o.in->failure, failure.status, "%s", failure.text) : 0;
 }
 
 static int scene_solids_read_polygon(jnode o, struct shape *s)
 {
     size_t n;
     vec3 *x = read_points(json_node_key(&o, "polygon"), 2, 3, SHAPE_VERTICES_MOST, &n);
-    int bad = !x || shape_alloc(s, (int32_t)n, 1, (int32_t)n, o.in->why);
+    int bad = !x || shape_alloc(s, (int32_t)n, 1, (int32_t)n, o.in->failure);
     for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i], s->corner[i] = (int32_t)i;
     if (!bad) s->first[1] = (int32_t)n;
     free(x);
@@ -151,7 +151,7 @@ static int read_polyhedron(jnode o, struct shape *s)
     vec3 *x = read_points(json_node_key(&o, "vertices"), 3, 4, SHAPE_VERTICES_MOST, &n);
     if (!x) return 1;
     size_t room = 6 * n; // a closed surface has no more
-    int bad = shape_alloc(s, (int32_t)n, 2 * (int32_t)n, (int32_t)room, o.in->why);
+    int bad = shape_alloc(s, (int32_t)n, 2 * (int32_t)n, (int32_t)room, o.in->failure);
     for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i];
     free(x);
     s->faces = s->corners = 0;
@@ -174,7 +174,7 @@ static int read_regular(jnode o, struct shape *s, int dim)
         json_node_number(json_node_key(&r, "height"), J_POSITIVE, &height))
         return 1;
     int32_t n = (int32_t)sides, levels = dim == 2 ? 1 : 2;
-    if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->why)) return 1;
+    if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->failure)) return 1;
     for (int32_t i = 0; i < n * levels; i++) {
         vec3 x = quat_turn(quat_rotation(v3(0, 0, 2 * M_PI * (i % n) / n)), v3(radius, 0, 0));
         s->vertex[i] = v3(x.x, x.y, dim == 2 ? 0 : i < n ? -height / 2 : height / 2);
@@ -209,7 +209,7 @@ static int rewrite(jnode o, const struct shape *s, struct scene *scene)
     bad |= json_object_set_new(o.json, "vertices", vertices) != 0;
     bad |= json_object_set_new(o.json, "faces", faces) || json_object_del(o.json, "mesh");
     scene->rewritten = true;
-    return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
+    return bad ? failure_set(o.in->failure, EX_SOFTWARE, "no memory for the scene's text") : 0;
 }
 
 /* ---- a clump that has the moments of something else ---- */
@@ -285,19 +285,19 @@ static int rewrite_clump(jnode o, const struct shape *s, const struct solid *of,
            json_object_del(o.json, "clump") ||
            json_object_set_new(o.json, "comment", json_string(fit));
     scene->rewritten = true;
-    return bad ? why_set(o.in->why, EX_SOFTWARE, "no memory for the scene's text") : 0;
+    return bad ? failure_set(o.in->failure, EX_SOFTWARE, "no memory for the scene's text") : 0;
 }
 
 /* How well the balls of shape NAME fit, for who tells it */
 static int note_fit(jnode o, struct scene *scene, const struct clump_errors *e)
 {
     struct scene_fit *more = realloc(scene->fit, (size_t)(scene->fits + 1) * sizeof *more);
-    if (!more) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for a shape");
     scene->fit = more;
     struct scene_fit *f = &more[scene->fits];
     *f = (struct scene_fit){ strdup(o.key ? o.key : ""), e->balls, e->volume, e->distance,
                              e->moments };
-    if (!f->shape) return why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+    if (!f->shape) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for a shape");
     scene->fits++;
     return 0;
 }
@@ -310,15 +310,15 @@ static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const c
     int64_t balls = 0;
     struct clump_limits limits = { 0 };
     struct clump_errors errors = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (json_node_only(c, "balls error") || json_node_need(&c, "balls") ||
         json_node_integer(json_node_key(&c, "balls"), 1, CLUMP_BALLS_MOST, &balls) ||
         json_node_number(json_node_key(&c, "error"), J_UNIT, &limits.error))
         return 1;
     limits.balls = (int32_t)balls;
-    clump_fit(s, as, mesh, &limits, &errors, &why);
-    if (why.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, why.text);
-    if (why.status) return why_set(o.in->why, why.status, "%s", why.text);
+    clump_fit(s, as, mesh, &limits, &errors, &failure);
+    if (failure.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, failure.text);
+    if (failure.status) return failure_set(o.in->failure, failure.status, "%s", failure.text);
     if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
     return scene_solids_read_solid(o, as); // as who reads the rewritten scene gets it
 }
@@ -331,7 +331,7 @@ static int scene_solids_read_mesh(jnode o, struct shape *s, struct solid *as, st
     bool hull = false, by_hull = false;
     int32_t left_out = 0;
     struct mesh mesh = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     jnode m = json_node_key(&o, "mesh");
     if (json_node_only(m, "file scale hull") || json_node_need(&m, "file") ||
         json_node_text(json_node_key(&m, "file"), &name) ||
@@ -341,21 +341,21 @@ static int scene_solids_read_mesh(jnode o, struct shape *s, struct solid *as, st
     if (!scene->files) return json_node_fault(m, "no files are read for what is in a document");
     const bool clump = json_node_key(&o, "clump").json;
     if (clump && hull) return json_node_fault(m, "hull: a clump has none");
-    if (clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why)) {
+    if (clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &failure)) {
         int bad = read_clump(o, s, &mesh, name, as, scene);
         mesh_free(&mesh);
         return bad;
     }
-    if (!clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &why) &&
-        mesh_shape(s, &mesh, hull, &by_hull, &why) && why.status == EX_DATAERR)
-        json_node_fault(m, "%s: %s%s%s", name, why.text,
+    if (!clump && !scene->files->read_mesh(&mesh, scene->files, name, scale, &left_out, &failure) &&
+        mesh_shape(s, &mesh, hull, &by_hull, &failure) && failure.status == EX_DATAERR)
+        json_node_fault(m, "%s: %s%s%s", name, failure.text,
                         left_out ? ", without the triangles of no area or repeated" : "",
                         by_hull ? " (\"hull\": true asks for less)" : "");
-    else if (why.status)
-        json_node_fault(m, "%s", why.text);
-    if (why.status) o.in->why->status = why.status;
+    else if (failure.status)
+        json_node_fault(m, "%s", failure.text);
+    if (failure.status) o.in->failure->status = failure.status;
     mesh_free(&mesh);
-    return why.status ? why.status : rewrite(o, s, scene);
+    return failure.status ? failure.status : rewrite(o, s, scene);
 }
 
 /* x^p for x in [0, 1], the same on every machine: the last bits of pow() are not. */
@@ -406,11 +406,11 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
                                 copysign(a.z * scene_solids_power(abs(k) / length, 2 / m), k));
             }
         }
-    struct why why = { 0 };
-    hull_of_points(s, dim, count, x, &why);
+    struct failure failure = { 0 };
+    hull_of_points(s, dim, count, x, &failure);
     free(x);
-    if (why.status == EX_DATAERR) return json_node_fault(q, "%s", why.text);
-    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+    if (failure.status == EX_DATAERR) return json_node_fault(q, "%s", failure.text);
+    return failure.status ? failure_set(o.in->failure, failure.status, "%s", failure.text) : 0;
 }
 
 static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *scene)
@@ -449,14 +449,14 @@ static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *s
 static int scene_solids_settle(jnode o, struct shape *s, const struct solid *as, int dim,
                   struct solid_frame *solid)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (as->volume > 0)
-        solid_settle_as(s, dim, as, solid, &why);
+        solid_settle_as(s, dim, as, solid, &failure);
     else
-        solid_settle(s, dim, solid, &why);
-    if (!why.status) shape_finish(s, dim, &why);
-    if (why.status == EX_DATAERR) return json_node_fault(o, "%s", why.text);
-    return why.status ? why_set(o.in->why, why.status, "%s", why.text) : 0;
+        solid_settle(s, dim, solid, &failure);
+    if (!failure.status) shape_finish(s, dim, &failure);
+    if (failure.status == EX_DATAERR) return json_node_fault(o, "%s", failure.text);
+    return failure.status ? failure_set(o.in->failure, failure.status, "%s", failure.text) : 0;
 }
 
 static int scene_solids_read_shape(jnode o, struct scene *s, const char *name)
@@ -471,9 +471,9 @@ static int scene_solids_read_shape(jnode o, struct scene *s, const char *name)
         shape.ball[i] = shape.round;
     bad = bad || scene_solids_settle(o, &shape, &as, s->dim, &solid);
     if (!bad && !(shape.name = strdup(name)))
-        bad = why_set(o.in->why, EX_SOFTWARE, "no memory for a shape");
+        bad = failure_set(o.in->failure, EX_SOFTWARE, "no memory for a shape");
     if (bad) return shape_free(&shape), 1;
-    if (shapes_add(&s->shapes, s->dim, &shape, o.in->why)) return 1;
+    if (shapes_add(&s->shapes, s->dim, &shape, o.in->failure)) return 1;
     s->solid[s->shapes.n - 1] = solid;
     return 0;
 }

@@ -56,9 +56,9 @@ struct grains_table {
     bool endless; /* perhaps: it is no file, whose size says how long it is */
 };
 
-static int grains_fault(const struct grains_table *t, struct why *why, const char *trouble, const char *word)
+static int grains_fault(const struct grains_table *t, struct failure *failure, const char *trouble, const char *word)
 {
-    return why_set(why, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line, trouble,
+    return failure_set(failure, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line, trouble,
                    word ? " \"" : "", word ? word : "", word ? "\"" : "");
 }
 
@@ -87,20 +87,20 @@ static bool of_space(enum heading c)
     return c == Z || c == VZ || c == WX || c == WY;
 }
 
-static int grains_add_column(struct grains_table *t, char *word, struct why *why)
+static int grains_add_column(struct grains_table *t, char *word, struct failure *failure)
 {
     int k = name_index(word);
-    if (k < 0) return grains_fault(t, why, "no column is called", word);
-    if (t->has[k]) return grains_fault(t, why, "named twice: the column", word);
+    if (k < 0) return grains_fault(t, failure, "no column is called", word);
+    if (t->has[k]) return grains_fault(t, failure, "named twice: the column", word);
     if (t->scene->dim == 2 && of_space((enum heading)k))
-        return grains_fault(t, why, "the scene's dim is 2, there is no column", word);
+        return grains_fault(t, failure, "the scene's dim is 2, there is no column", word);
     t->has[k] = true;
     t->column[t->n++] = (enum heading)k; // at most NAMES, for none comes twice
     return 0;
 }
 
 /* The columns that the first line, a comment, names: if its first two words are names. */
-static int grains_read_names(struct grains_table *t, char *line, struct why *why)
+static int grains_read_names(struct grains_table *t, char *line, struct failure *failure)
 {
     char copy[LINE], *at = strcpy(copy, line), *first = next_word(&at), *second = next_word(&at);
     if (!first || !second || name_index(first) < 0 || name_index(second) < 0) return 0;
@@ -108,15 +108,15 @@ static int grains_read_names(struct grains_table *t, char *line, struct why *why
     memset(t->has, 0, sizeof t->has);
     char *word;
     for (at = line; (word = next_word(&at));)
-        if (grains_add_column(t, word, why)) return why->status;
+        if (grains_add_column(t, word, failure)) return failure->status;
     for (int k = X; k <= Z; k++)
         if (!t->has[k] && !(k == Z && t->scene->dim == 2))
-            return grains_fault(t, why, "there is no column", column_name[k]);
-    if (!t->has[R] && !t->has[D]) return grains_fault(t, why, "there is no column", "r");
-    if (t->has[R] && t->has[D]) return grains_fault(t, why, "both r and", "d");
-    if (t->has[MASS] && t->has[DENSITY]) return grains_fault(t, why, "both mass and", "density");
+            return grains_fault(t, failure, "there is no column", column_name[k]);
+    if (!t->has[R] && !t->has[D]) return grains_fault(t, failure, "there is no column", "r");
+    if (t->has[R] && t->has[D]) return grains_fault(t, failure, "both r and", "d");
+    if (t->has[MASS] && t->has[DENSITY]) return grains_fault(t, failure, "both mass and", "density");
     int q = t->has[QW] + t->has[QX] + t->has[QY] + t->has[QZ];
-    return !q || q == 4 ? 0 : grains_fault(t, why, "an orientation is qw qx qy qz", NULL);
+    return !q || q == 4 ? 0 : grains_fault(t, failure, "an orientation is qw qx qy qz", NULL);
 }
 
 static void usual_columns(struct grains_table *t)
@@ -130,41 +130,41 @@ static void usual_columns(struct grains_table *t)
 
 /* ---- a line ---- */
 
-static int fault_usual(const struct grains_table *t, struct why *why)
+static int fault_usual(const struct grains_table *t, struct failure *failure)
 {
-    return grains_fault(t, why, t->scene->dim == 2 ? "needs x y r" : "needs x y z r", NULL);
+    return grains_fault(t, failure, t->scene->dim == 2 ? "needs x y r" : "needs x y z r", NULL);
 }
 
 static int read_number(const struct grains_table *t, enum heading c, const char *word, double *x,
-                       struct why *why)
+                       struct failure *failure)
 {
     char *end, text[80];
     *x = number_read(word, &end);
-    if (*end && !t->named) return fault_usual(t, why);
+    if (*end && !t->named) return fault_usual(t, failure);
     snprintf(text, sizeof text, "%s: not a number:", column_name[c]);
-    if (*end) return grains_fault(t, why, text, word);
+    if (*end) return grains_fault(t, failure, text, word);
     snprintf(text, sizeof text, "%s: not finite", column_name[c]);
-    if (!isfinite(*x)) return grains_fault(t, why, t->named ? text : "not finite", NULL);
+    if (!isfinite(*x)) return grains_fault(t, failure, t->named ? text : "not finite", NULL);
     snprintf(text, sizeof text, "the %s must be positive", c == R ? "radius" : column_name[c]);
     bool positive = c == R || c == D || c == MASS || c == DENSITY;
-    if (positive && !(*x > 0)) return grains_fault(t, why, text, NULL);
+    if (positive && !(*x > 0)) return grains_fault(t, failure, text, NULL);
     bool whole = *x == floor(*x) && *x >= 0 && *x <= INT32_MAX;
-    if (c == ID && !whole) return grains_fault(t, why, "an id must be a whole number:", word);
-    if (c == FIXED && *x != 0 && *x != 1) return grains_fault(t, why, "fixed must be 0 or 1:", word);
+    if (c == ID && !whole) return grains_fault(t, failure, "an id must be a whole number:", word);
+    if (c == FIXED && *x != 0 && *x != 1) return grains_fault(t, failure, "fixed must be 0 or 1:", word);
     return 0;
 }
 
-static int read_kind(const struct grains_table *t, const char *word, int32_t *kind, struct why *why)
+static int read_kind(const struct grains_table *t, const char *word, int32_t *kind, struct failure *failure)
 {
     for (int32_t k = 0; k < t->scene->kinds; k++) {
         if (strcmp(t->scene->kind[k].name, word) != 0) continue;
         *kind = k;
         return 0;
     }
-    return grains_fault(t, why, "the scene names no kind", word);
+    return grains_fault(t, failure, "the scene names no kind", word);
 }
 
-static int make_grain(const struct grains_table *t, const double *x, struct grain *g, struct why *why)
+static int make_grain(const struct grains_table *t, const double *x, struct grain *g, struct failure *failure)
 {
     *g = grain_at(v3(x[X], x[Y], x[Z]), t->has[D] ? 0.5 * x[D] : x[R]);
     g->mass = x[MASS], g->density = x[DENSITY];
@@ -176,12 +176,12 @@ static int make_grain(const struct grains_table *t, const double *x, struct grai
     if (!t->has[QW]) return 0;
     quat q = { x[QW], x[QX], x[QY], x[QZ] };
     double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    if (!(fabs(length - 1) < 1e-3)) return grains_fault(t, why, "qw qx qy qz is no unit quaternion", NULL);
+    if (!(fabs(length - 1) < 1e-3)) return grains_fault(t, failure, "qw qx qy qz is no unit quaternion", NULL);
     g->q = quat_unit(q);
     return 0;
 }
 
-static int read_line(struct grains_table *t, char *line, struct grains *out, struct why *why)
+static int read_line(struct grains_table *t, char *line, struct grains *out, struct failure *failure)
 {
     double x[NAMES] = { 0 };
     int32_t kind = -1;
@@ -192,75 +192,75 @@ static int read_line(struct grains_table *t, char *line, struct grains *out, str
     for (; (word = next_word(&at)); n++) {
         if (n == t->n) break;
         enum heading c = t->column[n];
-        if (c == KIND ? read_kind(t, word, &kind, why) : read_number(t, c, word, &x[c], why))
-            return why->status;
+        if (c == KIND ? read_kind(t, word, &kind, failure) : read_number(t, c, word, &x[c], failure))
+            return failure->status;
     }
     if (!n) return 0;
     if (word || n != t->n)
-        return t->named ? grains_fault(t, why, "not as many words as columns", NULL) : fault_usual(t, why);
-    if (out->n == MOST_ROWS) return grains_fault(t, why, "a table of too many bodies", NULL);
+        return t->named ? grains_fault(t, failure, "not as many words as columns", NULL) : fault_usual(t, failure);
+    if (out->n == MOST_ROWS) return grains_fault(t, failure, "a table of too many bodies", NULL);
     if (t->endless && out->n == MOST_PIPED)
-        return grains_fault(t, why, "too many bodies for a pipe (endless?): put the table into a file",
+        return grains_fault(t, failure, "too many bodies for a pipe (endless?): put the table into a file",
                      NULL);
-    if (make_grain(t, x, &g, why)) return why->status;
+    if (make_grain(t, x, &g, failure)) return failure->status;
     g.kind = kind;
-    return grains_add(out, &g, why);
+    return grains_add(out, &g, failure);
 }
 
 /* A line of a table without its newline; false at the end, and where it is too long. */
-static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table *t, struct why *why)
+static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table *t, struct failure *failure)
 {
     size_t n = 0;
     int c = 0;
     while (n < LINE - 1 && (c = getc(f)) != EOF && c != '\n') line[n++] = c ? (char)c : '?';
     line[n] = 0;
     if (n == LINE - 1)
-        return why_set(why, EX_DATAERR, "%s:%lld: a line of more than %d bytes", t->path,
+        return failure_set(failure, EX_DATAERR, "%s:%lld: a line of more than %d bytes", t->path,
                        (long long)t->line, LINE - 2),
                false;
     return n || c != EOF;
 }
 
-static int read_lines(struct grains_table *t, FILE *f, struct grains *out, struct why *why)
+static int read_lines(struct grains_table *t, FILE *f, struct grains *out, struct failure *failure)
 {
     char line[LINE] = "";
-    for (t->line = 1; !why->status && grains_next_line(f, line, t, why); t->line++) {
+    for (t->line = 1; !failure->status && grains_next_line(f, line, t, failure); t->line++) {
         if (t->endless && t->line > MOST_LINES)
-            return grains_fault(t, why, "too many lines for a pipe (endless?): put the table into a file",
+            return grains_fault(t, failure, "too many lines for a pipe (endless?): put the table into a file",
                          NULL);
         char *s = line + (t->line == 1 ? mark_length(line, strlen(line)) : 0);
         s += strspn(s, " \t\r\v\f");
         if (t->line == 1 && *s == '#')
-            grains_read_names(t, s + 1, why);
+            grains_read_names(t, s + 1, failure);
         else
-            read_line(t, s, out, why);
+            read_line(t, s, out, failure);
     }
-    return why->status;
+    return failure->status;
 }
 
-static int grains_read_table(struct grains *out, const struct scene *s, const char *path, struct why *why)
+static int grains_read_table(struct grains *out, const struct scene *s, const char *path, struct failure *failure)
 {
     struct stat st;
     struct grains_table t = { .path = path, .scene = s };
     usual_columns(&t);
     FILE *f = fopen(path, "r");
-    if (!f) return why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!f) return failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
     if (fstat(fileno(f), &st)) st.st_mode = 0;
     if (S_ISCHR(st.st_mode) || S_ISBLK(st.st_mode))
-        why_set(why, EX_NOINPUT, "%s: a device is no table", path);
+        failure_set(failure, EX_NOINPUT, "%s: a device is no table", path);
     t.endless = !S_ISREG(st.st_mode);
-    if (!why->status) read_lines(&t, f, out, why);
-    if (!why->status && ferror(f)) why_set(why, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!failure->status) read_lines(&t, f, out, failure);
+    if (!failure->status && ferror(f)) failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
     fclose(f);
-    return why->status;
+    return failure->status;
 }
 
 int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
-                    struct why *why)
+                    struct failure *failure)
 {
     char *path = scene_path(dir, name);
-    if (!path) return why_set(why, EX_SOFTWARE, "no memory for a name");
-    grains_read_table(out, s, path, why);
+    if (!path) return failure_set(failure, EX_SOFTWARE, "no memory for a name");
+    grains_read_table(out, s, path, failure);
     free(path);
-    return why->status;
+    return failure->status;
 }

@@ -117,7 +117,7 @@ static int scene_walls_add_wall(jnode o, struct scene *s, struct wall w)
     w.drives = s->drives.n - w.first_drive;
     const char *name;
     if (scene_read_name(json_node_key(&o, "name"), s, &name) ||
-        (name && names_give(&s->names, name, s->walls, 0, 0, o.in->why)))
+        (name && names_give(&s->names, name, s->walls, 0, 0, o.in->failure)))
         return 1;
     s->wall[s->walls++] = w;
     return 0;
@@ -154,7 +154,7 @@ static int scene_walls_read_part(jnode o, struct scene *s, const struct wall *w)
         json_node_integer(json_node_item(&faces, 1), part.first, INT32_MAX, &part.last))
         return 1;
     struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
-    if (!more) return why_set(o.in->why, EX_SOFTWARE, "no memory for parts of a surface");
+    if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for parts of a surface");
     s->part = more, s->part[s->parts++] = part;
     return 0;
 }

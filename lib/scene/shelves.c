@@ -57,14 +57,14 @@ static void random_start_settle(struct grain *g, const struct cursor *c, double 
 }
 
 int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_rng *rng,
-                 struct why *why)
+                 struct failure *failure)
 {
     for (int64_t i = 0; i < b->count; i++) {
         struct grain g = grain_at(v3(0, 0, 0), scene_size_draw(&b->size, rng));
-        if (grains_add(out, &g, why)) return why->status;
+        if (grains_add(out, &g, failure)) return failure->status;
     }
     struct grain **sorted = malloc(((size_t)out->n + 1) * sizeof(struct grain *));
-    if (!sorted) return why_set(why, EX_SOFTWARE, "no memory for a lattice");
+    if (!sorted) return failure_set(failure, EX_SOFTWARE, "no memory for a lattice");
     for (int64_t i = 0; i < out->n; i++) sorted[i] = &out->g[i];
     qsort(sorted, (size_t)out->n, sizeof(struct grain *), shelves_larger_first);
     struct cursor c = { .dim = dim, .box = &b->box };
@@ -73,21 +73,21 @@ int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_
         -1; /* bodies that found room; the others are stacked on top, to say how high they are */
     open.hi[dim - 1] = INFINITY;
     for (int k = 0; k < dim; k++) c.at[k] = c.end[k] = b->box.lo[k];
-    for (int64_t i = 0; i < out->n && !why->status; i++) {
+    for (int64_t i = 0; i < out->n && !failure->status; i++) {
         double edge = 2 * b->spacing * sorted[i]->r;
         bool placed = random_start_place(&c, edge);
         if (!placed && went < 0) went = i, c.box = &open, placed = random_start_place(&c, edge);
         if (!placed)
-            why_set(why, EX_DATAERR, "the box is narrower than a cell of %.4g m", edge);
+            failure_set(failure, EX_DATAERR, "the box is narrower than a cell of %.4g m", edge);
         else
             random_start_settle(sorted[i], &c, edge, b->jitter, rng);
         c.at[0] += edge;
     }
-    if (went >= 0 && !why->status)
-        why_set(why, EX_DATAERR,
+    if (went >= 0 && !failure->status)
+        failure_set(failure, EX_DATAERR,
                 "the box has cells for %lld of %lld bodies: they need a height of %.4g m along %c",
                 (long long)went, (long long)out->n, c.end[dim - 1] - b->box.lo[dim - 1],
                 "xyz"[dim - 1]);
     free(sorted);
-    return why->status;
+    return failure->status;
 }

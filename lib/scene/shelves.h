@@ -14,6 +14,6 @@
 /* The group's count grains, in the order drawn. Returns 0, EX_DATAERR where the box is too small, or
    EX_SOFTWARE. */
 int shelves_fill(struct grains *out, const struct scene_bodies *group, int dim, gsl_rng *rng,
-                 struct why *why);
+                 struct failure *failure);
 
 #endif

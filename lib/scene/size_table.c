@@ -6,7 +6,7 @@
 
 enum { BINS = 8192 /* of what is asked for: quantiles of a range of 1000 are known to 1e-3 */ };
 
-static int size_table_alloc(struct size_table *t, int64_t n, struct why *why)
+static int size_table_alloc(struct size_table *t, int64_t n, struct failure *failure)
 {
     *t = (struct size_table){ .n = n };
     t->d = calloc((size_t)n + 1, sizeof *t->d);
@@ -15,7 +15,7 @@ static int size_table_alloc(struct size_table *t, int64_t n, struct why *why)
         t->below[k] = calloc((size_t)n + 1, sizeof **t->below);
         good = good && t->below[k];
     }
-    return good ? 0 : why_set(why, EX_SOFTWARE, "no memory for the sizes of grains");
+    return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the sizes of grains");
 }
 
 void size_table_free(struct size_table *t)
@@ -83,10 +83,10 @@ static void sum_up(struct size_table *t)
     }
 }
 
-int size_table_asked(struct size_table *t, const struct scene_size *z, int dim, struct why *why)
+int size_table_asked(struct size_table *t, const struct scene_size *z, int dim, struct failure *failure)
 {
     const bool one = !(z->min < z->max);
-    if (size_table_alloc(t, one ? 1 : BINS + 1, why)) return why->status;
+    if (size_table_alloc(t, one ? 1 : BINS + 1, failure)) return failure->status;
     t->smooth = !one;
     double had = 0;
     for (int64_t i = 0; i < t->n; i++) {
@@ -109,9 +109,9 @@ static int size_table_by_value(const void *one, const void *other)
 }
 
 int size_table_drawn(struct size_table *t, const double *radius, int64_t n, int dim,
-                     struct why *why)
+                     struct failure *failure)
 {
-    if (size_table_alloc(t, n, why)) return why->status;
+    if (size_table_alloc(t, n, failure)) return failure->status;
     for (int64_t i = 0; i < n; i++) t->d[i] = 2 * radius[i];
     qsort(t->d, (size_t)n, sizeof *t->d, size_table_by_value);
     for (int64_t i = 0; i < n; i++) {

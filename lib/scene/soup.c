@@ -24,14 +24,14 @@ int soup_fault(struct soup *s, const char *format, ...)
     for (char *c = trouble; *c; c++)
         if (*c & 0x80)
             *c = '?'; // of words out of the file; half a character, or one that moves a terminal
-    if (!s->unit) return why_set(s->why, EX_DATAERR, "%s: %s", s->name, trouble);
-    return why_set(s->why, EX_DATAERR, "%s: %s %lld: %s", s->name, s->unit, (long long)s->at,
+    if (!s->unit) return failure_set(s->failure, EX_DATAERR, "%s: %s", s->name, trouble);
+    return failure_set(s->failure, EX_DATAERR, "%s: %s %lld: %s", s->name, s->unit, (long long)s->at,
                    trouble);
 }
 
 static int soup_no_memory(struct soup *s)
 {
-    return why_set(s->why, EX_SOFTWARE, "%s: no memory for a mesh", s->name);
+    return failure_set(s->failure, EX_SOFTWARE, "%s: no memory for a mesh", s->name);
 }
 
 void soup_free(struct soup *s)
@@ -132,7 +132,7 @@ int soup_polygon(struct soup *s, const int64_t *corner, int64_t n)
         x[kept] = at, number[kept++] = (int32_t)corner[k];
     }
     while (kept > 1 && soup_same_place(x[kept - 1], x[0])) kept--;
-    if (soup_make_room(s, n - 2) || (s->grouped && find_part(s))) return s->why->status;
+    if (soup_make_room(s, n - 2) || (s->grouped && find_part(s))) return s->failure->status;
     int32_t(*t)[3] = s->triangle + s->triangles;
     const char *trouble = NULL;
     if (kept <= 3)
@@ -289,23 +289,23 @@ static int soup_add_to(struct mesh *to, struct soup *s, double scale)
     if (!number) return soup_no_memory(s);
     if (to->elements > SOUP_TRIANGLES_MOST - s->triangles)
         soup_fault(s, "more than %d triangles, with those of other files", SOUP_TRIANGLES_MOST);
-    else if (!mesh_grow(to, number_corners(s, number), s->triangles, &vertex, &element, s->why)) {
+    else if (!mesh_grow(to, number_corners(s, number), s->triangles, &vertex, &element, s->failure)) {
         for (int32_t i = 0; i < s->corners; i++)
             if (number[i] >= 0) vertex[number[i]] = v3_scale(scale, s->corner[i]);
         for (int32_t i = 0; i < s->triangles; i++)
             for (int k = 0; k < 3; k++) element[i][k] = first + number[s->triangle[i][k]];
     }
     free(number);
-    return s->why->status;
+    return s->failure->status;
 }
 
 int soup_mesh(struct mesh *to, struct soup *s, double scale, int32_t *left_out)
 {
     int32_t all = s->triangles + s->flat;
     s->unit = NULL;
-    if (join_corners(s) || mark_repeated(s)) return s->why->status;
+    if (join_corners(s) || mark_repeated(s)) return s->failure->status;
     leave_out(s, scale);
     *left_out = all - s->triangles;
     if (!s->triangles) return soup_fault(s, all ? "no triangle with an area" : "no triangles");
-    return judge_numbers(s, scale) || soup_add_to(to, s, scale) ? s->why->status : 0;
+    return judge_numbers(s, scale) || soup_add_to(to, s, scale) ? s->failure->status : 0;
 }

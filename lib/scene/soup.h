@@ -21,7 +21,7 @@ struct soup {
     const char *name; /* of the file */
     const char *unit; /* what is counted where it is read: "line", "triangle" */
     int64_t at;       /* and the number of the one that is read, from 1 */
-    struct why *why;
+    struct failure *failure;
     bool single; /* corners are of 32 bits */
     int32_t corners, triangles, corner_room, triangle_room;
     vec3 *corner;           /* [corners] in the file's unit of length */

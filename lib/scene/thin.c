@@ -50,11 +50,11 @@ double thin_extent(const vec3 *x, int64_t n)
     return extent;
 }
 
-int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct why *why)
+int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct failure *failure)
 {
     struct celled *c = malloc(((size_t)n + 1) * sizeof *c);
     int64_t stay = 0;
-    if (!c) return why_set(why, EX_SOFTWARE, "no memory for a hull");
+    if (!c) return failure_set(failure, EX_SOFTWARE, "no memory for a hull");
     for (int32_t i = 0; i < n; i++) {
         vec3 d = v3_scale(1 / apart, v3_sub(x[i], x[0]));
         c[i] =

@@ -210,12 +210,12 @@ struct time_step_ground {
 static struct time_step_ground ground_of(const struct packing *p, vec3 up)
 {
     struct time_step_ground g = { p, up, lowest_surface(p, up), NULL };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     g.surface = calloc((size_t)p->walls + 1, sizeof *g.surface);
     for (int32_t k = 0; g.surface && k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
         if (w->shape != BOUNDARY_MESH || !wall_there(w, p->t)) continue;
-        if (surface_init(&g.surface[k], &p->mesh, w->first_element, w->elements, w->weld, &why))
+        if (surface_init(&g.surface[k], &p->mesh, w->first_element, w->elements, w->weld, &failure))
             g.surface[k].n = 0;
     }
     return g;
@@ -315,8 +315,8 @@ static int64_t supports_of(const struct packing *p, const struct contacts *s, ve
 static void find_resting(const struct packing *p, vec3 up, double gap, bool *rests)
 {
     struct contacts s = { 0 };
-    struct why why = { 0 };
-    bool found = !detect_contacts_at(&s, p, p->x, p->t, gap, &why);
+    struct failure failure = { 0 };
+    bool found = !detect_contacts_at(&s, p, p->x, p->t, gap, &failure);
     struct support *on = found ? malloc((size_t)(s.n + 1) * sizeof *on) : NULL;
     int64_t n = on ? supports_of(p, &s, up, on) : 0;
     if (n) qsort(on, (size_t)n, sizeof *on, by_height);
@@ -460,7 +460,7 @@ static double pressure_of(const struct packing *p)
     if (p->cell.factors) most *= cell_factor_most(&p->cell);
     for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
-        if (w->load.way == LOAD_GLIDES || (room_has(w) && w->load.spread))
+        if (w->load.way == LOAD_GLIDES || (servo_box_has(w) && w->load.spread))
             most = dmax(most, load_most(p, w) / pressed_area(p, w->load.axis));
     }
     return most;
@@ -469,17 +469,17 @@ static double pressure_of(const struct packing *p)
 /* The same of the walls of a room, the farthest from its centre of which is fastest */
 static void of_room(struct time_step *t, const struct packing *p)
 {
-    double torque = 0, farthest = 0, mass = room_mass(p);
+    double torque = 0, farthest = 0, mass = servo_box_mass(p);
     if (!(mass > 0) || !p->n) return;
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        if (!room_has(w)) continue;
+        if (!servo_box_has(w)) continue;
         double lever = fabs(wall_lever(p, w, p->t));
         torque += lever * load_most(p, w), farthest = dmax(farthest, lever);
     }
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        if (!room_has(w)) continue;
+        if (!servo_box_has(w)) continue;
         double h = fall_of_bodies(p, v3_scale(w->load.force > 0 ? -1 : 1, w->load.axis));
         t->x[LIMIT_STROKE] = dmax(t->x[LIMIT_STROKE], sqrt(2 * h * farthest * torque / mass));
     }
@@ -494,7 +494,7 @@ static void of_loads(struct time_step *t, const struct packing *p)
     for (int32_t k = 0; k < p->walls && p->n; k++) {
         const struct wall *w = &p->wall[k];
         double force = load_most(p, w), arm = 1, h;
-        if (!w->load.way || room_has(w)) continue;
+        if (!w->load.way || servo_box_has(w)) continue;
         for (int64_t i = 0; i < p->n && w->load.way == LOAD_TURNS; i++)
             arm =
                 dmax(i ? arm : 0, v3_norm(v3_cross(w->load.axis, v3_sub(p->x[i], w->load.point))));

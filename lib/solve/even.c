@@ -84,8 +84,8 @@ static void step_all(const struct scaled *a, double eps, double *x, double *w)
 int even_start(struct solve *s)
 {
     struct scaled a;
-    struct why why = { 0 };
-    int e = scaled_init(&a, s->p, &why) ? -1 : 0;
+    struct failure failure = { 0 };
+    int e = scaled_init(&a, s->p, &failure) ? -1 : 0;
     size_t size = (size_t)a.size + 4;
     double *x = e ? NULL : calloc(4 * size, sizeof *x);
     if (x) {

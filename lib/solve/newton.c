@@ -42,11 +42,11 @@ static int free_and_return(struct newton *w, int status)
 
 int newton_assemble(struct newton *w, struct solve *s, const char **reason)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *w = (struct newton){ .rho = RHO };
     *reason = too_many;
     if (s->p->n > CONTACTS_MAX) return 1;
-    int e = scaled_init(&w->a, s->p, &why);
+    int e = scaled_init(&w->a, s->p, &failure);
     if (e == EX_DATAERR) *reason = too_wide;
     if (e) return free_and_return(w, e == EX_DATAERR ? 1 : -1);
     s->rep->work += price_assembly(delassus_entries(&w->a.W));

@@ -71,24 +71,24 @@ static void balance_set(const struct packing *p, struct contacts *s, int64_t i, 
 }
 
 static int balance_find(struct rebound_search *o, const struct packing *p, const struct contacts *s,
-                struct why *why)
+                struct failure *failure)
 {
     struct impulses sum;
-    if (!impulses_init(&sum, p, s, false, why)) balance_gains(o->gain, p, s, &sum, why);
+    if (!impulses_init(&sum, p, s, false, failure)) balance_gains(o->gain, p, s, &sum, failure);
     impulses_free(&sum);
-    return why->status;
+    return failure->status;
 }
 
 int rebound_reduce(struct rebound_search **search, const struct packing *p, struct contacts *s,
-                   bool *again, struct why *why)
+                   bool *again, struct failure *failure)
 {
     *again = false;
     bool any = false;
     for (int64_t i = 0; i < s->n && !any; i++) any = packing_bounds(p, &s->c[i]);
     if (!any) return 0;
     struct rebound_search *o = *search = *search ? *search : rebound_new(s->n);
-    if (!o) return why_set(why, EX_SOFTWARE, "no memory for the impacts");
-    if (balance_find(o, p, s, why)) return why->status;
+    if (!o) return failure_set(failure, EX_SOFTWARE, "no memory for the impacts");
+    if (balance_find(o, p, s, failure)) return failure->status;
     o->rounds++;
     for (int64_t i = 0, next; i < s->n; i = next) {
         struct bracket *b = &o->pair[i];

@@ -20,7 +20,7 @@ struct rebound_search;
 /* Of solved contacts. *search: NULL at first; to be freed by rebound_free(). Reduces restitutions; *again: they are to
    be solved once more, and this is to be called again. Returns 0 or EX_SOFTWARE. */
 int rebound_reduce(struct rebound_search **search, const struct packing *p, struct contacts *s,
-                   bool *again, struct why *why);
+                   bool *again, struct failure *failure);
 void rebound_free(struct rebound_search *search); /* may be NULL */
 
 #endif

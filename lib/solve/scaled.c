@@ -7,12 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why)
+int scaled_assemble(struct delassus *W, const struct problem *p, struct failure *failure)
 {
     struct assembly A = { 0 };
     device_home((struct problem *)p, false);
-    int e = assembly_init(&A, p, why);
-    if (!e) e = assembly_blocks(&A, W, why);
+    int e = assembly_init(&A, p, failure);
+    if (!e) e = assembly_blocks(&A, W, failure);
     assembly_free(&A);
     return e;
 }
@@ -25,7 +25,7 @@ static double *scaled_copy(const double *x, int64_t n)
 }
 
 /* W = a deep copy of V; to be freed in any case */
-static int copy_W(struct delassus *W, const struct delassus *V, struct why *why)
+static int copy_W(struct delassus *W, const struct delassus *V, struct failure *failure)
 {
     int64_t blocks = V->first[V->n], d = V->d, n = V->n;
     *W = (struct delassus){ .d = V->d, .n = n };
@@ -37,7 +37,7 @@ static int copy_W(struct delassus *W, const struct delassus *V, struct why *why)
     if (W->common) W->J = scaled_copy(V->J, n * d * W->common);
     if (!W->first || !W->col || !W->block || !W->diag || !W->q || !W->mu || !W->r ||
         (W->common && !W->J))
-        return why_set(why, EX_SOFTWARE, "out of memory");
+        return failure_set(failure, EX_SOFTWARE, "out of memory");
     memcpy(W->first, V->first, (size_t)(n + 1) * sizeof *W->first);
     if (blocks) memcpy(W->col, V->col, (size_t)blocks * sizeof *W->col);
     return 0;
@@ -64,20 +64,20 @@ static void scale(struct scaled *a)
     a->mean = trace > 0 ? trace / a->size : 1;
 }
 
-int scaled_init(struct scaled *a, const struct problem *p, struct why *why)
+int scaled_init(struct scaled *a, const struct problem *p, struct failure *failure)
 {
     *a = (struct scaled){ 0 };
-    if (p->n > INT32_MAX / 3) return why_set(why, EX_DATAERR, "too many contacts");
-    int e = p->W ? copy_W(&a->W, p->W, why) : scaled_assemble(&a->W, p, why);
+    if (p->n > INT32_MAX / 3) return failure_set(failure, EX_DATAERR, "too many contacts");
+    int e = p->W ? copy_W(&a->W, p->W, failure) : scaled_assemble(&a->W, p, failure);
     if (e) return e;
     struct delassus *W = &a->W;
     if ((W->first[W->n] + W->n) * W->d * W->d > INT32_MAX)
-        return why_set(why, EX_DATAERR, "too many blocks");
+        return failure_set(failure, EX_DATAERR, "too many blocks");
     a->size = (int32_t)(W->n * W->d);
     a->s = malloc((size_t)(W->n + 1) * sizeof *a->s);
     a->zero = calloc((size_t)a->size + 4, sizeof *a->zero);
     a->r = calloc(3 * (size_t)p->slots + 1, sizeof *a->r);
-    if (!a->s || !a->zero || !a->r) return why_set(why, EX_SOFTWARE, "out of memory");
+    if (!a->s || !a->zero || !a->r) return failure_set(failure, EX_SOFTWARE, "out of memory");
     scale(a);
     return 0;
 }

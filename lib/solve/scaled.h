@@ -23,11 +23,11 @@ struct scaled {
 
 /* D u~ = W r + q of a packing, as an FCLIB file would have it, not scaled, r = 0. Returns 0, or
    EX_SOFTWARE with nothing to free. */
-int scaled_assemble(struct delassus *W, const struct problem *p, struct why *why);
+int scaled_assemble(struct delassus *W, const struct problem *p, struct failure *failure);
 
 /* Returns 0, EX_SOFTWARE, or EX_DATAERR where the problem is too large for 32-bit indices. To be
    freed in any case. */
-int scaled_init(struct scaled *a, const struct problem *p, struct why *why);
+int scaled_init(struct scaled *a, const struct problem *p, struct failure *failure);
 void scaled_free(struct scaled *a);
 
 /* x[size] = the iterate's */

@@ -236,30 +236,30 @@ void solve_restore_best(struct solve *s)
 static int choose_device(const struct problem *p, const struct solve_opt *o, struct report *rep,
                          struct device **device)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *device = NULL;
     rep->on_cpu = NULL, rep->bus_to = rep->bus_from = 0, rep->kernels = 0;
     if (!o->device || !p->n) return 0;
     rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
     if (rep->on_cpu) return 0;
     *device = o->device, o->device->account = (struct device_account){ 0 };
-    return device_check(o->device, &p->kind, o->method->id, &why) ? -1 : 0;
+    return device_check(o->device, &p->kind, o->method->id, &failure) ? -1 : 0;
 }
 
 /* The iterate comes back from it; -1 where it was lost. */
 static int leave_device(struct problem *p, struct report *rep)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct device *d = p->device;
     if (!d) return 0;
-    int failed = device_release(p, &why);
+    int failed = device_release(p, &failure);
     rep->bus_to = d->account.to, rep->bus_from = d->account.from, rep->kernels = d->account.kernels;
     return failed ? -1 : 0;
 }
 
 int solve_problem(struct problem *p, const struct solve_opt *o, struct report *rep)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct device *device;
     if (choose_device(p, o, rep, &device)) return -1; // compiles kernels: no time of the solve
     double cpu = report_seconds(CLOCK_CPU), wall = report_seconds(CLOCK_WALL);
@@ -273,7 +273,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
     rep->work = 0, rep->fallback = rep->given_up = NULL;
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
-    if (device && device_hold(device, p, o->method->id, &why)) return -1;
+    if (device && device_hold(device, p, o->method->id, &failure)) return -1;
     int failed = p->n ? o->global->run(&s) : 0;
     solve_restore_best(&s);
     best_free(&s.best);

@@ -24,50 +24,50 @@ bool step_sweeps(const struct solver *global)
 }
 
 /* Refuses what the solver asked for cannot solve. */
-static int check_solver(const struct problem *p, const struct solver *global, struct why *why)
+static int check_solver(const struct problem *p, const struct solver *global, struct failure *failure)
 {
     if (!p->kind.rolls || step_sweeps(global)) return 0;
-    return why_set(
-        why, EX_DATAERR,
+    return failure_set(
+        failure, EX_DATAERR,
         "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",
         global->name);
 }
 
 /* Why solve_problem() has failed: the device, or memory */
-static int solve_failed(const struct solve_opt *o, struct why *why)
+static int solve_failed(const struct solve_opt *o, struct failure *failure)
 {
-    const struct why *lost = o->device ? &o->device->lost : NULL;
-    if (lost && lost->status) return why_set(why, lost->status, "%s", lost->text);
-    return why_set(why, EX_SOFTWARE, "no memory to solve the contacts");
+    const struct failure *lost = o->device ? &o->device->lost : NULL;
+    if (lost && lost->status) return failure_set(failure, lost->status, "%s", lost->text);
+    return failure_set(failure, EX_SOFTWARE, "no memory to solve the contacts");
 }
 
 /* The contacts as they are, from the reactions that they have */
 static int solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                          const struct step_opt *o, struct report *rep, struct why *why)
+                          const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct problem p;
     const struct prepare_opt form = {
         .alpha = o->alpha, .rho_factor = o->solve.method->rho, .order = o->order, .kept = kept
     };
-    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, why)) return why->status;
-    if (check_solver(&p, o->solve.global, why)) return problem_free(&p), why->status;
+    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, failure)) return failure->status;
+    if (check_solver(&p, o->solve.global, failure)) return problem_free(&p), failure->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
-        solve_failed(&o->solve, why);
+        solve_failed(&o->solve, failure);
     else if ((failed = problem_store(&p, s)))
-        why_set(why, EX_SOFTWARE, "no memory for the solution");
+        failure_set(failure, EX_SOFTWARE, "no memory for the solution");
     problem_free(&p);
-    return failed ? why->status : 0;
+    return failed ? failure->status : 0;
 }
 
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                       const struct step_opt *o, struct report *rep, struct why *why)
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct rebound_search *search = NULL;
     bool again = true;
-    while (!rebound_reduce(&search, pack, s, &again, why) && again) {
+    while (!rebound_reduce(&search, pack, s, &again, failure) && again) {
         const struct report before = *rep;
-        if (solve_contacts(pack, s, kept, o, rep, why)) break;
+        if (solve_contacts(pack, s, kept, o, rep, failure)) break;
         rep->bus_to += before.bus_to, rep->bus_from += before.bus_from;
         rep->kernels += before.kernels;
         rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
@@ -76,26 +76,26 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
         rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
     }
     rebound_free(search);
-    return why->status;
+    return failure->status;
 }
 
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                        const struct step_opt *o, struct report *rep, struct why *why)
+                        const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     if (!o->warm) contacts_free_found(s);
-    if (solve_contacts(pack, s, kept, o, rep, why)) return why->status;
-    return step_bound_impacts(pack, s, kept, o, rep, why);
+    if (solve_contacts(pack, s, kept, o, rep, failure)) return failure->status;
+    return step_bound_impacts(pack, s, kept, o, rep, failure);
 }
 
 /* What is reported of a step before its solve */
 static int step_begin(struct step_makers *m,
                  int measure(struct step_makers *m, const struct packing *p,
-                             const struct contacts *s, struct report *rep, struct why *why),
+                             const struct contacts *s, struct report *rep, struct failure *failure),
                  const struct packing *p, const struct contacts *s, struct report *rep,
-                 struct why *why)
+                 struct failure *failure)
 {
     rep->step = p->step + 1, rep->t = packing_next_time(p);
-    return measure(m, p, s, rep, why);
+    return measure(m, p, s, rep, failure);
 }
 
 /* What the report's balances say of a step, and whether there are any */
@@ -107,20 +107,20 @@ static bool account_for(struct report *rep, const struct packing *p, const struc
 }
 
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-               struct report *rep, struct why *why)
+               struct report *rep, struct failure *failure)
 {
     struct impulses sum = { 0 };
-    if (step_begin(NULL, step_measure_whole, pack, s, rep, why) ||
-        step_solve_contacts(pack, s, NULL, o, rep, why))
-        return why->status;
-    if (!impulses_init(&sum, pack, s, false, why) && account_for(rep, pack, o))
-        step_balance_whole(NULL, pack, s, &sum, &rep->balance, why);
+    if (step_begin(NULL, step_measure_whole, pack, s, rep, failure) ||
+        step_solve_contacts(pack, s, NULL, o, rep, failure))
+        return failure->status;
+    if (!impulses_init(&sum, pack, s, false, failure) && account_for(rep, pack, o))
+        step_balance_whole(NULL, pack, s, &sum, &rep->balance, failure);
     impulses_free(&sum);
-    return why->status;
+    return failure->status;
 }
 
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
-                        struct why *why)
+                        struct failure *failure)
 {
     struct problem p;
     if (!o->warm)
@@ -128,7 +128,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
     const struct prepare_opt form = { .alpha = o->alpha,
                                       .rho_factor = o->solve.method->rho,
                                       .order = o->order };
-    if (problem_prepare_delassus(&p, W, &form, why)) return why->status;
+    if (problem_prepare_delassus(&p, W, &form, failure)) return failure->status;
     rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
@@ -138,7 +138,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
         for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
     }
     problem_free(&p);
-    return failed ? solve_failed(&o->solve, why) : 0;
+    return failed ? solve_failed(&o->solve, failure) : 0;
 }
 
 void step_forget(struct step_memory *m)
@@ -153,20 +153,20 @@ void step_report_passed(struct report *rep, const struct packing *p, const struc
     if (passed->n && (!rep->passed || passed->id < rep->passed_id))
         rep->passed_id = passed->id, rep->passed_through = passed->through;
     rep->passed += passed->n;
-    rep->watched = swift_watches(p) || rep->passed;
+    rep->watched = tunnelling_watches(p) || rep->passed;
 }
 
 int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
-                     struct report *rep, struct why *why)
+                     struct report *rep, struct failure *failure)
 {
     struct passed passed = { 0 };
     struct fast_list fast = { 0 };
-    if (watch.fixed.length > 0) swift_passed(&passed, p, NULL, surface, watch.fixed);
-    if (!fast_find(&fast, p, NULL, why) &&
-        !crossing_count(&passed, p, NULL, &fast, watch.bodies, watch.beyond, why))
+    if (watch.fixed.length > 0) tunnelling_passed(&passed, p, NULL, surface, watch.fixed);
+    if (!fast_find(&fast, p, NULL, failure) &&
+        !tunnelling_count(&passed, p, NULL, &fast, watch.bodies, watch.beyond, failure))
         step_report_passed(rep, p, &passed);
     free(fast.of);
-    return why->status;
+    return failure->status;
 }
 
 struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o)
@@ -186,31 +186,31 @@ void step_substep_fit(struct substep_choice *c, const struct substeps *s)
 }
 
 int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
-                       const struct surface *surface, struct why *why)
+                       const struct surface *surface, struct failure *failure)
 {
     struct fast_list fast;
     struct passed passed = { 0 };
     substeps_whole(s, p);
     packing_wrap(p, NULL);
-    if (fast_find(&fast, p, NULL, why)) return why->status;
-    meeting_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, why);
+    if (fast_find(&fast, p, NULL, failure)) return failure->status;
+    time_of_impact_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, failure);
     // a boundary that lies before the place where contacts are sought
-    for (bool passes = fast.n > 0 && !why->status; passes && c->length > substeps_least(s);) {
+    for (bool passes = fast.n > 0 && !failure->status; passes && c->length > substeps_least(s);) {
         p->dt = c->length;
-        swift_passed(&passed, p, NULL, surface, window_before(p));
+        tunnelling_passed(&passed, p, NULL, surface, window_before(p));
         passes = passed.n > 0;
         if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
     }
     free(fast.of);
-    return why->status;
+    return failure->status;
 }
 
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                       struct report *rep, struct why *why)
+                       struct report *rep, struct failure *failure)
 {
     (void)m;
     rep->err.max_overlap = contacts_max_overlap(s);
-    return depth_of(&rep->depth, p, s, NULL, why);
+    return depth_of(&rep->depth, p, s, NULL, failure);
 }
 
 void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
@@ -225,17 +225,17 @@ void step_unsolved_whole(struct step_makers *m, const struct packing *p, const s
 }
 
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                       const struct impulses *sum, struct balance *b, struct why *why)
+                       const struct impulses *sum, struct balance *b, struct failure *failure)
 {
     (void)m;
-    return balance_step(b, p, s, sum, NULL, why);
+    return balance_step(b, p, s, sum, NULL, failure);
 }
 
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct projected *did, struct why *why)
+                          struct projected *did, struct failure *failure)
 {
     (void)m;
-    if (overlap_projects(p->overlap) && project_apart(p, s, did, why)) return why->status;
+    if (overlap_projects(p->overlap) && project_apart(p, s, did, failure)) return failure->status;
     if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, NULL);
     return 0;
 }
@@ -276,20 +276,20 @@ static void step_foresee(struct step_makers *m, const struct packing *p, const s
 
 /* The balances and the motion */
 static int step_move(struct step_makers *m, struct packing *p, const struct contacts *s,
-                const struct step_opt *o, struct report *rep, struct why *why)
+                const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct impulses sum = { 0 };
     struct projected did = { 0 };
-    if (impulses_init(&sum, p, s, false, why)) goto end;
+    if (impulses_init(&sum, p, s, false, failure)) goto end;
     if (m->add_impulses) m->add_impulses(m, &sum);
-    if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, why)) goto end;
+    if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, failure)) goto end;
     step_foresee(m, p, &sum, rep);
-    if (report_made(rep) && !sum_step(p, s, &sum, why) && !move_by(p, s, &sum, why))
-        m->move_apart(m, p, s, rep->balanced ? &did : NULL, why);
+    if (report_made(rep) && !sum_step(p, s, &sum, failure) && !move_by(p, s, &sum, failure))
+        m->move_apart(m, p, s, rep->balanced ? &did : NULL, failure);
     if (rep->balanced) step_report_moved(rep, p, &did);
 end:
     impulses_free(&sum);
-    return why->status;
+    return failure->status;
 }
 
 static const struct window none = { 0, 0 };
@@ -319,20 +319,20 @@ static struct windows watch_after(const struct step_makers *m, const struct pack
 }
 
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
-              const struct step_opt *o, struct report *rep, struct why *why)
+              const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     double cpu = report_seconds(CLOCK_CPU);
-    if (m->detect(m, p, s, o, why)) return why->status;
+    if (m->detect(m, p, s, o, failure)) return failure->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
-    if (!m->helps && step_begin(m, m->measure, p, s, rep, why)) return why->status;
+    if (!m->helps && step_begin(m, m->measure, p, s, rep, failure)) return failure->status;
     rep->passed = 0, rep->endless = (struct endless){ 0 };
     if (!m->helps && (!p->step || m->substeps->made) &&
-        m->watch(m, p, watch_before(m, p), rep, why))
-        return why->status;
-    if (m->solve(m, p, s, o, rep, why) || m->helps) return why->status;
+        m->watch(m, p, watch_before(m, p), rep, failure))
+        return failure->status;
+    if (m->solve(m, p, s, o, rep, failure) || m->helps) return failure->status;
     if (!rep->converged) m->find_unsolved(m, p, s, rep);
-    if (step_move(m, p, s, o, rep, why)) return why->status;
-    return m->watch(m, p, watch_after(m, p), rep, why);
+    if (step_move(m, p, s, o, rep, failure)) return failure->status;
+    return m->watch(m, p, watch_after(m, p), rep, failure);
 }
 
 /* ---- a process alone ---- */
@@ -343,45 +343,45 @@ struct alone {
 };
 
 static int detect_alone(struct step_makers *m, struct packing *p, struct contacts *s,
-                        const struct step_opt *o, struct why *why)
+                        const struct step_opt *o, struct failure *failure)
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     memory_set(&p->memory, o->warm);
     packing_wrap(p, NULL);
-    if (touching_bond(p, why)) return why->status;
-    if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, why)) return why->status;
-    return o->warm ? memory_give(&p->memory, s, packing_rolls(p), why) : 0;
+    if (touching_bond(p, failure)) return failure->status;
+    if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, failure)) return failure->status;
+    return o->warm ? memory_give(&p->memory, s, packing_rolls(p), failure) : 0;
 }
 
 static int solve_alone(struct step_makers *m, const struct packing *p, struct contacts *s,
-                       const struct step_opt *o, struct report *rep, struct why *why)
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
-    return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, why);
+    return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, failure);
 }
 
 static int watch_alone(struct step_makers *m, const struct packing *p, struct windows watch,
-                       struct report *rep, struct why *why)
+                       struct report *rep, struct failure *failure)
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, why)) step_watch_whole(p, near->surface, watch, rep, why);
+    if (!neighbours_surfaces(near, p, failure)) step_watch_whole(p, near->surface, watch, rep, failure);
     neighbours_free(&once);
-    return why->status;
+    return failure->status;
 }
 
 static int choose_alone(struct alone *a, struct substeps *steps, struct packing *p,
-                        const struct step_opt *o, struct why *why)
+                        const struct step_opt *o, struct failure *failure)
 {
     struct neighbours once = { 0 }, *near = a->memory ? &a->memory->near : &once;
     struct substep_choice c = step_substep(steps, o);
-    if (c.meets && !neighbours_surfaces(near, p, why))
-        step_substep_whole(&c, steps, p, near->surface, why);
+    if (c.meets && !neighbours_surfaces(near, p, failure))
+        step_substep_whole(&c, steps, p, near->surface, failure);
     neighbours_free(&once);
     step_substep_fit(&c, steps);
     a->makers.meets = c.meets;
     substeps_choose(steps, c.length);
-    return why->status;
+    return failure->status;
 }
 
 struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s)
@@ -392,7 +392,7 @@ struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s
 }
 
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
-                 const struct step_opt *o, struct report *rep, struct why *why)
+                 const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct substeps steps;
     struct alone a = { { .detect = detect_alone,
@@ -405,15 +405,15 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
                          .substeps = &steps },
                        kept };
     substeps_begin(&steps, p);
-    while (!steps.ends && !choose_alone(&a, &steps, p, o, why)) {
+    while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
         const struct step_opt part = step_opt_part(o, &steps);
-        if (substeps_remember(&steps, p, why)) break;
+        if (substeps_remember(&steps, p, failure)) break;
         substeps_enter(&steps, p);
-        step_make(&a.makers, p, s, &part, rep, why);
+        step_make(&a.makers, p, s, &part, rep, failure);
         substeps_leave(&steps, p);
         substeps_recall(&steps, p);
-        if (why->status || substeps_add(&steps, p, s, rep, why)) break;
+        if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
     }
     substeps_free(&steps);
-    return why->status;
+    return failure->status;
 }

@@ -39,18 +39,18 @@ bool step_sweeps(const struct solver *global);
 
 /* Solves the contacts, whose bases and gaps are known; their found[] gets r, u and status. */
 int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
-               struct report *rep, struct why *why);
+               struct report *rep, struct failure *failure);
 
 /* The same for a problem given by W: r (N s) in W->r, u[n d] (m/s). */
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
-                        struct why *why);
+                        struct failure *failure);
 
 /*
  * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the
  * solve diverged, or something would not be finite after the step, nothing moves: report_made()
  */
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
-                 const struct step_opt *o, struct report *rep, struct why *why);
+                 const struct step_opt *o, struct report *rep, struct failure *failure);
 
 /* What to look for that bodies go through in a step, or in a substep */
 struct windows {
@@ -69,18 +69,18 @@ struct step_makers {
     bool helps;
     /* The contacts, with their last reactions if warm */
     int (*detect)(struct step_makers *m, struct packing *p, struct contacts *s,
-                  const struct step_opt *o, struct why *why);
+                  const struct step_opt *o, struct failure *failure);
     /* rep->err.max_overlap and rep->depth */
     int (*measure)(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                   struct report *rep, struct why *why);
+                   struct report *rep, struct failure *failure);
     /* found[], and the report of the solve */
     int (*solve)(struct step_makers *m, const struct packing *p, struct contacts *s,
-                 const struct step_opt *o, struct report *rep, struct why *why);
+                 const struct step_opt *o, struct report *rep, struct failure *failure);
     /* The sums of the reactions become those of all who push a body; NULL: they are. */
     void (*add_impulses)(struct step_makers *m, struct impulses *sum);
     /* The balances of the step */
     int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                   const struct impulses *sum, struct balance *b, struct why *why);
+                   const struct impulses *sum, struct balance *b, struct failure *failure);
     /* rep->endless becomes that of all who make the step; NULL: it is. */
     void (*agree)(struct step_makers *m, struct report *rep);
     /* rep->unsolved */
@@ -89,26 +89,26 @@ struct step_makers {
     /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done, and the energy
        then */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
-                      struct projected *did, struct why *why);
+                      struct projected *did, struct failure *failure);
     /* Which bodies go through something: once the step is made, and before the first one and before substeps */
     int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
-                 struct report *rep, struct why *why);
+                 struct report *rep, struct failure *failure);
     const struct substeps *substeps; /* of which this is one */
     bool
         meets; /* it ends where bodies meet [detect/meeting.h]; else what they go through is counted */
 };
 /* The step, or the substep, by these makers */
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
-              const struct step_opt *o, struct report *rep, struct why *why);
+              const struct step_opt *o, struct report *rep, struct failure *failure);
 /* What one process does: a process that has a whole packing */
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                       struct report *rep, struct why *why);
+                       struct report *rep, struct failure *failure);
 void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                          struct report *rep);
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
-                       const struct impulses *sum, struct balance *b, struct why *why);
+                       const struct impulses *sum, struct balance *b, struct failure *failure);
 int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
-                          struct projected *did, struct why *why);
+                          struct projected *did, struct failure *failure);
 /* What the report's balance has after the motion */
 void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did);
 
@@ -116,14 +116,14 @@ void step_report_moved(struct report *rep, const struct packing *p, const struct
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
    are solved again with less restitution [solve/rebound.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                        const struct step_opt *o, struct report *rep, struct why *why);
+                        const struct step_opt *o, struct report *rep, struct failure *failure);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
-                       const struct step_opt *o, struct report *rep, struct why *why);
+                       const struct step_opt *o, struct report *rep, struct failure *failure);
 /* Adds bodies that have gone through something to the report, whose number of them is 0 before the step. */
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
 /* The same of a whole packing, which is looked through. surface: [walls] of those that are meshes */
 int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
-                     struct report *rep, struct why *why);
+                     struct report *rep, struct failure *failure);
 
 /* The options of a substep */
 struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s);
@@ -138,7 +138,7 @@ struct substep_choice step_substep(const struct substeps *s, const struct step_o
 /* with them: at most so long that a whole packing's bodies meet, and, halved where that helps, that they do not go
    through boundaries before contacts are sought. p is in between given other dt. */
 int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
-                       const struct surface *surface, struct why *why);
+                       const struct surface *surface, struct failure *failure);
 /* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */
 void step_substep_fit(struct substep_choice *c, const struct substeps *s);
 

@@ -297,12 +297,12 @@ enum overlap options_overlap_of(const struct options *o, const struct packing *p
     return OPTION(overlap, (int)now - 1) + 1;
 }
 
-int options_names(const struct options *o, struct why *why)
+int options_names(const struct options *o, struct failure *failure)
 {
     char names[100] = "";
     size_t n = 0;
     if (!o->paper || o->method) return 0;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
-    return why_set(why, EX_USAGE, "--paper: needs a local method, -m %s", names);
+    return failure_set(failure, EX_USAGE, "--paper: needs a local method, -m %s", names);
 }

@@ -42,7 +42,7 @@ struct cli_choice options_overlap_choice(int index);
 /* The default of the member of `options` that `to` points to, as --help shows it. */
 const char *options_usual(const void *to);
 /* EX_USAGE where options contradict each other */
-int options_names(const struct options *o, struct why *why);
+int options_names(const struct options *o, struct failure *failure);
 
 /* Options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign);

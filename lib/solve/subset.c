@@ -39,7 +39,7 @@ static int64_t count_large(const double *map, int64_t n, double large)
 /* Chooses the contacts with a large map and as many of their neighbours, or more of these up to
    `least` in all. False where they would be too many. */
 static bool subset_choose(const struct scaled *a, const double *map, double largest, int64_t least,
-                   bool anyhow, struct chosen_contacts *p)
+                   bool anyhow, struct selection_contacts *p)
 {
     const struct delassus *W = &a->W;
     double large = LARGE * largest;
@@ -86,7 +86,7 @@ static int subset_run(struct solve *s)
 
 /* A subset while it is solved */
 struct subset {
-    struct chosen_contacts chosen;
+    struct selection_contacts chosen;
     double *x, *v, *map; /* of all contacts: x and v [n d], the natural map [n] */
     struct delassus V;   /* of those chosen */
 };
@@ -104,7 +104,7 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
                        int64_t contacts, bool anyhow, double budget)
 {
     size_t n = (size_t)a->W.n, size = (size_t)a->size + 4;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *p = (struct subset){ 0 };
     p->x = calloc(size, sizeof *p->x), p->v = calloc(size, sizeof *p->v);
     p->map = calloc(n + 1, sizeof *p->map);
@@ -115,9 +115,9 @@ static int subset_init(struct subset *p, const struct scaled *a, const struct so
     scaled_velocity(a, p->x, p->v);
     double largest = fill_maps(a, p->x, p->v, p->map);
     if (!subset_choose(a, p->map, largest, contacts, anyhow, &p->chosen)) return 0;
-    const struct chosen_contacts chosen =
+    const struct selection_contacts chosen =
         p->chosen; /* clang-analyzer takes all of *p as const else */
-    if (delassus_subset(&p->V, &a->W, &chosen, p->x, p->v, &why)) return -1;
+    if (delassus_subset(&p->V, &a->W, &chosen, p->x, p->v, &failure)) return -1;
     double entries = delassus_entries(&p->V); // NOLINT(clang-analyzer-unix.Malloc): subset_free()
     return price_analysis(entries) + STEPS * price_newton_step(0, entries) <= budget;
 }
@@ -130,7 +130,7 @@ static int subset_solve_part(struct subset *p, struct solve *s, double budget)
     const struct inner inner = { { "subset", "", 0, subset_run }, budget };
     struct delassus *V = &p->V;
     struct problem q;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
     struct solve_opt o = *s->o;
     o.global = &inner.solver, o.criterion = CRITERION_NATURAL, o.eps = EXACT;
@@ -138,7 +138,7 @@ static int subset_solve_part(struct subset *p, struct solve *s, double budget)
     o.device = NULL; // a subset is small
     if (o.max_seconds > 0) o.max_seconds = fmax(solve_seconds_left(s), 1e-9);
     if (problem_prepare_delassus(&q, V, &(struct prepare_opt){ .rho_factor = s->o->method->rho },
-                                 &why))
+                                 &failure))
         return -1;
     int e = solve_problem(&q, &o, &rep);
     problem_free(&q);

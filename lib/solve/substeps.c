@@ -59,10 +59,10 @@ static bool is_short(const struct substeps *s)
     return s->length < SHORT * s->dt;
 }
 
-int substeps_remember(struct substeps *s, struct packing *p, struct why *why)
+int substeps_remember(struct substeps *s, struct packing *p, struct failure *failure)
 {
     if (substeps_alone(s)) return 0;
-    if (is_short(s) && memory_copy(&s->memory, &p->memory, why)) return why->status;
+    if (is_short(s) && memory_copy(&s->memory, &p->memory, failure)) return failure->status;
     memory_scale(&p->memory, s->length / s->dt);
     return 0;
 }
@@ -111,7 +111,7 @@ static void add_one(struct contacts *to, const struct contacts *from, int64_t i)
 }
 
 /* now = the contacts of both, with their sums; had is freed. */
-static int substeps_join(struct contacts *had, struct contacts *now, struct why *why)
+static int substeps_join(struct contacts *had, struct contacts *now, struct failure *failure)
 {
     struct contacts all = { 0 };
     int64_t i = 0;
@@ -122,7 +122,7 @@ static int substeps_join(struct contacts *had, struct contacts *now, struct why 
     if (room && (had->law || now->law)) room = !contacts_alloc_laws(&all);
     if (!room) {
         contacts_free(&all);
-        return why_set(why, EX_SOFTWARE, "no memory for the contacts of substeps");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the contacts of substeps");
     }
     all.n = 0;
     for (int64_t k = 0; k < now->n; k++) {
@@ -188,14 +188,14 @@ void substeps_count(struct substeps *s)
 }
 
 int substeps_add(struct substeps *s, const struct packing *p, struct contacts *contacts,
-                 struct report *r, struct why *why)
+                 struct report *r, struct failure *failure)
 {
     const bool first = !s->made;
     substeps_count(s);
     r->substeps = s->made;
     if (substeps_alone(s)) return 0;
     s->ends = s->ends || !report_made(r);
-    if (!first && substeps_join(&s->sum, contacts, why)) return why->status;
+    if (!first && substeps_join(&s->sum, contacts, failure)) return failure->status;
     if (first)
         s->report = *r;
     else

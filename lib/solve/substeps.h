@@ -60,13 +60,13 @@ void substeps_leave(const struct substeps *s, struct packing *p);
 /* The same of the reactions that p remembers. They are forces over a step: the substep begins with its share of them, and
    where it is short, with the impulses of impacts, they are afterwards what they were before. Returns 0 or
    EX_SOFTWARE. */
-int substeps_remember(struct substeps *s, struct packing *p, struct why *why);
+int substeps_remember(struct substeps *s, struct packing *p, struct failure *failure);
 void substeps_recall(struct substeps *s, struct packing *p);
 /* The substep that p has left is made. */
 void substeps_count(struct substeps *s);
 /* Counts it, and adds its contacts and its report; of the last one they become those of the step.
    Returns 0 or EX_SOFTWARE. */
 int substeps_add(struct substeps *s, const struct packing *p, struct contacts *contacts,
-                 struct report *report, struct why *why);
+                 struct report *report, struct failure *failure);
 
 #endif

@@ -71,7 +71,7 @@ static void replace(hid_t file, const struct spot *p, enum change change)
 {
     static const double nine[9] = { 1, 2, 3, 4, 5, 6, 7, 8, 9 };
     const hsize_t seven = 7, square[2] = { 3, 3 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (*p->name)
         H5Adelete_by_name(file, p->path, p->name, H5P_DEFAULT);
     else
@@ -79,35 +79,35 @@ static void replace(hid_t file, const struct spot *p, enum change change)
     hid_t real = H5T_NATIVE_DOUBLE;
     const hsize_t *shape = change == SEVEN ? &seven : square;
     int rank = change == SEVEN ? 1 : 2;
-    if (*p->name && change == TEXT) h5_attr_text(file, p->path, p->name, "words\n", &why);
+    if (*p->name && change == TEXT) h5_attr_text(file, p->path, p->name, "words\n", &failure);
     if (*p->name && change > TEXT)
-        h5_attr(file, p->path, p->name, h5_array(real, rank, shape, nine), &why);
-    if (!*p->name && change == TEXT) h5_write_text(file, p->path, "words\n", &why);
+        h5_attr(file, p->path, p->name, h5_array(real, rank, shape, nine), &failure);
+    if (!*p->name && change == TEXT) h5_write_text(file, p->path, "words\n", &failure);
     if (!*p->name && change > TEXT)
-        h5_write(file, p->path, h5_array(real, rank, shape, nine), NULL, &why);
+        h5_write(file, p->path, h5_array(real, rank, shape, nine), NULL, &failure);
 }
 
 /* What a reader makes of it; and whether that is an answer */
-static bool answers(hid_t file, struct why *why)
+static bool answers(hid_t file, struct failure *failure)
 {
     struct source *s = NULL;
     struct frame_read doc = { 0 };
     struct frame f = { 0 };
     struct unknown *unknown = NULL;
-    if (!source_of_own(&s, file, why) && !frame_read_open(&doc, s, why) && doc.frames > 0 &&
-        !frame_read_moment(&doc, 0, &f, why))
-        unknown_read(&unknown, s, true, why);
+    if (!source_of_own(&s, file, failure) && !frame_read_open(&doc, s, failure) && doc.frames > 0 &&
+        !frame_read_moment(&doc, 0, &f, failure))
+        unknown_read(&unknown, s, true, failure);
     bool good =
-        !why->status || (why->status == EX_DATAERR && *why->text && !strchr(why->text, '\n'));
-    struct why other = { 0 };
+        !failure->status || (failure->status == EX_DATAERR && *failure->text && !strchr(failure->text, '\n'));
+    struct failure other = { 0 };
     struct writer *w = NULL;
-    if (!why->status && f.packed) good = !packing_check(&f.packing, &other);
-    if (!why->status && f.detected && good)
+    if (!failure->status && f.packed) good = !packing_check(&f.packing, &other);
+    if (!failure->status && f.detected && good)
         good = !contacts_check(&f.contacts, f.packing.n, f.packing.walls, &other);
-    if (!why->status && good && (f.packed || f.foreign)) // a writer takes it, too
+    if (!failure->status && good && (f.packed || f.foreign)) // a writer takes it, too
         good = !writer_open(&w, "/dev/null", WRITER_STREAM, &other) && !writer_frame(w, &f, &other);
     if (w) writer_close(w, &other);
-    if (!good && !why->status) *why = other;
+    if (!good && !failure->status) *failure = other;
     unknown_free(unknown), frame_free(&f);
     frame_read_close(&doc), source_close(s);
     return good;
@@ -146,7 +146,7 @@ static void test_document(int k)
     long stride = getenv("NSD_RUNS") ? 3 : getenv("NSD_THIN") ? 101 : 31;
     long taken = 0, tried = 0, odd = 0;
     hid_t file = open_copy(document[k]);
-    struct why whole = { 0 };
+    struct failure whole = { 0 };
     count = 0;
     H5Ovisit(file, H5_INDEX_NAME, H5_ITER_INC, add_object, NULL);
     ok(answers(file, &whole) && !whole.status, "document %d is read %s", k, whole.text);
@@ -154,18 +154,18 @@ static void test_document(int k)
     for (long i = 0; i < (long)count * CHANGES; i += stride) {
         const struct spot *p = &places[i / CHANGES];
         int change = (int)(i % CHANGES), at = change - NUMBERS;
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         file = open_copy(document[k]);
         if (change < NUMBERS)
             replace(file, p, (enum change)change);
         else
             set_numbers(file, p, number[at / 2], at % 2);
-        bool good = answers(file, &why), wrong = change == TEXT && !is_spare(p) && !why.status;
+        bool good = answers(file, &failure), wrong = change == TEXT && !is_spare(p) && !failure.status;
         H5Fclose(file);
-        tried++, taken += !why.status;
+        tried++, taken += !failure.status;
         if (good && !wrong) continue;
         if (odd++ < 5)
-            diag("%s %s, change %d: %d %s", p->path, p->name, change, why.status, why.text);
+            diag("%s %s, change %d: %d %s", p->path, p->name, change, failure.status, failure.text);
     }
     ok(!odd && taken > 0 && taken < tried,
        "document %d: of %ld with a change %ld are read, the others refused", k, tried, taken);

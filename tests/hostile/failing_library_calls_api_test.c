@@ -32,7 +32,7 @@ static uint32_t state(const struct nsd_run *r)
         crc = add(crc, &p->memory.recall[i].r, sizeof p->memory.recall[i].r);
     for (size_t i = 0; i < m; i++) crc = add(crc, &s->c[i].x, sizeof s->c[i].x);
     for (size_t i = 0; i < m && s->found; i++) crc = add(crc, s->found[i].r, sizeof s->found[i].r);
-    for (int t = 0; t < ACTS_TERMS && r->acts.id; t++)
+    for (int t = 0; t < CONTROL_TERMS && r->acts.id; t++)
         for (size_t i = 0; i < (size_t)r->acts.n; i++)
             if (v3_norm(r->acts.force[t][i]) > 0)
                 crc = add(crc, &r->acts.force[t][i], sizeof(vec3));
@@ -41,23 +41,23 @@ static uint32_t state(const struct nsd_run *r)
 
 /* After a call: a failure has left everything as it was, which the test tells by the status 1 where it is not so. */
 static int after(const struct nsd_run *r, int failed, uint32_t was, const char *call,
-                 struct why *why)
+                 struct failure *failure)
 {
     bool on = armed;
     armed = false;
     if (failed && state(r) != was)
-        why_set(why, 1, "%s failed (%s) and has changed the run", call, nsd_error(r));
+        failure_set(failure, 1, "%s failed (%s) and has changed the run", call, nsd_error(r));
     else if (failed)
-        why_set(why, failed, "%s: %s", call, nsd_error(r));
+        failure_set(failure, failed, "%s: %s", call, nsd_error(r));
     armed = on;
-    return why->status;
+    return failure->status;
 }
 
 #define CALL(what, call)                                                                           \
     do {                                                                                           \
         uint32_t was = state(r);                                                                   \
         int failed = (call);                                                                       \
-        if (after(r, failed, was, what, why)) goto end;                                            \
+        if (after(r, failed, was, what, failure)) goto end;                                            \
     } while (0)
 
 /* Is it cut off, or without a key? */
@@ -69,7 +69,7 @@ static bool json_lacks(const char *json, const char *key)
 static const char *document; /* of a run, for: */
 
 /* A document that is read as objects */
-static int looked_at(uint32_t *crc, struct why *why)
+static int looked_at(uint32_t *crc, struct failure *failure)
 {
     struct nsd_document *d = NULL;
     struct nsd_array a = { .size = sizeof a };
@@ -84,13 +84,13 @@ static int looked_at(uint32_t *crc, struct why *why)
     if (!failed) *crc = add(*crc, json, strlen(json));
     if (!failed) failed = nsd_rows(d, "/particles/all/position/value", 0, 1, &a);
     if (!failed) *crc = add(*crc, a.data, (size_t)a.shape[1] * sizeof(double));
-    if (failed) why_set(why, failed, "looked at: %s", nsd_error(NULL));
+    if (failed) failure_set(failure, failed, "looked at: %s", nsd_error(NULL));
     nsd_shut(&d);
-    return why->status;
+    return failure->status;
 }
 
 /* A run that makes steps is acted on, and gets and loses bodies where the scene does not pour */
-static int acted(uint32_t *crc, struct why *why)
+static int acted(uint32_t *crc, struct failure *failure)
 {
     struct nsd_run *r = NULL;
     const char *json;
@@ -117,35 +117,35 @@ static int acted(uint32_t *crc, struct why *why)
     if (now == 2) CALL("remove", nsd_remove(r, 1, &id));
     CALL("step", nsd_step(r, 1));
     CALL("measure", nsd_measure(r, "energy,displacement", &json));
-    if (json_lacks(json, "\"displacement\":")) return why_set(why, 1, "measure: half a line");
+    if (json_lacks(json, "\"displacement\":")) return failure_set(failure, 1, "measure: half a line");
     CALL("names", nsd_names(r, &json));
-    if (json_lacks(json, "\"named\":{")) return why_set(why, 1, "names: half of them");
+    if (json_lacks(json, "\"named\":{")) return failure_set(failure, 1, "names: half of them");
     *crc = state(r);
 end:
     armed = false;
     nsd_close(&r);
     armed = on;
-    return why->status;
+    return failure->status;
 }
 
-static int made(uint32_t *crc, struct why *why)
+static int made(uint32_t *crc, struct failure *failure)
 {
     struct nsd_run *r;
     int failed = nsd_from_scene(&r, scene_text[now], folder);
-    if (failed) return why_set(why, failed, "made: %s", nsd_error(NULL));
+    if (failed) return failure_set(failure, failed, "made: %s", nsd_error(NULL));
     *crc = state(r);
     nsd_close(&r);
     return 0;
 }
 
-static int saved(uint32_t *crc, struct why *why)
+static int saved(uint32_t *crc, struct failure *failure)
 {
     struct nsd_run *r = NULL;
     const char *path = fresh(".h5");
     bool on = armed;
     armed = false;
     must(nsd_from_scene(&r, scene_text[now], folder), run_why_of_thread());
-    must(nsd_step(r, 1), &r->why);
+    must(nsd_step(r, 1), &r->failure);
     armed = on;
     CALL("append", nsd_append(r, path));
     CALL("step", nsd_step(r, 1));
@@ -161,7 +161,7 @@ end:
     nsd_close(&r);
     unlink(path);
     armed = on;
-    return why->status;
+    return failure->status;
 }
 
 int main(void)
@@ -176,7 +176,7 @@ int main(void)
     struct nsd_run *r = NULL;
     document = fresh(".h5");
     must(nsd_from_scene(&r, scene_text[0], folder), run_why_of_thread());
-    must(nsd_save(r, document), &r->why);
+    must(nsd_save(r, document), &r->failure);
     nsd_close(&r);
     each_fails("a document as objects", looked_at);
     unlink(document);

@@ -11,25 +11,25 @@
 static struct packing packing;
 static struct contacts contacts;
 
-static int page(uint32_t *crc, struct why *why)
+static int page(uint32_t *crc, struct failure *failure)
 {
     struct page p = { 0 };
     const char *path = fresh(".html");
     FILE *out = fopen(path, "w");
-    if (!out) return why_set(why, EX_SOFTWARE, "no file of the test's");
-    if (!page_begin(&p, out, path, "a page", why))
+    if (!out) return failure_set(failure, EX_SOFTWARE, "no file of the test's");
+    if (!page_begin(&p, out, path, "a page", failure))
         for (int k = 0; k < 3; k++)
-            if (page_frame(&p, &packing, &contacts, why) || page_value(&p, "a number", "m", k, why))
+            if (page_frame(&p, &packing, &contacts, failure) || page_value(&p, "a number", "m", k, failure))
                 break;
-    if (!why->status) page_end(&p, why);
+    if (!failure->status) page_end(&p, failure);
     page_free(&p);
     fclose(out);
     if (packing.walls) unlink(path), *crc = 0; // boundaries that find no memory are left out
     if (!packing.walls) *crc = crc_of(path);
-    return why->status;
+    return failure->status;
 }
 
-static int picture(uint32_t *crc, struct why *why)
+static int picture(uint32_t *crc, struct failure *failure)
 {
     struct overlay over = { .network = true, .contacts = true, .legend = true };
     struct view v = { .width = 64,
@@ -44,44 +44,44 @@ static int picture(uint32_t *crc, struct why *why)
     const char *path = fresh(".png"), *vector = fresh(".svg");
     paint_init(&v.paint, COLOUR_RADIUS, false);
     *crc = 0;
-    if (view_extend(&v, p, why)) return why->status;
+    if (view_extend(&v, p, failure)) return failure->status;
     view_fit(&v, p);
-    if (!overlay_draw(&over, &v, p, &contacts, &pic, why)) picture_write(&pic, path, why);
+    if (!overlay_draw(&over, &v, p, &contacts, &pic, failure)) picture_write(&pic, path, failure);
     picture_free(&pic);
-    if (!why->status && p->dim == 2) svg_draw(&over, &v, p, &contacts, vector, why);
+    if (!failure->status && p->dim == 2) svg_draw(&over, &v, p, &contacts, vector, failure);
     unlink(vector), unlink(path); // boundaries that find no memory are left out
-    return why->status;
+    return failure->status;
 }
 
-static int table(uint32_t *crc, struct why *why)
+static int table(uint32_t *crc, struct failure *failure)
 {
     struct values v = { 0 };
     char path[100];
     snprintf(path, sizeof path, "%s/values", folder);
-    values_read(&v, path, "x", why);
+    values_read(&v, path, "x", failure);
     *crc = document_crc(0, v.row, (size_t)v.n * sizeof *v.row);
     values_free(&v);
-    return why->status;
+    return failure->status;
 }
 
-static int images(uint32_t *crc, struct why *why)
+static int images(uint32_t *crc, struct failure *failure)
 {
     struct packing p = { 0 };
     int64_t *of = NULL;
     bool was = armed;
     armed = false;
-    must(packing_copy(&p, &packing, why), why);
+    must(packing_copy(&p, &packing, failure), failure);
     armed = was;
-    if (!images_append(&p, &of, why)) *crc = document_crc(0, p.x, (size_t)p.n * sizeof *p.x);
+    if (!images_append(&p, &of, failure)) *crc = document_crc(0, p.x, (size_t)p.n * sizeof *p.x);
     free(of), packing_free(&p);
-    return why->status;
+    return failure->status;
 }
 
 /* Contacts with forces, as if they were solved */
 static void make(int k)
 {
-    struct why why = { 0 };
-    must(build(&packing, k, &why) || detect_contacts(&contacts, &packing, 0.1, NULL, &why), &why);
+    struct failure failure = { 0 };
+    must(build(&packing, k, &failure) || detect_contacts(&contacts, &packing, 0.1, NULL, &failure), &failure);
     if (contacts_alloc_found(&contacts)) exit(1);
     for (int64_t i = 0; i < contacts.n; i++) contacts.found[i].r[0] = 1e-3 * (double)(i + 1);
 }

@@ -16,91 +16,91 @@
 /* ---- the runs: each returns a status, and what it made, as a checksum, in *crc ---- */
 
 static int write_to(const char *path, enum writer_kind kind, int frames, uint32_t *crc,
-                    struct why *why)
+                    struct failure *failure)
 {
     struct writer *w = NULL;
     struct frame f = frame[now];
-    if (!writer_open(&w, path, kind, why))
-        for (int k = 0; k < frames && !writer_frame(w, &f, why); k++)
+    if (!writer_open(&w, path, kind, failure))
+        for (int k = 0; k < frames && !writer_frame(w, &f, failure); k++)
             f.packing.step++, f.packing.t += f.packing.dt;
-    if (w) writer_close(w, why);
+    if (w) writer_close(w, failure);
     *crc = crc_of(path);
-    return why->status;
+    return failure->status;
 }
 
-static int write_stream(uint32_t *crc, struct why *why)
+static int write_stream(uint32_t *crc, struct failure *failure)
 {
-    return write_to(fresh(".h5"), WRITER_STREAM, 1, crc, why);
+    return write_to(fresh(".h5"), WRITER_STREAM, 1, crc, failure);
 }
 
-static int write_trajectory(uint32_t *crc, struct why *why)
+static int write_trajectory(uint32_t *crc, struct failure *failure)
 {
-    return write_to(fresh(".h5"), WRITER_TRAJECTORY, 2, crc, why);
+    return write_to(fresh(".h5"), WRITER_TRAJECTORY, 2, crc, failure);
 }
 
-static int write_problem(bool global, uint32_t *crc, struct why *why)
+static int write_problem(bool global, uint32_t *crc, struct failure *failure)
 {
     struct frame was = frame[now];
     frame[now].export = &problem[now], frame[now].export_global = global;
-    write_stream(crc, why);
+    write_stream(crc, failure);
     frame[now] = was;
-    return why->status;
+    return failure->status;
 }
 
-static int write_local(uint32_t *crc, struct why *why)
+static int write_local(uint32_t *crc, struct failure *failure)
 {
-    return write_problem(false, crc, why);
+    return write_problem(false, crc, failure);
 }
 
-static int write_global(uint32_t *crc, struct why *why)
+static int write_global(uint32_t *crc, struct failure *failure)
 {
-    return write_problem(true, crc, why);
+    return write_problem(true, crc, failure);
 }
 
-static int write_over(uint32_t *crc, struct why *why)
+static int write_over(uint32_t *crc, struct failure *failure)
 {
     struct writer *w = NULL;
     const char *path = fresh(".h5");
     close(open(path, O_WRONLY | O_CREAT, 0666));
-    if (!writer_open(&w, path, WRITER_IN_PLACE, why) && !writer_frame(w, &frame[now], why))
-        writer_take_place(w, why);
-    if (w) writer_close(w, why);
+    if (!writer_open(&w, path, WRITER_IN_PLACE, failure) && !writer_frame(w, &frame[now], failure))
+        writer_take_place(w, failure);
+    if (w) writer_close(w, failure);
     *crc = crc_of(path);
-    return why->status;
+    return failure->status;
 }
 
 /* What was read is written again, where nothing fails. */
-static int rewritten(const struct frame *f, uint32_t *crc, struct why *why)
+static int rewritten(const struct frame *f, uint32_t *crc, struct failure *failure)
 {
     struct writer *w = NULL;
     const char *path = fresh(".h5");
     bool was = armed;
     armed = false;
-    if (!why->status && !writer_open(&w, path, WRITER_STREAM, why)) writer_frame(w, f, why);
-    if (w) writer_close(w, why);
+    if (!failure->status && !writer_open(&w, path, WRITER_STREAM, failure)) writer_frame(w, f, failure);
+    if (w) writer_close(w, failure);
     *crc = crc_of(path);
     armed = was;
-    return why->status;
+    return failure->status;
 }
 
 /* By a process of its own, as tools do */
-static int read_apart(uint32_t *crc, struct why *why)
+static int read_apart(uint32_t *crc, struct failure *failure)
 {
     struct reader *r = NULL;
     struct frame f = { 0 };
     bool more = false;
-    if (!reader_open(&r, 1, &document[now], why)) {
+    if (!reader_open(&r, 1, &document[now], failure)) {
         reader_copies(r);
-        reader_next(r, NULL, &f, &more, why);
+        reader_next(r, NULL, &f, &more, failure);
     }
-    rewritten(&f, crc, why);
+    rewritten(&f, crc, failure);
     frame_free(&f);
     reader_close(r);
-    return why->status;
+    return failure->status;
 }
 
 /* The same by this process: a hundred times as fast, so that every call may fail */
-static int read_document(uint32_t *crc, struct why *why)
+static int read_document(uint32_t *crc, struct failure *failure)
 {
     struct source *s = NULL;
     struct frame_read doc = { 0 };
@@ -109,19 +109,19 @@ static int read_document(uint32_t *crc, struct why *why)
     armed = false;
     hid_t file = open_copy(document[now]);
     armed = was;
-    if (!source_of_own(&s, file, why) && !frame_read_open(&doc, s, why) &&
-        !frame_read_moment(&doc, 0, &f, why))
-        unknown_read(&f.unknown, s, true, why);
-    rewritten(&f, crc, why);
+    if (!source_of_own(&s, file, failure) && !frame_read_open(&doc, s, failure) &&
+        !frame_read_moment(&doc, 0, &f, failure))
+        unknown_read(&f.unknown, s, true, failure);
+    rewritten(&f, crc, failure);
     frame_free(&f), frame_read_close(&doc), source_close(s);
     armed = false;
     H5Fclose(file);
     armed = was;
-    return why->status;
+    return failure->status;
 }
 
 /* The same problem, written into memory, read back, and its solution stored and loaded */
-static int problem_in_memory(bool global, uint32_t *crc, struct why *why)
+static int problem_in_memory(bool global, uint32_t *crc, struct failure *failure)
 {
     struct fclib F = { 0 };
     struct source *s = NULL;
@@ -130,17 +130,17 @@ static int problem_in_memory(bool global, uint32_t *crc, struct why *why)
     H5Pset_fapl_core(access, 1 << 16, false);
     hid_t file = H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
     H5Pclose(access);
-    if (file < 0) return why_set(why, EX_SOFTWARE, "no file in memory");
-    if (fclib_write_problem(&problem[now], global, file, why) || source_of_own(&s, file, why) ||
-        fclib_read(&F, s, why))
+    if (file < 0) return failure_set(failure, EX_SOFTWARE, "no file in memory");
+    if (fclib_write_problem(&problem[now], global, file, failure) || source_of_own(&s, file, failure) ||
+        fclib_read(&F, s, failure))
         goto end;
     source_close(s), s = NULL;
     u = calloc((size_t)(F.W.n * F.W.d) + 1, sizeof *u),
     r = calloc((size_t)(F.W.n * F.W.d) + 1, sizeof *r);
-    if (!u || !r) why_set(why, EX_SOFTWARE, "no memory of the test's");
+    if (!u || !r) failure_set(failure, EX_SOFTWARE, "no memory of the test's");
     for (int64_t k = 0; u && r && k < F.W.n * F.W.d; k++) u[k] = r[k] = (double)k;
-    if (why->status || fclib_store_solution(&F, file, u, r, why) || source_of_own(&s, file, why) ||
-        fclib_load_solution(&F, s, u, why))
+    if (failure->status || fclib_store_solution(&F, file, u, r, failure) || source_of_own(&s, file, failure) ||
+        fclib_load_solution(&F, s, u, failure))
         goto end;
     *crc = document_crc(0, u, (size_t)(F.W.n * F.W.d) * sizeof *u);
     *crc = document_crc(*crc, F.W.q, (size_t)(F.W.n * F.W.d) * sizeof *u);
@@ -151,32 +151,32 @@ end:
     armed = false;
     H5Fclose(file);
     armed = was;
-    return why->status;
+    return failure->status;
 }
 
-static int local_in_memory(uint32_t *crc, struct why *why)
+static int local_in_memory(uint32_t *crc, struct failure *failure)
 {
-    return problem_in_memory(false, crc, why);
+    return problem_in_memory(false, crc, failure);
 }
 
-static int global_in_memory(uint32_t *crc, struct why *why)
+static int global_in_memory(uint32_t *crc, struct failure *failure)
 {
-    return problem_in_memory(true, crc, why);
+    return problem_in_memory(true, crc, failure);
 }
 
-static int build_scene(uint32_t *crc, struct why *why)
+static int build_scene(uint32_t *crc, struct failure *failure)
 {
     struct packing p = { 0 };
-    if (build(&p, now, why)) return why->status;
+    if (build(&p, now, failure)) return failure->status;
     *crc = document_crc(0, p.x, (size_t)p.n * sizeof *p.x);
     packing_free(&p);
     return 0;
 }
 
-static int copy_packing(uint32_t *crc, struct why *why)
+static int copy_packing(uint32_t *crc, struct failure *failure)
 {
     struct packing p = { 0 };
-    if (packing_copy(&p, &frame[now].packing, why)) return why->status;
+    if (packing_copy(&p, &frame[now].packing, failure)) return failure->status;
     *crc = document_crc(0, p.x, (size_t)p.n * sizeof *p.x);
     packing_free(&p);
     return 0;
@@ -184,89 +184,89 @@ static int copy_packing(uint32_t *crc, struct why *why)
 
 /* A step of a solver; one that finds no memory for what it can do without has another solution. */
 static const struct solver *solver_now;
-static int make_step(uint32_t *crc, struct why *why)
+static int make_step(uint32_t *crc, struct failure *failure)
 {
     struct packing p = { 0 };
     struct contacts s = { 0 };
     struct report rep = { 0 };
     bool was = armed;
     armed = false;
-    must(packing_copy(&p, &frame[now].packing, why), why);
+    must(packing_copy(&p, &frame[now].packing, failure), failure);
     if (contacts_copy(&s, &frame[now].contacts)) exit(1);
     armed = was;
-    step(&p, &s, solver_now, &rep, why);
+    step(&p, &s, solver_now, &rep, failure);
     *crc = 0;
     report_free(&rep), contacts_free(&s), packing_free(&p);
-    return why->status;
+    return failure->status;
 }
 
-static int measure(uint32_t *crc, struct why *why)
+static int measure(uint32_t *crc, struct failure *failure)
 {
     static struct asked with = { .axis = -1, .layers = 3, .bins = 5, .radius = INFINITY };
     struct snapshot s;
-    struct kept first = { 0 };
+    struct frame_memory first = { 0 };
     const char *path = fresh(".json");
     FILE *out = fopen(path, "w");
-    if (!out) return why_set(why, EX_SOFTWARE, "no file of the test's");
+    if (!out) return failure_set(failure, EX_SOFTWARE, "no file of the test's");
     with.normal = v3(1, 0, 0);
-    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, why);
-    if (!why->status && !kept_set(&first, &frame[now].packing, why)) s.first = s.before = &first;
-    for (int k = 0; !why->status && measure_at(k); k++) {
+    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, failure);
+    if (!failure->status && !frame_memory_set(&first, &frame[now].packing, failure)) s.first = s.before = &first;
+    for (int k = 0; !failure->status && measure_at(k); k++) {
         struct table t = { 0 };
-        if (!measure_run(&t, measure_at(k), &s, why)) table_json(out, &t, measure_at(k)->list);
+        if (!measure_run(&t, measure_at(k), &s, failure)) table_json(out, &t, measure_at(k)->list);
         table_free(&t);
     }
-    kept_free(&first), snapshot_free(&s);
+    frame_memory_free(&first), snapshot_free(&s);
     fclose(out);
     *crc = crc_of(path);
-    return why->status;
+    return failure->status;
 }
 
-static int coarse(uint32_t *crc, struct why *why)
+static int coarse(uint32_t *crc, struct failure *failure)
 {
     static const struct asked with = { .axis = -1, .layers = 3, .bins = 5, .radius = INFINITY };
     struct snapshot s;
     struct fields f = { 0 };
     struct fields_file *file = NULL;
     const char *path = fresh(".h5"), *image = fresh(".vti");
-    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, why);
-    if (!why->status && !fields_init(&f, &s, 0, 0, why)) {
-        (void)fields_set(&f, &s, why);
-        if (!fields_file_open(&file, path, &f, "", why))
-            for (int k = 0; k < 2 && !fields_file_add(file, &f, k, k, why); k++) continue;
+    snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, failure);
+    if (!failure->status && !fields_init(&f, &s, 0, 0, failure)) {
+        (void)fields_set(&f, &s, failure);
+        if (!fields_file_open(&file, path, &f, "", failure))
+            for (int k = 0; k < 2 && !fields_file_add(file, &f, k, k, failure); k++) continue;
         FILE *out = fopen(image, "w");
         if (out) vti_write(out, &f, 3, 0.1), fclose(out);
     }
-    if (file) fields_file_close(file, why);
+    if (file) fields_file_close(file, failure);
     fields_free(&f);
     *crc = crc_of(path) ^ crc_of(image);
-    return why->status;
+    return failure->status;
 }
 
-static int export_all(uint32_t *crc, struct why *why)
+static int export_all(uint32_t *crc, struct failure *failure)
 {
     void *kept = NULL;
     const struct export_frame m = {
         &frame[now].packing, &frame[now].contacts, 1, &kept, NULL, NULL
     };
     *crc = 0;
-    for (int k = 0; !why->status && format_at(k); k++)
+    for (int k = 0; !failure->status && format_at(k); k++)
         for (int part = 0; part < PART_COUNT; part++) {
             bool triangles = part == PART_GRAINS || part == PART_BOUNDARY;
             if (format_at(k) == &format_stl ? !triangles : part && !format_at(k)->parts) continue;
             const char *path = fresh(".out");
             FILE *out = fopen(path, "w");
-            if (!out) return why_set(why, EX_SOFTWARE, "no file of the test's");
-            struct why one = { 0 }; // what a format has not is no failure
+            if (!out) return failure_set(failure, EX_SOFTWARE, "no file of the test's");
+            struct failure one = { 0 }; // what a format has not is no failure
             format_at(k)->write(out, &m, (enum part)part, true, &one);
-            if (one.status && one.status != EX_DATAERR) *why = one;
-            if (kept && format_at(k)->end) format_at(k)->end(out, kept, why);
+            if (one.status && one.status != EX_DATAERR) *failure = one;
+            if (kept && format_at(k)->end) format_at(k)->end(out, kept, failure);
             kept = NULL;
             fclose(out);
             uint32_t bytes = crc_of(path); // boundaries that find no memory are left out
             if (part != PART_BOUNDARY && format_at(k) != &format_stl) *crc ^= bytes;
         }
-    return why->status;
+    return failure->status;
 }
 
 int main(void)

@@ -46,7 +46,7 @@ ssize_t pwrite(int fd, const void *bytes, size_t size, off_t at)
 }
 
 /* Frame k: every number that is looked at tells it. */
-static int change(struct frame *f, int64_t k, struct why *why)
+static int change(struct frame *f, int64_t k, struct failure *failure)
 {
     struct packing *p = &f->packing;
     p->step = f->report.step = k;
@@ -55,37 +55,37 @@ static int change(struct frame *f, int64_t k, struct why *why)
     contacts_free(&f->contacts);
     for (int i = 0; i < 2 + k % 3; i++) {
         struct contact *c = contacts_add(&f->contacts, -1, i);
-        if (!c) return why_set(why, EX_SOFTWARE, "no memory");
+        if (!c) return failure_set(failure, EX_SOFTWARE, "no memory");
         c->gap = -(double)k;
         contact_basis(c, 3, (vec3){ 0, 0, 1 });
     }
     return 0;
 }
 
-static int write_all(const char *path, struct why *why)
+static int write_all(const char *path, struct failure *failure)
 {
     struct writer *s;
     struct frame f = { .packed = true, .detected = true, .reported = true };
     snprintf(f.report.method, sizeof f.report.method, "exact");
-    if (packing_init(&f.packing, 3, BODIES, why) || packing_alloc_walls(&f.packing, 1, why))
-        return why->status;
+    if (packing_init(&f.packing, 3, BODIES, failure) || packing_alloc_walls(&f.packing, 1, failure))
+        return failure->status;
     f.packing.dt = 0.001;
     f.packing.wall[0].n = (vec3){ 0, 0, 1 };
     for (int i = 0; i < BODIES; i++)
         f.packing.radius[i] = f.packing.mass[i] = f.packing.inertia[i] = 1;
-    if (writer_open(&s, path, WRITER_TRAJECTORY, why)) return why->status;
-    for (int64_t k = 1; k <= FRAMES && !why->status; k++)
-        if (!change(&f, k, why) && !writer_frame(s, &f, why)) finished = k;
+    if (writer_open(&s, path, WRITER_TRAJECTORY, failure)) return failure->status;
+    for (int64_t k = 1; k <= FRAMES && !failure->status; k++)
+        if (!change(&f, k, failure) && !writer_frame(s, &f, failure)) finished = k;
     frame_free(&f);
-    if (!why->status) writer_close(s, why);
+    if (!failure->status) writer_close(s, failure);
     finished = FRAMES;
-    return why->status;
+    return failure->status;
 }
 
 /* Is the reader's frame k (from 0) the writer's? */
-static bool is_whole(struct reader *r, int64_t k, struct frame *f, struct why *why)
+static bool is_whole(struct reader *r, int64_t k, struct frame *f, struct failure *failure)
 {
-    if (reader_frame(r, k, f, why)) return false;
+    if (reader_frame(r, k, f, failure)) return false;
     bool good = f->packing.step == k + 1 && f->packing.t == (double)(k + 1) * f->packing.dt &&
                 f->reported && f->report.step == k + 1 && f->detected &&
                 f->contacts.n == 2 + (k + 1) % 3;
@@ -95,13 +95,13 @@ static bool is_whole(struct reader *r, int64_t k, struct frame *f, struct why *w
 }
 
 /* Does the file at `path`, which holds the first writes, have at least those frames? */
-static bool holds(char *path, int64_t frames, struct why *why)
+static bool holds(char *path, int64_t frames, struct failure *failure)
 {
     struct reader *r;
     struct frame f = { 0 };
     int64_t n = 0;
-    bool good = !reader_open(&r, 1, &path, why) && !reader_document(r, &n, why) && n >= frames &&
-                is_whole(r, n - 1, &f, why) && is_whole(r, frames - 1, &f, why);
+    bool good = !reader_open(&r, 1, &path, failure) && !reader_document(r, &n, failure) && n >= frames &&
+                is_whole(r, n - 1, &f, failure) && is_whole(r, frames - 1, &f, failure);
     frame_free(&f);
     reader_close(r);
     return good;
@@ -118,17 +118,17 @@ static bool put(int k, size_t size)
 /* Write k is on the disk, up to `size`. */
 static void look(int k, size_t size)
 {
-    struct why why = { 0 };
-    if (holds(path, made[k].frames, &why) || bad++ >= 8) return;
+    struct failure failure = { 0 };
+    if (holds(path, made[k].frames, &failure) || bad++ >= 8) return;
     diag("write %d, %zu of %zu bytes at %lld, after frame %lld: %s", k + 1, size, made[k].size,
-         (long long)made[k].at, (long long)made[k].frames, why.text);
+         (long long)made[k].at, (long long)made[k].frames, failure.text);
 }
 
 int main(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     fd = mkstemp(path);
-    bool written = fd >= 0 && !write_all(path, &why);
+    bool written = fd >= 0 && !write_all(path, &failure);
     ok(written && writes > 20 * FRAMES && writes < ROOM, "%d frames are written in %d writes",
        FRAMES, writes);
     if (ftruncate(fd, 0)) return 1;

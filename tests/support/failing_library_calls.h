@@ -167,10 +167,10 @@ __attribute__((unused)) static uint32_t crc_of(const char *path)
     return document_crc(0, bytes, n);
 }
 
-static void must(int failed, const struct why *why)
+static void must(int failed, const struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -210,31 +210,31 @@ enum { SCENES = sizeof scene_text / sizeof *scene_text };
 
 static int now; /* which of them a run is about */
 
-__attribute__((unused)) static int build(struct packing *p, int k, struct why *why)
+__attribute__((unused)) static int build(struct packing *p, int k, struct failure *failure)
 {
     struct scene s;
-    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, why)) return why->status;
-    scene_build(p, &s, folder, why);
+    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, failure)) return failure->status;
+    scene_build(p, &s, folder, failure);
     scene_free(&s);
-    return why->status;
+    return failure->status;
 }
 
 /* ---- each call in turn ---- */
 
 /* How it ends where call number `at` fails, 0: none; and whether that is as it should be */
-static bool run_failing(int (*run)(uint32_t *crc, struct why *why), long at, uint32_t *crc,
-                        struct why *why)
+static bool run_failing(int (*run)(uint32_t *crc, struct failure *failure), long at, uint32_t *crc,
+                        struct failure *failure)
 {
     uint32_t got = 0;
-    *why = (struct why){ 0 };
+    *failure = (struct failure){ 0 };
     asked->calls = 0;
     asked->fail_at = at;
     armed = true;
-    int e = run(&got, why);
+    int e = run(&got, failure);
     armed = false;
     if (!at) *crc = got;
     if (!e) return got == *crc;
-    return e == why->status && why->text[0] && !strchr(why->text, '\n') &&
+    return e == failure->status && failure->text[0] && !strchr(failure->text, '\n') &&
            (e == EX_SOFTWARE || e == EX_IOERR || e == EX_DATAERR);
 }
 
@@ -242,15 +242,15 @@ static long most_failures = LONG_MAX; /* of a run that takes long */
 
 /* Calls that a run makes fail, one at a time: so many, spread over all of them; make coverage needs all. */
 __attribute__((unused)) static void each_fails(const char *name,
-                                               int (*run)(uint32_t *crc, struct why *why))
+                                               int (*run)(uint32_t *crc, struct failure *failure))
 {
     long most = getenv("NSD_RUNS") ? LONG_MAX : getenv("NSD_THIN") ? 6 : 16;
     for (failing = 0; failing < KINDS; failing++) {
         uint32_t crc;
-        struct why why;
+        struct failure failure;
         long wrong = 0, told = 0;
-        if (!run_failing(run, 0, &crc, &why) || why.status) {
-            ok(false, "%s %d: %s", name, now, why.text);
+        if (!run_failing(run, 0, &crc, &failure) || failure.status) {
+            ok(false, "%s %d: %s", name, now, failure.text);
             return;
         }
         long total = asked->calls;
@@ -259,10 +259,10 @@ __attribute__((unused)) static void each_fails(const char *name,
         long n = total < most ? total : most;
         for (long i = 0; i < n; i++) {
             long k = 1 + i * total / n;
-            bool good = run_failing(run, k, &crc, &why);
-            told += why.status != 0;
+            bool good = run_failing(run, k, &crc, &failure);
+            told += failure.status != 0;
             if (good || wrong++ > 3) continue;
-            diag("%ld: status %d, %s", k, why.status, why.status ? why.text : "other bytes");
+            diag("%ld: status %d, %s", k, failure.status, failure.status ? failure.text : "other bytes");
         }
         if (total)
             ok(!wrong,

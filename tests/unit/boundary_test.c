@@ -14,10 +14,10 @@
 
 static gsl_rng *rng;
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -143,9 +143,9 @@ static void test_sides(void)
 /* n x n squares of two triangles over [0, 1]^2 at z = height */
 static void sheet(struct mesh *m, int n, double (*height)(double, double))
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     *m = (struct mesh){ 0 };
-    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &why), &why); // corners not exchange, as in STL
+    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &failure), &failure); // corners not exchange, as in STL
     for (int e = 0; e < 2 * n * n; e++)
         for (int k = 0; k < 3; k++) {
             static const int at[2][3][2] = { { { 0, 0 }, { 1, 0 }, { 1, 1 } },
@@ -178,7 +178,7 @@ static double hills(double x, double y)
 
 static void test_minima(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct touch t[TOUCHES_MOST];
     struct {
         const char *what;
@@ -192,7 +192,7 @@ static void test_minima(void)
         struct mesh m;
         struct surface s;
         sheet(&m, 8, of[k].height);
-        must(mesh_check(&m, 3, &why) || surface_init(&s, &m, 0, m.elements, 0, &why), &why);
+        must(mesh_check(&m, 3, &failure) || surface_init(&s, &m, 0, m.elements, 0, &failure), &failure);
         bool good = true;
         for (int i = 0; i < 200; i++) { // above inner points, edges and corners
             double y = i % 3 == 0 ? draw(0.3, 0.7) : i % 3 == 1 ? 0.5 : 0.5 + 1e-17;
@@ -224,13 +224,13 @@ static double brute(const vec3 *x, vec3 c)
 
 static void test_distance(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct mesh m;
     struct surface s;
     struct touch t[TOUCHES_MOST];
     double off = 0;
     sheet(&m, 6, hills);
-    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &failure), &failure);
     for (int i = 0; i < 60; i++) {
         vec3 c = v3(draw(-0.2, 1.2), draw(-0.2, 1.2), draw(-0.4, 0.4));
         double least = INFINITY, found = INFINITY;
@@ -247,19 +247,19 @@ static void test_distance(void)
 /* The same triangles one by one: what the tree finds is what is there. */
 static void test_tree(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct mesh m;
     struct surface s;
     struct touch t[TOUCHES_MOST], one[TOUCHES_MOST];
     bool good = true;
     sheet(&m, 70, hills);
-    must(surface_init(&s, &m, 0, m.elements, 0, &why), &why);
+    must(surface_init(&s, &m, 0, m.elements, 0, &failure), &failure);
     for (int i = 0; i < 20; i++) {
         vec3 c = v3(draw(0, 1), draw(0, 1), draw(-0.2, 0.2));
         double least = INFINITY, found = INFINITY;
         for (int32_t e = 0; e < m.elements; e++) {
             struct surface alone;
-            must(surface_init(&alone, &m, e, 1, 0, &why), &why);
+            must(surface_init(&alone, &m, e, 1, 0, &failure), &failure);
             if (surface_touches(&alone, c, 1, one)) least = fmin(least, one[0].distance);
             surface_free(&alone);
         }
@@ -275,9 +275,9 @@ static void test_tree(void)
 
 static void test_velocity(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct drives d = { 0 };
-    must(drives_alloc(&d, 4, 3, &why), &why);
+    must(drives_alloc(&d, 4, 3, &failure), &failure);
     d.row[0] = (struct drive_row){ -1, 0 }, d.row[1] = (struct drive_row){ 2, 5 };
     d.row[2] = (struct drive_row){ 4, -1 };
     for (int k = 0; k < 4; k++)
@@ -327,8 +327,8 @@ static struct step_opt options(void)
 /* A disc of 1 kg in the plane, in a circle around the origin */
 static void disc_in_circle(struct packing *p, double R, double r, double angle)
 {
-    struct why why = { 0 };
-    must(packing_init(p, 2, 1, &why) || packing_alloc_walls(p, 1, &why), &why);
+    struct failure failure = { 0 };
+    must(packing_init(p, 2, 1, &failure) || packing_alloc_walls(p, 1, &failure), &failure);
     p->dt = 1e-3, p->g = v3(0, -9.81, 0), p->overlap = OVERLAP_PROJECT, p->mu[0] = 10;
     p->radius[0] = r, p->mass[0] = 1, p->inertia[0] = 0.5 * r * r;
     p->x[0] = v3((R - r) * sin(angle), -(R - r) * cos(angle), 0);
@@ -340,8 +340,8 @@ static void step(struct packing *p, struct contacts *c)
 {
     const struct step_opt o = options();
     struct report rep = { 0 };
-    struct why why = { 0 };
-    must(step_advance(p, c, NULL, &o, &rep, &why), &why);
+    struct failure failure = { 0 };
+    must(step_advance(p, c, NULL, &o, &rep, &failure), &failure);
 }
 
 /* A disc that rolls in a trough: (3/2) (R - r) phi'' = - g sin phi */
@@ -374,15 +374,15 @@ static void test_spinning(void)
 {
     struct packing p;
     struct contacts c = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     double R = 1, r = 0.25, w = 2;
     disc_in_circle(&p, R, r, 0);
-    must(drives_alloc(&p.drives, 1, 0, &why), &why);
+    must(drives_alloc(&p.drives, 1, 0, &failure), &failure);
     p.drives.drive[0] =
         (struct drive){ .turns = 1, .axis = v3(0, 0, 1), .value = w, .until = INFINITY };
     p.wall[0].drives = 1;
     p.w[0].z = w * R / r;
-    must(packing_check(&p, &why), &why);
+    must(packing_check(&p, &failure), &failure);
     for (int k = 0; k < 1000; k++) step(&p, &c);
     ok(fabs(p.x[0].x) < 1e-9 && fabs(p.w[0].z - w * R / r) < 1e-9,
        "a disc at the bottom of a circle that turns under it stays there, to %.1g m", p.x[0].x);
@@ -395,13 +395,13 @@ static void test_shaken(void)
 {
     struct packing p;
     struct contacts c = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     double r = 0.01, a = 1e-3, g = 9.81, f = 20, w = 2 * PI * f, left = 0, back = 0;
-    must(packing_init(&p, 3, 1, &why) || packing_alloc_walls(&p, 1, &why), &why);
+    must(packing_init(&p, 3, 1, &failure) || packing_alloc_walls(&p, 1, &failure), &failure);
     p.dt = 1e-5, p.g = v3(0, 0, -g), p.overlap = OVERLAP_PROJECT;
     p.radius[0] = r, p.mass[0] = 1, p.inertia[0] = 0.4 * r * r, p.x[0] = v3(0, 0, r);
     p.wall[0] = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 0);
-    must(drives_alloc(&p.drives, 1, 0, &why), &why);
+    must(drives_alloc(&p.drives, 1, 0, &failure), &failure);
     p.drives.drive[0] = (struct drive){ .axis = v3(0, 0, 1),
                                         .signal = DRIVE_SINE,
                                         .value = a,
@@ -409,7 +409,7 @@ static void test_shaken(void)
                                         .from = -INFINITY,
                                         .until = INFINITY };
     p.wall[0].drives = 1;
-    must(packing_check(&p, &why), &why);
+    must(packing_check(&p, &failure), &failure);
     for (int k = 0; k < 5000 && !back; k++) {
         step(&p, &c);
         double gap = p.x[0].z - r - a * sin(w * p.t);

@@ -18,18 +18,18 @@ static double uniform(double a, double b)
     return a + (b - a) * gsl_rng_uniform(rng);
 }
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
 static void repeat(struct packing *p, const vec3 *edge, const bool *repeats)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     for (int k = 0; k < 3; k++) p->cell.edge[k] = edge[k], p->cell.repeats[k] = repeats[k];
-    must(packing_alloc_images(p, &why), &why);
+    must(packing_alloc_images(p, &failure), &failure);
 }
 
 static void set_gradient(struct packing *p, const double L[3][3])
@@ -57,10 +57,10 @@ static struct step_opt sweeps(int32_t n)
 
 static void run(struct packing *p, struct contacts *s, const struct step_opt *o, int steps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
     struct step_memory memory = { 0 };
-    for (int k = 0; k < steps; k++) must(step_advance(p, s, &memory, o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, &memory, o, &rep, &failure), &failure);
     step_forget(&memory), report_free(&rep);
 }
 
@@ -85,8 +85,8 @@ static vec3 way_velocity(const struct packing *p, int64_t i)
 static void cloud(struct packing *p, int dim, int64_t n, double ratio, double largest,
                   const bool *repeats)
 {
-    struct why why = { 0 };
-    must(packing_init(p, dim, n, &why), &why);
+    struct failure failure = { 0 };
+    must(packing_init(p, dim, n, &failure), &failure);
     vec3 edge[3] = { v3(1, uniform(-0.3, 0.3), dim == 2 ? 0 : uniform(-0.3, 0.3)),
                      v3(uniform(-0.6, 0.6), 0.8, dim == 2 ? 0 : uniform(-0.3, 0.3)), v3(0, 0, 1) };
     if (dim == 3) edge[2] = v3(uniform(-0.5, 0.5), uniform(-0.5, 0.5), 0.7);
@@ -152,12 +152,12 @@ static void test_detection(void)
             const bool repeats[3] = { k % 3 != 1, k % 3 != 2, dim == 3 && k % 3 == 0 };
             // few large bodies, which touch their neighbours on both sides, or many
             double ratio = ratios[k % 4], largest = k < 6 ? 1 : 0.3, gap = k % 2 ? 0.003 : 0;
-            struct why why = { 0 };
+            struct failure failure = { 0 };
             struct packing p;
             struct contacts s = { 0 };
             int64_t again;
             cloud(&p, dim, k < 6 ? 60 : 500, ratio, largest, repeats);
-            must(detect_contacts(&s, &p, gap, NULL, &why), &why);
+            must(detect_contacts(&s, &p, gap, NULL, &failure), &failure);
             int64_t n = same_contacts(&p, &s, gap, &again), across = 0;
             for (int64_t i = 0; i < s.n; i++)
                 across += s.c[i].shift[0] || s.c[i].shift[1] || s.c[i].shift[2];
@@ -178,14 +178,14 @@ static void test_detection(void)
 static void test_bound(void)
 {
     const bool all[3] = { true, true, false };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     cloud(&p, 2, 10, 1, 1, all);
-    ok(!detect_contacts(&s, &p, 0, NULL, &why), "a body that fits into the cell is one");
+    ok(!detect_contacts(&s, &p, 0, NULL, &failure), "a body that fits into the cell is one");
     p.radius[3] *= 1.1;
-    ok(detect_contacts(&s, &p, 0, NULL, &why) == EX_DATAERR && strstr(why.text, "touch itself"),
-       "a body larger than the cell is refused: %s", why.text);
+    ok(detect_contacts(&s, &p, 0, NULL, &failure) == EX_DATAERR && strstr(failure.text, "touch itself"),
+       "a body larger than the cell is refused: %s", failure.text);
     contacts_free(&s), packing_free(&p);
 }
 
@@ -195,7 +195,7 @@ static void test_bound(void)
 static void dense(struct packing *p, struct contacts *s, int dim, double e)
 {
     char text[800];
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene scene;
     snprintf(
         text, sizeof text,
@@ -207,8 +207,8 @@ static void dense(struct packing *p, struct contacts *s, int dim, double e)
         dim == 2 ? "[[-0.5, 0], [0, -0.5]]" : "[[-0.5, 0, 0], [0, -0.5, 0], [0, 0, -0.5]]",
         dim == 2 ? 100 : 125, dim == 2 ? 0.035 : 0.07, dim == 2 ? 0.05 : 0.1,
         dim == 2 ? "" : ", \"z\": [0, 1]");
-    must(scene_parse(&scene, text, strlen(text), NULL, &why) || scene_build(p, &scene, NULL, &why),
-         &why);
+    must(scene_parse(&scene, text, strlen(text), NULL, &failure) || scene_build(p, &scene, NULL, &failure),
+         &failure);
     scene_free(&scene);
     struct step_opt o = sweeps(30);
     run(p, s, &o, dim == 2 ? 350 : 420);
@@ -238,7 +238,7 @@ static double apart(struct packing *p, struct packing *q, const struct step_opt 
 
 static void test_cuts(int dim, double e)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p, q;
     struct contacts s = { 0 };
     struct step_opt o = sweeps(40);
@@ -247,7 +247,7 @@ static void test_cuts(int dim, double e)
     diag("%dD: %lld bodies, %lld contacts", dim, (long long)p.n, (long long)s.n);
 
     struct packing start;
-    must(packing_copy(&start, &p, &why) || packing_copy(&q, &p, &why), &why);
+    must(packing_copy(&start, &p, &failure) || packing_copy(&q, &p, &failure), &failure);
     q.cell.origin = v3(0.313, 0.117, dim == 2 ? 0 : 0.41);
     packing_wrap(&q, NULL);
     int64_t moved = 0;
@@ -259,10 +259,10 @@ static void test_cuts(int dim, double e)
     packing_free(&p), packing_free(&q);
 
     // the same lattice by another edge, not so oblique as to be cut; images are counted anew
-    must(packing_copy(&p, &start, &why), &why);
+    must(packing_copy(&p, &start, &failure), &failure);
     double side = p.cell.edge[0].x;
     run(&p, &s, &o, 720); // at 750 it leans too far
-    must(packing_copy(&q, &p, &why), &why);
+    must(packing_copy(&q, &p, &failure), &failure);
     q.cell.edge[1] = v3_axpy(q.cell.edge[1], -1, q.cell.edge[0]);
     memset(q.image, 0, (size_t)q.n * sizeof *q.image);
     memset(p.image, 0, (size_t)p.n * sizeof *p.image);
@@ -276,7 +276,7 @@ static void test_cuts(int dim, double e)
     packing_free(&p), packing_free(&q);
 
     // far beyond where the cell is cut, from the bodies' ways alone
-    must(packing_copy(&p, &start, &why), &why);
+    must(packing_copy(&p, &start, &failure), &failure);
     vec3 sum = v3(0, 0, 0), after = sum;
     double size = 0;
     for (int64_t i = 0; i < p.n; i++) sum = v3_axpy(sum, p.mass[i], way_velocity(&p, i));
@@ -293,7 +293,7 @@ static void test_cuts(int dim, double e)
 /* The list of neighbours that is kept gives the same contacts as a search at each step. */
 static void test_neighbours(int dim)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 }, kept = { 0 }, anew = { 0 };
     struct neighbours near = { 0 };
@@ -306,12 +306,12 @@ static void test_neighbours(int dim)
     for (int k = 0; k < steps; k++) {
         vec3 was = near.listed ? near.listed[0] : v3(NAN, 0, 0);
         double lean = p.cell.edge[1].x;
-        must(step_advance(&p, &s, NULL, &o, &rep, &why), &why);
+        must(step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
         packing_wrap(&p, &s);
         cuts += p.cell.edge[1].x < lean;
-        must(detect_contacts(&kept, &p, 0, &near, &why) ||
-                 detect_contacts(&anew, &p, 0, NULL, &why),
-             &why);
+        must(detect_contacts(&kept, &p, 0, &near, &failure) ||
+                 detect_contacts(&anew, &p, 0, NULL, &failure),
+             &failure);
         searched += memcmp(&was, &near.listed[0], sizeof was) != 0;
         same += kept.n == anew.n &&
                 !memcmp(kept.c, anew.c, (size_t)(kept.n ? kept.n : 1) * sizeof *kept.c);
@@ -327,15 +327,15 @@ static void test_neighbours(int dim)
 
 static void test_back(int dim)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p, q;
     struct contacts s = { 0 };
     struct step_opt o = sweeps(30);
     dense(&p, &s, dim, 0.5);
     packing_wrap(&p, &s);
-    must(packing_copy(&q, &p, &why), &why);
+    must(packing_copy(&q, &p, &failure), &failure);
     run(&q, &s, &o, 1);
-    must(move_back(&q, &s, &why), &why);
+    must(move_back(&q, &s, &failure), &failure);
     double worst = 0;
     for (int64_t i = 0; i < p.n; i++)
         worst = fmax(worst, v3_norm(v3_sub(p.x[i], q.x[i])) + v3_norm(v3_sub(p.v[i], q.v[i])));
@@ -349,7 +349,7 @@ static void test_back(int dim)
 /* u = W r + q of the assembled problem, against velocities computed by hand */
 static void test_assembly(int dim)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 }, t = { 0 };
     struct problem q;
@@ -357,10 +357,10 @@ static void test_assembly(int dim)
     dense(&p, &s, dim, 0.5);
     p.g = v3(0, -3, 0);
     packing_wrap(&p, &s);
-    must(detect_contacts(&t, &p, 0, NULL, &why) ||
-             problem_prepare(&q, &p, &t, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
-             assembly_init(&A, &q, &why),
-         &why);
+    must(detect_contacts(&t, &p, 0, NULL, &failure) ||
+             problem_prepare(&q, &p, &t, &(struct prepare_opt){ .rho_factor = 1 }, &failure) ||
+             assembly_init(&A, &q, &failure),
+         &failure);
     double worst = 0;
     int64_t across = 0;
     vec3 edge[3];
@@ -393,10 +393,10 @@ static void test_assembly(int dim)
 
 static void balls(struct packing *p, int64_t n)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const bool all[3] = { true, true, true };
     const vec3 edge[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
-    must(packing_init(p, 3, n, &why), &why);
+    must(packing_init(p, 3, n, &failure), &failure);
     p->dt = 1e-3, p->mu[0] = 0.3, p->en[0] = 0.6, p->et[0] = 0.2;
     for (int64_t i = 0; i < n; i++) {
         p->radius[i] = 0.1;
@@ -492,7 +492,7 @@ static void test_compression(void)
 /* A lattice that moves with a cell under any gradient, changing in time, stays the cell's lattice. */
 static void test_lattice(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p, q;
     struct contacts s = { 0 };
     struct step_opt o = sweeps(1);
@@ -514,7 +514,7 @@ static void test_lattice(void)
         p.v[i] = cell_flow_gain(&flow, p.x[i]);
     }
     // and one that drifts through the cell while it lasts
-    must(packing_copy(&q, &p, &why), &why);
+    must(packing_copy(&q, &p, &failure), &failure);
     for (int64_t i = 0; i < q.n; i++) q.v[i] = v3_add(q.v[i], v3(3, 1, -2));
     run(&p, &s, &o, STEPS), run(&q, &s, &o, STEPS);
     double worst = 0, apart_most = 0;
@@ -536,7 +536,7 @@ static void test_lattice(void)
 /* Two balls side by side in a cell hardly wider than both meet twice, on either side. */
 static void test_both_sides(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     struct step_opt o = sweeps(200);
@@ -551,11 +551,11 @@ static void test_both_sides(void)
     double sum = v3_norm(v3_add(p.v[0], p.v[1]));
     ok(sum < 1e-14, "and keep their momentum (%.1e)", sum);
     struct contacts next;
-    must(contacts_copy(&next, &s), &why);
+    must(contacts_copy(&next, &s), &failure);
     struct memory memory = { .on = true };
     for (int i = 0; i < 2; i++) s.found[i].r[0] = 1 + i;
-    must(memory_keep(&memory, &s, &why), &why);
-    must(memory_give(&memory, &next, false, &why), &why);
+    must(memory_keep(&memory, &s, &failure), &failure);
+    must(memory_give(&memory, &next, false, &failure), &failure);
     ok(next.found[1].r[0] == 2 * next.found[0].r[0] && next.found[0].r[0] > 0,
        "the reactions of either side are found again");
     memory_free(&memory);

@@ -111,7 +111,7 @@ static void bricks_free(struct bricks *w)
 static struct delassus delassus(const struct bricks *w)
 {
     struct delassus W;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int64_t n = (int64_t)w->size * w->size, k = 0;
     int32_t *row = malloc((size_t)n * sizeof *row), *col = malloc((size_t)n * sizeof *col);
     double *x = malloc((size_t)n * sizeof *x);
@@ -119,8 +119,8 @@ static struct delassus delassus(const struct bricks *w)
         if (w->W[i] != 0)
             row[k] = (int32_t)(i / w->size), col[k] = (int32_t)(i % w->size), x[k++] = w->W[i];
     const struct sparse A = { .count = k, .row = row, .col = col, .x = x };
-    if (delassus_init(&W, w->d, w->n, &A, &why)) {
-        printf("Bail out! %s\n", why.text);
+    if (delassus_init(&W, w->d, w->n, &A, &failure)) {
+        printf("Bail out! %s\n", failure.text);
         exit(1);
     }
     memcpy(W.q, w->q, (size_t)w->size * sizeof *W.q);
@@ -132,10 +132,10 @@ static struct delassus delassus(const struct bricks *w)
 static struct scaled scaled(struct delassus *W, struct problem *p)
 {
     struct scaled w;
-    struct why why = { 0 };
-    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
-        scaled_init(&w, p, &why)) {
-        printf("Bail out! %s\n", why.text);
+    struct failure failure = { 0 };
+    if (problem_prepare_delassus(p, W, &(struct prepare_opt){ .rho_factor = 1 }, &failure) ||
+        scaled_init(&w, p, &failure)) {
+        printf("Bail out! %s\n", failure.text);
         exit(1);
     }
     return w;
@@ -307,7 +307,7 @@ static void test_wall(int d, int each, const struct solver *global)
 {
     struct bricks w = lay(d, each);
     struct delassus W = delassus(&w);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
     double *u = calloc((size_t)w.size, sizeof *u), worst = 0;
     struct step_opt o = { .order = ORDER_COLOUR,
@@ -318,7 +318,7 @@ static void test_wall(int d, int each, const struct solver *global)
                                      .max_sweeps = 100000,
                                      .threads = 1,
                                      .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
-    bool solved = !step_solve_delassus(&W, u, &o, &rep, &why) && rep.converged;
+    bool solved = !step_solve_delassus(&W, u, &o, &rep, &failure) && rep.converged;
     for (int i = 0; i < w.size; i++) {
         double v = w.q[i];
         for (int j = 0; j < w.size; j++) v += w.W[i * w.size + j] * W.r[j];

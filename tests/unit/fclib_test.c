@@ -74,30 +74,30 @@ static void multiply(const struct fclib_matrix *A, bool transposed, const double
 }
 
 /* fclib_read and fclib_load_solution of a file of our own */
-static int read_problem(struct fclib *F, hid_t file, struct why *why)
+static int read_problem(struct fclib *F, hid_t file, struct failure *failure)
 {
     struct source *s;
-    int e = source_of_own(&s, file, why) ? why->status : fclib_read(F, s, why);
+    int e = source_of_own(&s, file, failure) ? failure->status : fclib_read(F, s, failure);
     source_close(s);
     return e;
 }
 
-static int read_solution(const struct fclib *F, hid_t file, double *r, struct why *why)
+static int read_solution(const struct fclib *F, hid_t file, double *r, struct failure *failure)
 {
     struct source *s;
-    int e = source_of_own(&s, file, why) ? why->status : fclib_load_solution(F, s, r, why);
+    int e = source_of_own(&s, file, failure) ? failure->status : fclib_load_solution(F, s, r, failure);
     source_close(s);
     return e;
 }
 
-static bool load(struct fclib *F, const char *path, struct why *why)
+static bool load(struct fclib *F, const char *path, struct failure *failure)
 {
-    *why = (struct why){ 0 };
+    *failure = (struct failure){ 0 };
     hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    int e = file < 0 ? why_set(why, EX_NOINPUT, "%s: cannot be opened", path)
-                     : read_problem(F, file, why);
+    int e = file < 0 ? failure_set(failure, EX_NOINPUT, "%s: cannot be opened", path)
+                     : read_problem(F, file, failure);
     if (file >= 0) H5Fclose(file);
-    if (e) diag("%s", why->text);
+    if (e) diag("%s", failure->text);
     return !e;
 }
 
@@ -112,9 +112,9 @@ static double worst_local, worst_global, worst_twin_W, worst_twin_q;
 
 static void test_local(const char *path)
 {
-    struct why why;
+    struct failure failure;
     struct fclib F = { 0 };
-    if (!ok(load(&F, path, &why), "%s is read", base(path))) return;
+    if (!ok(load(&F, path, &failure), "%s is read", base(path))) return;
     struct fclib_local *L = fclib_read_local(path);
     int m = L->W->m;
     double *r = noises(m), *u = velocity(&F.W, r), *v = calloc((size_t)m + 1, sizeof *v);
@@ -135,14 +135,14 @@ static void test_local(const char *path)
 static double global_residual(const struct fclib *F, const char *path, const double *u,
                               const double *r, const char *scratch)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     char command[1000];
     snprintf(command, sizeof command, "cp %s %s && chmod u+w %s", path, scratch, scratch);
     if (strcmp(path, scratch) != 0 && system(command) != 0) return NAN;
     hid_t file = H5Fopen(scratch, H5F_ACC_RDWR, H5P_DEFAULT);
-    int e = fclib_store_solution(F, file, u, r, &why) || fclib_store_solution(F, file, u, r, &why);
+    int e = fclib_store_solution(F, file, u, r, &failure) || fclib_store_solution(F, file, u, r, &failure);
     H5Fclose(file);
-    if (e) return diag("%s", why.text), NAN;
+    if (e) return diag("%s", failure.text), NAN;
     struct fclib_global *P = fclib_read_global(scratch);
     struct fclib_solution *S = fclib_read_solution(scratch);
     int nv = P->M->m, nd = P->H->n, nl = P->G ? P->G->n : 0;
@@ -170,9 +170,9 @@ static void test_twin(const struct fclib *F, const char *path, const double *r)
     snprintf(twin, sizeof twin, "%.*s/%s", folder, path, base(path));
     snprintf(strrchr(twin, '.'), 20, "-local.hdf5");
     if (access(twin, R_OK)) return;
-    struct why why;
+    struct failure failure;
     struct fclib L = { 0 };
-    if (!ok(load(&L, twin, &why), "%s is read", base(twin))) return;
+    if (!ok(load(&L, twin, &failure), "%s is read", base(twin))) return;
     int64_t nd = L.W.n * L.W.d;
     bool same = F->W.n == L.W.n && F->W.d == L.W.d;
     double eq = same ? apart(nd, F->W.q, L.W.q) : NAN, eW = NAN;
@@ -191,9 +191,9 @@ static void test_twin(const struct fclib *F, const char *path, const double *r)
 
 static void test_global(const char *path, const char *scratch)
 {
-    struct why why;
+    struct failure failure;
     struct fclib F = { 0 };
-    if (!ok(load(&F, path, &why), "%s is read", base(path))) return;
+    if (!ok(load(&F, path, &failure), "%s is read", base(path))) return;
     double *r = noises(F.W.n * F.W.d), *u = velocity(&F.W, r);
     double e = global_residual(&F, path, u, r, scratch);
     worst_global = fmax(worst_global, e);
@@ -233,10 +233,10 @@ static hid_t memory_file(void)
 
 static void put(hid_t file, const char *path, hid_t type, int64_t count, const void *x)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     hsize_t n = (hsize_t)count;
     if (h5_has(file, path)) H5Ldelete(file, path, H5P_DEFAULT);
-    if (h5_write(file, path, h5_vector(type, n, x), NULL, &why)) ok(false, "put: %s", why.text);
+    if (h5_write(file, path, h5_vector(type, n, x), NULL, &failure)) ok(false, "put: %s", failure.text);
 }
 
 static void put_doubles(hid_t file, const char *path, int64_t count, const double *x)
@@ -280,9 +280,9 @@ static void test_form(const char *name, int32_t nz, int32_t nzmax, int64_t np, c
     hid_t file = memory_file();
     put_matrix(file, "/fclib_local/W", 4, 4, nz, nzmax, np, p, ni, i, x);
     put_rest(file);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct fclib F = { 0 };
-    if (!ok(!read_problem(&F, file, &why), "W as %s is read%s", name, why.text)) {
+    if (!ok(!read_problem(&F, file, &failure), "W as %s is read%s", name, failure.text)) {
         H5Fclose(file);
         return;
     }
@@ -325,11 +325,11 @@ static void test_empty(void)
     put_matrix(file, "/fclib_local/W", 0, 0, -2, 0, 1, (int32_t[]){ 0 }, 0, NULL, NULL);
     put_doubles(file, "/fclib_local/vectors/q", 0, NULL);
     put_doubles(file, "/fclib_local/vectors/mu", 0, NULL);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct fclib F = { 0 };
-    ok(!read_problem(&F, file, &why) && F.W.n == 0 && F.W.first[0] == 0,
+    ok(!read_problem(&F, file, &failure) && F.W.n == 0 && F.W.first[0] == 0,
        "a problem of no contact is a problem");
-    ok(!fclib_store_solution(&F, file, F.W.q, F.W.r, &why), "and its solution is stored");
+    ok(!fclib_store_solution(&F, file, F.W.q, F.W.r, &failure), "and its solution is stored");
     fclib_free(&F);
     H5Fclose(file);
 }
@@ -363,9 +363,9 @@ static void test_multipliers(const char *scratch)
     P.info = NULL;
     unlink(scratch);
     ok(fclib_write_global(&P, scratch), "libfclib writes a problem with G");
-    struct why why;
+    struct failure failure;
     struct fclib F = { 0 };
-    if (ok(load(&F, scratch, &why), "and it is read")) {
+    if (ok(load(&F, scratch, &failure), "and it is read")) {
         double *r = noises(ND), *u = velocity(&F.W, r), e;
         e = global_residual(&F, scratch, u, r, scratch);
         ok(e < 1e-12, "v, l, u, r solve it: M, H, G (%.1e)", e);
@@ -477,16 +477,16 @@ static double *pushed(struct made *m, const double *r)
 
 static bool write_made(const struct made *m, bool global, const char *scratch)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     hid_t file = H5Fcreate(scratch, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    int e = fclib_write_problem(&m->p, !global, file, &why); // the other, to be replaced
-    if (!e) e = fclib_write_problem(&m->p, global, file, &why);
+    int e = fclib_write_problem(&m->p, !global, file, &failure); // the other, to be replaced
+    if (!e) e = fclib_write_problem(&m->p, global, file, &failure);
     H5O_info_t info;
     const char *x = global ? "/fclib_global/H/x" : "/fclib_local/W/x";
     bool timeless = H5Oget_info_by_name2(file, x, &info, H5O_INFO_TIME, H5P_DEFAULT) >= 0 &&
                     info.mtime == 0 && info.ctime == 0;
     bool closed = H5Fclose(file) >= 0;
-    if (e) diag("%s", why.text);
+    if (e) diag("%s", failure.text);
     return !e && timeless && closed;
 }
 
@@ -523,7 +523,7 @@ static void test_libfclib_local(struct made *m, const char *scratch, const doubl
 static void test_made(int d, int64_t n, bool global, const char *scratch)
 {
     struct made m;
-    struct why why;
+    struct failure failure;
     struct fclib F = { 0 };
     const char *kind = global ? "global" : "local";
     make(&m, d, n);
@@ -536,7 +536,7 @@ static void test_made(int d, int64_t n, bool global, const char *scratch)
         same &= apart(3, m.body[i].v, before.body[i].v) == 0 &&
                 apart(3, m.body[i].w, before.body[i].w) == 0;
     ok(same, "and its bodies are left alone");
-    if (!ok(load(&F, scratch, &why) && F.global == global, "and read")) return;
+    if (!ok(load(&F, scratch, &failure) && F.global == global, "and read")) return;
     double *r = noises(n * d), *u = velocity(&F.W, r), *v = pushed(&m, r), e = apart(n * d, u, v);
     ok(e < 1e-13, "W r + q is what pushing the bodies does (%.1e)", e);
     if (!global) test_libfclib_local(&m, scratch, r);
@@ -545,10 +545,10 @@ static void test_made(int d, int64_t n, bool global, const char *scratch)
         ok(e < 1e-13, "libfclib reads it; v, u, r solve it (%.1e)", e);
     }
     hid_t file = H5Fopen(scratch, H5F_ACC_RDWR, H5P_DEFAULT);
-    why = (struct why){ 0 };
-    bool stored = !fclib_store_solution(&F, file, u, r, &why);
+    failure = (struct failure){ 0 };
+    bool stored = !fclib_store_solution(&F, file, u, r, &failure);
     double *back = noises(n * d);
-    stored = stored && !read_solution(&F, file, back, &why);
+    stored = stored && !read_solution(&F, file, back, &failure);
     H5Fclose(file);
     struct fclib_solution *S = n ? fclib_read_solution(scratch) : NULL; // it needs a contact
     ok(stored && (S || !n) && apart(n * d, back, r) == 0 &&
@@ -661,14 +661,14 @@ static const struct wrong wrongs[] = {
 
 static void spoil(hid_t file, const struct wrong *w)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int32_t integers[8];
     for (int k = 0; k < 8; k++) integers[k] = w->kind == 'i' ? (int32_t)w->x[k] : 0;
     if (h5_has(file, w->path)) H5Ldelete(file, w->path, H5P_DEFAULT);
     if (w->kind == 'i') put_ints(file, w->path, w->count, integers);
     if (w->kind == 'd') put_doubles(file, w->path, w->count, w->x);
-    if (w->kind == 't') h5_write_text(file, w->path, "six", &why);
-    if (w->kind == 'g') h5_group(file, w->path, &why);
+    if (w->kind == 't') h5_write_text(file, w->path, "six", &failure);
+    if (w->kind == 'g') h5_group(file, w->path, &failure);
     if (w->kind != 'h') return;
     hsize_t huge = HUGE_COUNT;
     hid_t space = H5Screate_simple(1, &huge, NULL);
@@ -680,28 +680,28 @@ static void spoil(hid_t file, const struct wrong *w)
 static void test_wrong(const struct wrong *w)
 {
     hid_t file = good_file(strncmp(w->path, "/fclib_global", 13) == 0);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct fclib F = { 0 };
-    bool good = !read_problem(&F, file, &why);
+    bool good = !read_problem(&F, file, &failure);
     if (good) fclib_free(&F);
     spoil(file, w);
-    int e = read_problem(&F, file, &why);
+    int e = read_problem(&F, file, &failure);
     if (!e) fclib_free(&F);
-    ok(good && e == EX_DATAERR && why.status == e && strstr(why.text, w->says), "%s: %s", w->what,
-       why.text);
+    ok(good && e == EX_DATAERR && failure.status == e && strstr(failure.text, w->says), "%s: %s", w->what,
+       failure.text);
     H5Fclose(file);
 }
 
 static void test_wrong_solution(void)
 {
     hid_t file = good_file(false);
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct fclib F = { 0 };
     double r[6] = { 1, 1, 1, 1, 1, 1 };
-    ok(!read_problem(&F, file, &why) && !read_solution(&F, file, r, &why) && norm(6, r) == 0,
+    ok(!read_problem(&F, file, &failure) && !read_solution(&F, file, r, &failure) && norm(6, r) == 0,
        "without a solution r = 0");
     put_doubles(file, "/solution/r", 5, r);
-    ok(read_solution(&F, file, r, &why) == EX_DATAERR, "a short one: %s", why.text);
+    ok(read_solution(&F, file, r, &failure) == EX_DATAERR, "a short one: %s", failure.text);
     fclib_free(&F);
     H5Fclose(file);
 }

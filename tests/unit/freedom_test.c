@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -35,8 +35,8 @@ static struct step_opt options(const struct solver *global, const struct method 
    no gravity, no friction, dt 1 ms. */
 static void stack(struct packing *p, int dim, int64_t n)
 {
-    struct why why = { 0 };
-    must(packing_init(p, dim, n, &why) || packing_alloc_walls(p, 2, &why), &why);
+    struct failure failure = { 0 };
+    must(packing_init(p, dim, n, &failure) || packing_alloc_walls(p, 2, &failure), &failure);
     vec3 up = dim == 2 ? v3(0, 1, 0) : v3(0, 0, 1);
     p->dt = 1e-3;
     for (int64_t i = 0; i < n; i++) {
@@ -55,8 +55,8 @@ static struct load glides(vec3 axis, double mass, double force)
 static void run(struct packing *p, struct contacts *c, const struct step_opt *o, int steps,
                 struct report *rep)
 {
-    struct why why = { 0 };
-    for (int k = 0; k < steps; k++) must(step_advance(p, c, NULL, o, rep, &why), &why);
+    struct failure failure = { 0 };
+    for (int k = 0; k < steps; k++) must(step_advance(p, c, NULL, o, rep, &failure), &failure);
 }
 
 /* r_n of the contact of a and b over dt, N; 0 where there is none */
@@ -190,12 +190,12 @@ static void test_lattice(int dim)
 {
     enum { N = 3 };
     const double P[3] = { 7, 11, 13 }, mass = 5, close = 1 - 1e-9;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(&solver_auto, &local_exact, 1e-13);
-    must(packing_init(&p, dim, dim == 2 ? N * N : N * N * N, &why), &why);
+    must(packing_init(&p, dim, dim == 2 ? N * N : N * N * N, &failure), &failure);
     p.dt = 1e-3;
     for (int k = 0; k < dim; k++) {
         double L = N * (k == dim - 1 ? 1.5 : close); // the last edge holds bodies that are apart
@@ -239,12 +239,12 @@ static void test_lattice(int dim)
  */
 static void heap(struct packing *p, int dim, double e)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene sc;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(&solver_auto, &local_exact, 1e-8);
-    must(scene_paper(&sc, dim, 40, &why) || scene_build(p, &sc, NULL, &why), &why);
+    must(scene_paper(&sc, dim, 40, &failure) || scene_build(p, &sc, NULL, &failure), &failure);
     scene_free(&sc);
     run(p, &s, &o, 500, &rep);
     vec3 up = dim == 2 ? v3(0, 1, 0) : v3(0, 0, 1);
@@ -252,7 +252,7 @@ static void heap(struct packing *p, int dim, double e)
     for (int64_t i = 0; i < p->n; i++)
         top = fmax(top, v3_dot(up, p->x[i]) + p->radius[i]), weight += 9.81 * p->mass[i];
     struct wall *wall = realloc(p->wall, (size_t)(p->walls + 1) * sizeof *wall);
-    must(!wall, &why);
+    must(!wall, &failure);
     p->wall = wall;
     wall[p->walls++] = boundary_plane(v3_scale(top, up), v3_scale(-1, up), 1);
     wall[p->walls - 1].load = glides(up, 0.3 * p->mass[0], -2 * weight);
@@ -284,14 +284,14 @@ static void squeezed(struct packing *p, int dim, double e)
         "\"bodies\": [{ \"count\": 64, \"radius\": { \"uniform\": [4e-4, 6e-4] }, \"box\":"
         "{ \"x\": [0, 6e-3], \"y\": [0, 6e-3], \"z\": [0, 6e-3] } }] }"
     };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene sc;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(&solver_auto, &local_exact, 1e-6);
-    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), NULL, &why) ||
-             scene_build(p, &sc, NULL, &why),
-         &why);
+    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), NULL, &failure) ||
+             scene_build(p, &sc, NULL, &failure),
+         &failure);
     scene_free(&sc);
     for (int k = 0; k < 5000 && s.n < 90 + 40 * (dim - 2); k++) run(p, &s, &o, 1, &rep);
     for (int32_t k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = 0.5 * e;
@@ -320,14 +320,14 @@ static void enclosed(struct packing *p, int dim, double e)
         "\"bodies\": [{ \"count\": 64, \"radius\": { \"uniform\": [4e-4, 6e-4] }, \"box\":"
         "{ \"x\": [0, 6e-3], \"y\": [0, 6e-3], \"z\": [0, 6e-3] } }] }"
     };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene sc;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(&solver_auto, &local_exact, 1e-6);
-    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), NULL, &why) ||
-             scene_build(p, &sc, NULL, &why),
-         &why);
+    must(scene_parse(&sc, text[dim - 2], strlen(text[dim - 2]), NULL, &failure) ||
+             scene_build(p, &sc, NULL, &failure),
+         &failure);
     scene_free(&sc);
     for (int k = 0; k < 5000 && s.n < 95 + 15 * (dim - 2); k++) run(p, &s, &o, 1, &rep);
     for (int32_t k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = 0.5 * e;
@@ -361,13 +361,13 @@ static double largest_difference(const struct packing *p, const struct packing *
 /* All solvers and methods make the same step of it. */
 static void test_agree(const struct place *where, int dim, double e)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing start, first, p;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     where->make(&start, dim, e);
     struct step_opt o = options(&solver_auto, &local_exact, 1e-11);
-    must(packing_copy(&first, &start, &why), &why);
+    must(packing_copy(&first, &start, &failure), &failure);
     run(&first, &s, &o, 1, &rep);
     ok(rep.converged && s.n > 40, "%dD, e %g: %lld contacts %s are solved, %d sweeps", dim, e,
        (long long)s.n, where->name, rep.sweeps);
@@ -375,7 +375,7 @@ static void test_agree(const struct place *where, int dim, double e)
         for (int g = 0; solvers[g]; g++) {
             if ((m < 0) == (solvers[g] == &solver_nlgs)) continue;
             o = options(solvers[g], m < 0 ? &local_exact : methods[m], 1e-8);
-            must(packing_copy(&p, &start, &why), &why);
+            must(packing_copy(&p, &start, &failure), &failure);
             run(&p, &s, &o, 1, &rep);
             double d = largest_difference(&p, &first);
             ok(rep.converged && d < 1e-4, "%dD, e %g: so does %s %s (%.1e, natural %.1e)", dim, e,
@@ -419,26 +419,26 @@ static void contact_velocities(const struct packing *p, const struct packing *ar
 /* W, column by column: what a unit of r_c does to the velocities when everything is moved by it; and q */
 static void test_W(const struct place *where, int dim)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p, q;
     struct contacts s = { 0 };
     struct problem problem;
     where->make(&p, dim, 0);
-    must(detect_contacts(&s, &p, 0, NULL, &why) || contacts_alloc_found(&s), &why);
-    must(prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &why),
-         &why);
+    must(detect_contacts(&s, &p, 0, NULL, &failure) || contacts_alloc_found(&s), &failure);
+    must(prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &failure),
+         &failure);
     const struct delassus *W = problem.W;
     size_t size = (size_t)(s.n * dim) + 4;
     double *free_u = calloc(size, 8), *u = calloc(size, 8), *r = calloc(size, 8),
            *v = calloc(size, 8), *zero = calloc(size, 8), worst = 0, worst_q = 0;
-    must(packing_copy(&q, &p, &why) || move_step(&q, &s, NULL, &why), &why);
+    must(packing_copy(&q, &p, &failure) || move_step(&q, &s, NULL, &failure), &failure);
     contact_velocities(&q, &p, &s, free_u);
     packing_free(&q);
     for (int64_t k = 0; k < s.n * dim; k++) worst_q = fmax(worst_q, fabs(W->q[k] - free_u[k]));
     for (int64_t k = 0; k < s.n * dim; k++) {
         double one = p.mass[0], largest = 0, off = 0;
         s.found[k / dim].r[k % dim] = r[k] = one;
-        must(packing_copy(&q, &p, &why) || move_step(&q, &s, NULL, &why), &why);
+        must(packing_copy(&q, &p, &failure) || move_step(&q, &s, NULL, &failure), &failure);
         contact_velocities(&q, &p, &s, u);
         delassus_apply(W, r, zero, v);
         for (int64_t i = 0; i < s.n * dim; i++) {
@@ -459,7 +459,7 @@ static void test_W(const struct place *where, int dim)
 /* Energy and momentum over steps; back again; as the parts of a step do it */
 static void test_balance(const struct place *where, int dim, double e)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p, was;
     struct contacts s = { 0 };
     struct report rep = { 0 };
@@ -471,7 +471,7 @@ static void test_balance(const struct place *where, int dim, double e)
     for (int k = 0; k < 50; k++) {
         const struct balance b = rep.balance, *n = &rep.balance;
         packing_wrap(&p, NULL); // as the step would begin
-        must(packing_copy(&was, &p, &why), &why);
+        must(packing_copy(&was, &p, &failure), &failure);
         run(&p, &s, &o, 1, &rep);
         // a body that has left the cell is replaced by an image of another velocity
         bool repeats = cell_repeats(&p.cell);
@@ -490,11 +490,11 @@ static void test_balance(const struct place *where, int dim, double e)
         }
         if (!repeats) momentum = fmax(momentum, off / most);
         dissipated += n->dissipation;
-        must(move_back(&p, &s, &why), &why);
+        must(move_back(&p, &s, &failure), &failure);
         back = fmax(back, largest_difference(&p, &was));
         for (int32_t j = 0; j < p.walls; j++)
             back = fmax(back, fabs(p.wall[j].load.travel - was.wall[j].load.travel) / 1e-3);
-        must(move_step(&p, &s, NULL, &why), &why);
+        must(move_step(&p, &s, NULL, &failure), &failure);
         packing_free(&was);
     }
     ok(energy < 1e-13, "%dD, e %g, %s: energy is balanced in 50 steps (%.1e)", dim, e, where->name,
@@ -507,7 +507,7 @@ static void test_balance(const struct place *where, int dim, double e)
 
 static void test_threads(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing start, p[3];
     struct contacts s = { 0 };
     struct report rep = { 0 };
@@ -515,7 +515,7 @@ static void test_threads(void)
     for (int k = 0; k < 3; k++) {
         struct step_opt o = options(&solver_auto, &local_exact, 1e-6);
         o.solve.threads = 1 << k, o.order = ORDER_COLOUR;
-        must(packing_copy(&p[k], &start, &why), &why);
+        must(packing_copy(&p[k], &start, &failure), &failure);
         run(&p[k], &s, &o, 10, &rep);
     }
     size_t size = (size_t)start.n * sizeof *start.v;
@@ -531,17 +531,17 @@ static void test_threads(void)
 /* Without contacts of a load the problem is the one of bodies, and its bits are those without it. */
 static void test_untouched(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p[2];
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct scene sc;
     struct step_opt o = options(&solver_auto, &local_exact, 1e-4);
     for (int k = 0; k < 2; k++) {
-        must(scene_paper(&sc, 3, 60, &why) || scene_build(&p[k], &sc, NULL, &why), &why);
+        must(scene_paper(&sc, 3, 60, &failure) || scene_build(&p[k], &sc, NULL, &failure), &failure);
         scene_free(&sc);
         struct wall *wall = realloc(p[k].wall, (size_t)(p[k].walls + 1) * sizeof *wall);
-        must(!wall, &why);
+        must(!wall, &failure);
         p[k].wall = wall;
         wall[p[k].walls++] = boundary_plane(v3(0, 0, 1), v3(0, 0, -1), 1);
         if (k) wall[p[k].walls - 1].load = glides(v3(0, 0, 1), 1, 0);
@@ -573,12 +573,12 @@ static void test_checks(void)
     struct packing p;
     stack(&p, 3, 1);
     p.wall[1].load = glides(v3(0, 0, 1), 1, -1);
-    struct why why = { 0 };
-    ok(!packing_check(&p, &why), "a good load is accepted");
+    struct failure failure = { 0 };
+    ok(!packing_check(&p, &failure), "a good load is accepted");
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
-        why = (struct why){ 0 };
+        failure = (struct failure){ 0 };
         p.wall[1].load = bad[k].load;
-        ok(packing_check(&p, &why) == EX_DATAERR, "a bad %s is refused: %s", bad[k].what, why.text);
+        ok(packing_check(&p, &failure) == EX_DATAERR, "a bad %s is refused: %s", bad[k].what, failure.text);
     }
     packing_free(&p);
 }

@@ -23,37 +23,37 @@ static char *slurp(const char *path, size_t *length)
     return text;
 }
 
-static int build(struct packing *p, const char *text, const char *dir, struct why *why)
+static int build(struct packing *p, const char *text, const char *dir, struct failure *failure)
 {
     struct scene s;
-    *why = (struct why){ 0 };
-    if (scene_parse(&s, text, strlen(text), NULL, why)) return why->status;
-    scene_build(p, &s, dir, why);
+    *failure = (struct failure){ 0 };
+    if (scene_parse(&s, text, strlen(text), NULL, failure)) return failure->status;
+    scene_build(p, &s, dir, failure);
     scene_free(&s);
-    return why->status;
+    return failure->status;
 }
 
-static int build_file(struct packing *p, const char *path, struct why *why)
+static int build_file(struct packing *p, const char *path, struct failure *failure)
 {
     size_t length;
     char *text = slurp(path, &length);
-    *why = (struct why){ 0 };
-    if (!text) return why_set(why, EX_NOINPUT, "%s: not there", path);
+    *failure = (struct failure){ 0 };
+    if (!text) return failure_set(failure, EX_NOINPUT, "%s: not there", path);
     text[length] = 0;
-    build(p, text, "scenes", why);
+    build(p, text, "scenes", failure);
     free(text);
-    return why->status;
+    return failure->status;
 }
 
-static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed, struct why *why)
+static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed, struct failure *failure)
 {
     struct scene s;
-    *why = (struct why){ 0 };
-    if (scene_paper(&s, dim, n, why)) return why->status;
+    *failure = (struct failure){ 0 };
+    if (scene_paper(&s, dim, n, failure)) return failure->status;
     if (seed) s.seed = seed;
-    scene_build(p, &s, NULL, why);
+    scene_build(p, &s, NULL, failure);
     scene_free(&s);
-    return why->status;
+    return failure->status;
 }
 
 static bool same_bodies(const struct packing *a, const struct packing *b)
@@ -110,10 +110,10 @@ static double distance_to_uniform(const struct packing *p, double lo, double hi)
 static void test_family(int dim, int64_t n, double lo, double hi)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     const char *what = dim == 2 ? "discs" : "balls";
     long long k = n;
-    if (!ok(!build_paper(&p, dim, n, 0, &why), "%lld %s are made %s", k, what, why.text)) return;
+    if (!ok(!build_paper(&p, dim, n, 0, &failure), "%lld %s are made %s", k, what, failure.text)) return;
     double min = INFINITY, max = 0;
     for (int64_t i = 0; i < p.n; i++) min = fmin(min, p.radius[i]), max = fmax(max, p.radius[i]);
     ok(p.n == n && p.walls == 2 * dim - 1, "%lld %s: a floor and its sides, no lid", k, what);
@@ -128,8 +128,8 @@ static void test_family(int dim, int64_t n, double lo, double hi)
 static void test_numbers(void)
 {
     struct packing p;
-    struct why why;
-    build_paper(&p, 3, 500, 0, &why);
+    struct failure failure;
+    build_paper(&p, 3, 500, 0, &failure);
     double r = 3e-4, density = 2500, top = 0;
     ok(p.dt == 5e-5 && p.theta == 0.5 && p.g.z == -9.81 && p.mu[0] == 0.3 && p.mu[1] == 0.3 &&
            p.en[0] == 0 && p.et[0] == 0 && p.seed == 1,
@@ -149,9 +149,9 @@ static void test_numbers(void)
 static void test_seed(void)
 {
     struct packing a, b, c;
-    struct why why;
-    build_paper(&a, 3, 500, 0, &why), build_paper(&b, 3, 500, 1, &why);
-    build_paper(&c, 3, 500, 2, &why);
+    struct failure failure;
+    build_paper(&a, 3, 500, 0, &failure), build_paper(&b, 3, 500, 1, &failure);
+    build_paper(&c, 3, 500, 2, &failure);
     ok(same_packing(&a, &b), "same seed, same packing");
     ok(!same_bodies(&a, &c), "another seed, another packing");
     packing_free(&a), packing_free(&b), packing_free(&c);
@@ -169,9 +169,9 @@ static void test_paper_files(void)
                 { "scenes/paper/example3-2d.json", 2, 500 } };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         struct packing a, b;
-        struct why why;
-        build_paper(&a, row[i].dim, row[i].n, 0, &why);
-        bool made = !build_file(&b, row[i].path, &why);
+        struct failure failure;
+        build_paper(&a, row[i].dim, row[i].n, 0, &failure);
+        bool made = !build_file(&b, row[i].path, &failure);
         ok(made && same_packing(&a, &b), "%s is the paper's %d", row[i].path, (int)row[i].n);
         packing_free(&a);
         if (made) packing_free(&b);
@@ -186,9 +186,9 @@ static void test_scene_files(void)
     for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
         char full[100];
         struct packing p;
-        struct why why;
+        struct failure failure;
         snprintf(full, sizeof full, "scenes/%s.json", path[i]);
-        if (!ok(!build_file(&p, full, &why), "%s is made %s", full, why.text)) continue;
+        if (!ok(!build_file(&p, full, &failure), "%s is made %s", full, failure.text)) continue;
         ok(!(fmin(least_gap(&p), least_wall_gap(&p)) < -1e-6 * p.radius[0]),
            "%s: no overlap at the start", full);
         packing_free(&p);
@@ -198,8 +198,8 @@ static void test_scene_files(void)
 static void test_example1(void)
 {
     struct packing p;
-    struct why why;
-    if (build_file(&p, "scenes/paper/example1.json", &why)) return;
+    struct failure failure;
+    if (build_file(&p, "scenes/paper/example1.json", &failure)) return;
     ok(p.n == 1 && p.radius[0] == 5e-3 && p.v[0].x == 1.5 && p.mu[1] == 0.7 && p.dt == 1e-4,
        "example 1 has the paper's numbers");
     ok(least_wall_gap(&p) == 0, "example 1 touches the floor, gap 0");
@@ -211,7 +211,7 @@ static void test_example1(void)
 static void test_bells(void)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     double min, max;
     const char *box = "\"box\": {\"x\": [0, 0.1], \"y\": [0, 0.1], \"z\": [0, null]}";
     char text[500];
@@ -219,7 +219,7 @@ static void test_bells(void)
              "{\"dt\": 1e-4, \"bodies\": [{\"count\": 20000, %s, \"radius\": {\"gaussian\":"
              "{\"mean\": 4e-4, \"sd\": 1e-4, \"min\": 3e-4, \"max\": 6e-4}}}]}",
              box);
-    if (ok(!build(&p, text, NULL, &why), "gaussian radii %s", why.text)) {
+    if (ok(!build(&p, text, NULL, &failure), "gaussian radii %s", failure.text)) {
         gsl_stats_minmax(&min, &max, p.radius, 1, (size_t)p.n);
         ok(min >= 3e-4 && max <= 6e-4, "gaussian radii keep to their cut-offs");
         double z = gsl_cdf_ugaussian_P(2) - gsl_cdf_ugaussian_P(-1);
@@ -232,7 +232,7 @@ static void test_bells(void)
              "{\"dt\": 1, \"bodies\": [{\"count\": 1, %s, \"radius\": {\"lognormal\":"
              "{\"median\": 3e-4, \"sigma\": 0, \"min\": 3e-4, \"max\": 3e-4}}}]}",
              box);
-    if (ok(!build(&p, text, NULL, &why), "a lognormal law without width ends %s", why.text)) {
+    if (ok(!build(&p, text, NULL, &failure), "a lognormal law without width ends %s", failure.text)) {
         ok(p.radius[0] == 3e-4, "and gives its median");
         packing_free(&p);
     }
@@ -240,7 +240,7 @@ static void test_bells(void)
              "{\"dt\": 1e-4, \"bodies\": [{\"count\": 20001, %s, \"radius\": {\"lognormal\":"
              "{\"median\": 4e-4, \"sigma\": 0.3, \"min\": 2e-4, \"max\": 8e-4}}}]}",
              box);
-    if (ok(!build(&p, text, NULL, &why), "lognormal radii %s", why.text)) {
+    if (ok(!build(&p, text, NULL, &failure), "lognormal radii %s", failure.text)) {
         gsl_stats_minmax(&min, &max, p.radius, 1, (size_t)p.n);
         ok(min >= 2e-4 && max <= 8e-4, "lognormal radii keep to their cut-offs");
         gsl_sort(p.radius, 1, (size_t)p.n);
@@ -265,13 +265,13 @@ static void check_sieve(const char *name, const char *size, int dim, const doubl
                         int n)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     char text[900];
     snprintf(text, sizeof text,
              "{\"dt\": 1, \"dim\": %d, \"bodies\": [{\"count\": 400000, \"radius\": %s, \"box\":"
              "{\"x\": [0, 10]%s}}]}",
              dim, size, dim == 2 ? ", \"y\": [0, null]" : ", \"y\": [0, 10], \"z\": [0, null]");
-    if (!ok(!build(&p, text, NULL, &why), "%s %s", name, why.text)) return;
+    if (!ok(!build(&p, text, NULL, &failure), "%s %s", name, failure.text)) return;
     double sum = 0, square = 0, below = 0, worst = 0;
     gsl_sort(p.radius, 1, (size_t)p.n);
     for (int64_t i = 0; i < p.n; i++) {
@@ -319,29 +319,29 @@ static void test_sieves(void)
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         struct packing p;
-        struct why why;
+        struct failure failure;
         char scene[400];
         snprintf(scene, sizeof scene,
                  "{\"dt\": 1, \"bodies\": [{\"count\": 1, \"radius\": %s, \"box\":"
                  "{\"x\": [0, 99], \"y\": [0, 99], \"z\": [0, null]}}]}",
                  bad[i][0]);
-        if (!ok(build(&p, scene, NULL, &why) == EX_DATAERR && strstr(why.text, bad[i][1]),
+        if (!ok(build(&p, scene, NULL, &failure) == EX_DATAERR && strstr(failure.text, bad[i][1]),
                 "refused: %s", bad[i][1]))
-            diag("%s", why.text);
+            diag("%s", failure.text);
     }
 }
 
 static void test_thermal(void)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     double sum = 0, square = 0;
     if (!ok(!build(
                 &p,
                 "{\"dt\": 1e-4, \"bodies\": [{\"count\": 10000, \"radius\": 1e-3, \"thermal\": 0.5,"
                 "\"v\": [0, 2, 0], \"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1]}}]}",
-                NULL, &why),
-            "thermal velocities %s", why.text))
+                NULL, &failure),
+            "thermal velocities %s", failure.text))
         return;
     for (int64_t i = 0; i < p.n; i++) sum += p.v[i].y, square += p.v[i].x * p.v[i].x;
     ok(fabs(sum / 1e4 - 2) < 0.02 && fabs(sqrt(square / 1e4) / 0.5 - 1) < 0.03,
@@ -354,7 +354,7 @@ static void test_thermal(void)
 static void test_material(void)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     if (!ok(!build(&p,
                    "{\"dt\": 1e-4, \"mu\": 0.3, \"e_n\": 0.2, \"kinds\": {\"steel\": {\"density\":"
                    "7800}}, \"pairs\": [{\"pair\": [\"steel\", \"wall\"], \"mu\": 0.1}],"
@@ -363,8 +363,8 @@ static void test_material(void)
                    "{\"x\": [6, 0, 0], \"radius\": 1, \"fixed\": true, \"v\": [0, 1, 0]}],"
                    "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 3, 4],"
                    "\"velocity\": [1, 0, 0]}]}",
-                   NULL, &why),
-            "materials %s", why.text))
+                   NULL, &failure),
+            "materials %s", failure.text))
         return;
     int32_t k = p.kinds;
     ok(k == 3 && !strcmp(p.kind_name[0], "ball") && !strcmp(p.kind_name[2], "steel"),
@@ -394,18 +394,18 @@ static void put(const char *name, const char *text)
 static void test_table(void)
 {
     struct packing p;
-    struct why why;
+    struct failure failure;
     put("good", "# x y z r\n\n 0 0 0 1 # the first\r\n3\t0 0 1.5\n");
     if (ok(!build(&p, "{\"dt\": 1, \"bodies\": [{\"file\": \"good\", \"v\": [0, 0, 1]}]}", folder,
-                  &why),
-           "a table %s", why.text)) {
+                  &failure),
+           "a table %s", failure.text)) {
         ok(p.n == 2 && p.x[1].x == 3 && p.radius[1] == 1.5 && p.v[1].z == 1,
            "a table's comments, blanks and rows");
         packing_free(&p);
     }
     put("flat", "0 0 1\n5 1 2");
-    if (ok(!build(&p, "{\"dt\": 1, \"dim\": 2, \"bodies\": [{\"file\": \"flat\"}]}", folder, &why),
-           "a table in the plane %s", why.text)) {
+    if (ok(!build(&p, "{\"dt\": 1, \"dim\": 2, \"bodies\": [{\"file\": \"flat\"}]}", folder, &failure),
+           "a table in the plane %s", failure.text)) {
         ok(p.n == 2 && p.x[1].y == 1 && p.x[1].z == 0 && p.radius[1] == 2, "x y r in the plane");
         packing_free(&p);
     }
@@ -417,7 +417,7 @@ static void test_table(void)
         diag("../shared/problems is not there: the packing of other codes was not read");
         return;
     }
-    if (!ok(!build(&p, others, "../shared/problems", &why), "other codes' packing %s", why.text))
+    if (!ok(!build(&p, others, "../shared/problems", &failure), "other codes' packing %s", failure.text))
         return;
     ok(p.n == 500 && least_gap(&p) > 0 && least_wall_gap(&p) > 0, "its 500 balls lie in the box");
     packing_free(&p);
@@ -439,7 +439,7 @@ static void test_bad_tables(void)
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         char wanted[300];
         struct packing p;
-        struct why why;
+        struct failure failure;
         if (row[i].text) put("bad", row[i].text);
         bool named = row[i].trouble[0] == ':';
         snprintf(wanted, sizeof wanted, "%s%s%s%s", named ? folder : "", named ? "/" : "",
@@ -450,15 +450,15 @@ static void test_bad_tables(void)
         build(&p,
               row[i].text ? "{\"dt\": 1, \"bodies\": [{\"file\": \"bad\"}]}"
                           : "{\"dt\": 1, \"bodies\": [{\"file\": \"none\"}]}",
-              folder, &why);
-        if (!ok(why.status == row[i].status && !strcmp(why.text, wanted), "a bad table: %s",
+              folder, &failure);
+        if (!ok(failure.status == row[i].status && !strcmp(failure.text, wanted), "a bad table: %s",
                 row[i].trouble))
-            diag("%d %s", why.status, why.text);
+            diag("%d %s", failure.status, failure.text);
     }
     struct packing p;
-    struct why why;
-    ok(build(&p, "{\"dt\": 1, \"bodies\": [{\"file\": \".\"}]}", folder, &why) == EX_NOINPUT,
-       "a folder is no table: %s", strrchr(why.text, ':'));
+    struct failure failure;
+    ok(build(&p, "{\"dt\": 1, \"bodies\": [{\"file\": \".\"}]}", folder, &failure) == EX_NOINPUT,
+       "a folder is no table: %s", strrchr(failure.text, ':'));
 }
 
 /* ---- bad scenes ---- */
@@ -539,13 +539,13 @@ static void test_bad_scenes(void)
     };
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         struct packing p;
-        struct why why;
-        bool refused = build(&p, row[i].text, NULL, &why) == EX_DATAERR;
-        bool told = row[i].trouble ? !strcmp(why.text, row[i].trouble)
-                                   : *why.text && !strchr(why.text, '\n');
-        if (!ok(refused && told, "refused: %s", row[i].trouble ? row[i].trouble : why.text))
-            diag("%d %s", why.status, why.text);
-        if (!why.status) packing_free(&p);
+        struct failure failure;
+        bool refused = build(&p, row[i].text, NULL, &failure) == EX_DATAERR;
+        bool told = row[i].trouble ? !strcmp(failure.text, row[i].trouble)
+                                   : *failure.text && !strchr(failure.text, '\n');
+        if (!ok(refused && told, "refused: %s", row[i].trouble ? row[i].trouble : failure.text))
+            diag("%d %s", failure.status, failure.text);
+        if (!failure.status) packing_free(&p);
     }
 }
 
@@ -558,14 +558,14 @@ static void test_damage(void)
     if (!text) return;
     for (size_t i = 0; i < 2 * length; i++) {
         struct scene s;
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         char *damaged = malloc(length); // exactly, so that reading past the end is seen
         memcpy(damaged, text, length);
         if (i >= length) damaged[i - length] ^= (char)(1 << i % 8);
         size_t n = i < length ? i : length;
         char *copy = malloc(n ? n : 1);
         memcpy(copy, damaged, n);
-        int status = scene_parse(&s, copy, n, NULL, &why);
+        int status = scene_parse(&s, copy, n, NULL, &failure);
         cut += i < length && status == EX_DATAERR;
         odd += status != 0 && status != EX_DATAERR;
         if (!status) scene_free(&s);
@@ -686,9 +686,9 @@ static struct {
     int odd;          /* ... that have neither an answer nor a reason as it should be */
 } turn;
 
-static void odd(const char *path, const char *what, const struct why *why)
+static void odd(const char *path, const char *what, const struct failure *failure)
 {
-    if (turn.odd++ < 5) diag("%s, now %s: %d %s", path, what, why->status, why->text);
+    if (turn.odd++ < 5) diag("%s, now %s: %d %s", path, what, failure->status, failure->text);
 }
 
 /* Is the reason "line:column: path: trouble", of this node, or one above or below it? */
@@ -706,26 +706,26 @@ static void try_change(const char *path, const char *what, bool wrong)
 {
     struct scene s;
     struct packing p = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     char *text = json_dumps(turn.root, JSON_INDENT(1));
     if (!text) return;
     turn.tried++;
-    int e = scene_parse(&s, text, strlen(text), NULL, &why);
+    int e = scene_parse(&s, text, strlen(text), NULL, &failure);
     free(text);
     if (e) {
         int line, column;
-        if (e != EX_DATAERR || why.status != e || sscanf(why.text, "%d:%d: ", &line, &column) < 2 ||
-            (wrong && !says_where(why.text, path)))
-            odd(path, what, &why);
+        if (e != EX_DATAERR || failure.status != e || sscanf(failure.text, "%d:%d: ", &line, &column) < 2 ||
+            (wrong && !says_where(failure.text, path)))
+            odd(path, what, &failure);
         return;
     }
     turn.taken++;
-    if (wrong) odd(path, what, &why);
-    if (turn.builds && !scene_build(&p, &s, NULL, &why)) {
-        if (packing_check(&p, &why)) odd(path, what, &why); // no reader would take it
+    if (wrong) odd(path, what, &failure);
+    if (turn.builds && !scene_build(&p, &s, NULL, &failure)) {
+        if (packing_check(&p, &failure)) odd(path, what, &failure); // no reader would take it
         packing_free(&p);
-    } else if (turn.builds && (why.status != EX_DATAERR || !*why.text || strchr(why.text, '\n'))) {
-        odd(path, what, &why);
+    } else if (turn.builds && (failure.status != EX_DATAERR || !*failure.text || strchr(failure.text, '\n'))) {
+        odd(path, what, &failure);
     }
     scene_free(&s);
 }
@@ -784,10 +784,10 @@ static void test_every_value(void)
 {
     for (size_t k = 0; k < sizeof whole_scene / sizeof *whole_scene; k++) {
         struct scene s;
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         const char *text = whole_scene[k];
-        if (!ok(!scene_parse(&s, text, strlen(text), NULL, &why), "a scene that says much %s",
-                why.text))
+        if (!ok(!scene_parse(&s, text, strlen(text), NULL, &failure), "a scene that says much %s",
+                failure.text))
             continue;
         scene_free(&s);
         memset(&turn, 0, sizeof turn);
@@ -805,8 +805,8 @@ static void test_every_value(void)
 static void test_million(void)
 {
     struct packing p;
-    struct why why;
-    if (!ok(!build_paper(&p, 3, 1000000, 0, &why), "a million balls %s", why.text)) return;
+    struct failure failure;
+    if (!ok(!build_paper(&p, 3, 1000000, 0, &failure), "a million balls %s", failure.text)) return;
     ok(p.n == 1000000 && least_wall_gap(&p) >= 0, "a million balls, all inside");
     packing_free(&p);
 }

@@ -117,12 +117,12 @@ static int scatter(const struct body *b, int times, double noise, double scale, 
 }
 
 /* The volume, in units of scale; what is wrong is in why. */
-static double volume_of(struct shape *s, int dim, int n, double scale, struct why *why)
+static double volume_of(struct shape *s, int dim, int n, double scale, struct failure *failure)
 {
     struct solid_frame was;
     *s = (struct shape){ .form = SHAPE_HULL };
-    if (hull_of_points(s, dim, n, x, why) || solid_settle(s, dim, &was, why) ||
-        shape_finish(s, dim, why))
+    if (hull_of_points(s, dim, n, x, failure) || solid_settle(s, dim, &was, failure) ||
+        shape_finish(s, dim, failure))
         return NAN;
     return s->volume * pow(was.reach / scale, dim);
 }
@@ -130,21 +130,21 @@ static double volume_of(struct shape *s, int dim, int n, double scale, struct wh
 static void noisy(const struct body *b)
 {
     int failed = 0, coarse = 0, cut = 0;
-    char said[sizeof((struct why *)0)->text] = "";
+    char said[sizeof((struct failure *)0)->text] = "";
     for (int e = -16; e <= -2; e++)
         for (int k = 0; k < 6; k++) {
             struct shape s;
-            struct why why = { 0 };
+            struct failure failure = { 0 };
             double noise = pow(10, e), scale = k % 3 ? 1 : 1e-3, least = fmin(1, b->volume);
             int n = scatter(b, 1 + k, noise, scale, k % 2 ? 10 * scale : 0);
-            double volume = volume_of(&s, b->dim, n, scale, &why);
-            if (noise < 1e-4 * least || why.status == EX_SOFTWARE) {
-                failed += why.status != 0;
+            double volume = volume_of(&s, b->dim, n, scale, &failure);
+            if (noise < 1e-4 * least || failure.status == EX_SOFTWARE) {
+                failed += failure.status != 0;
                 coarse += !(fabs(volume / b->volume - 1) < 1e-9 + 30 * noise / least);
                 cut += noise < 1e-8 && s.faces != b->faces;
                 cut += noise < 1e-8 && s.vertices != b->vertices;
             }
-            if (why.status) strcpy(said, why.text);
+            if (failure.status) strcpy(said, failure.text);
             shape_free(&s);
         }
     ok(!failed, "%s with noise up to 1e-4 has a hull %s", b->name, said);
@@ -159,9 +159,9 @@ static void welded(void)
     int more = 0;
     for (int k = 0; k < 50; k++) {
         struct shape s;
-        struct why why = { 0 };
-        volume_of(&s, 3, scatter(&bodies[0], 6, 6e-7, 1, k % 2 ? 10 : 0), 1, &why);
-        more += why.status || s.vertices != 8;
+        struct failure failure = { 0 };
+        volume_of(&s, 3, scatter(&bodies[0], 6, 6e-7, 1, k % 2 ? 10 : 0), 1, &failure);
+        more += failure.status || s.vertices != 8;
         shape_free(&s);
     }
     ok(!more, "with noise of 6e-7 a cube has 8 corners, too");
@@ -170,20 +170,20 @@ static void welded(void)
 static void far_away(void)
 {
     struct shape s;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     vec3 o = v3(500000.2, 4649776.4, 312.7);
     int n = cube(x);
     for (int i = 0; i < n; i++) x[i] = v3_axpy(o, 1.3, x[i]);
-    ok(fabs(volume_of(&s, 3, n, 1, &why) / 2.197 - 1) < 1e-9 &&
+    ok(fabs(volume_of(&s, 3, n, 1, &failure) / 2.197 - 1) < 1e-9 &&
            fabs(s.moment[0] - s.moment[1]) < 1e-9 && fabs(s.moment[0] - 2.0 / 9) < 1e-9,
-       "a cube in map coordinates has its volume and moments %s", why.text);
+       "a cube in map coordinates has its volume and moments %s", failure.text);
     shape_free(&s);
 }
 
 static void none(void)
 {
     struct shape s;
-    struct why one = { 0 }, two = { 0 }, three = { 0 };
+    struct failure one = { 0 }, two = { 0 }, three = { 0 };
     for (int k = 0; k < 100; k++) x[k] = v3(draw(), draw(), 0);
     volume_of(&s, 3, 100, 1, &one), shape_free(&s);
     for (int k = 0; k < 100; k++) x[k] = v3(k, 2 * k, 3 * k);

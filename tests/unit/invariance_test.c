@@ -16,10 +16,10 @@ enum {
         30 /* later, faces lie on faces, and rounding decides which of their places are contacts */
 };
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -100,9 +100,9 @@ static const struct scene_text {
 
 static void build(struct packing *p, const char *text)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene sc;
-    must(scene_parse(&sc, text, strlen(text), NULL, &why) || scene_build(p, &sc, NULL, &why), &why);
+    must(scene_parse(&sc, text, strlen(text), NULL, &failure) || scene_build(p, &sc, NULL, &failure), &failure);
     scene_free(&sc);
     p->overlap =
         OVERLAP_GAP; // a projection ends after a few sweeps: what it leaves depends on their order
@@ -110,7 +110,7 @@ static void build(struct packing *p, const char *text)
 
 static void run(struct packing *p, int steps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = { .order = ORDER_COLOUR,
@@ -122,7 +122,7 @@ static void run(struct packing *p, int steps)
                                      .relax = solver_auto.relax,
                                      .threads = 1,
                                      .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
-    for (int k = 0; k < steps; k++) must(step_advance(p, &s, NULL, &o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, &s, NULL, &o, &rep, &failure), &failure);
     contacts_free(&s), report_free(&rep);
 }
 
@@ -217,8 +217,8 @@ static int64_t place(const struct packing *p, int64_t i)
 static void renumber(struct packing *p)
 {
     struct packing was;
-    struct why why = { 0 };
-    must(packing_copy(&was, p, &why), &why);
+    struct failure failure = { 0 };
+    must(packing_copy(&was, p, &failure), &failure);
     for (int64_t i = 0; i < p->n; i++) {
         int64_t k = place(p, i);
         p->radius[k] = was.radius[i], p->mass[k] = was.mass[i], p->inertia[k] = was.inertia[i];
@@ -329,16 +329,16 @@ static double moved(const struct packing *p, const struct packing *start)
 static void test_scene(const struct scene_text *s)
 {
     struct packing start, first, p;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     build(&start, s->text);
-    must(packing_copy(&first, &start, &why), &why);
+    must(packing_copy(&first, &start, &failure), &failure);
     const int steps = strncmp(s->name, "bricks", 6) ? STEPS : STEPS_OF_BRICKS;
     run(&first, steps);
     ok(moved(&first, &start) > 0.05, "%s: bodies move by up to %.2f m", s->name,
        moved(&first, &start));
     for (size_t k = 0; k < sizeof transformations / sizeof *transformations; k++) {
         const struct transformation *t = &transformations[k];
-        must(packing_copy(&p, &start, &why), &why);
+        must(packing_copy(&p, &start, &failure), &failure);
         t->there(&p);
         run(&p, steps);
         double d = difference(&first, &p, t);

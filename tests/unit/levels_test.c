@@ -11,10 +11,10 @@
 
 static gsl_rng *rng;
 
-static void must(int failed, const struct why *why)
+static void must(int failed, const struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -53,9 +53,9 @@ static void test_levels(int64_t bodies, int64_t n)
 /* A cube of balls that overlap by up to a tenth, their rows in order or at random, on a floor */
 static void cube(struct packing *p, int side, bool shuffled)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int64_t n = (int64_t)side * side * side;
-    must(packing_init(p, 3, n, &why) || packing_alloc_walls(p, 1, &why), &why);
+    must(packing_init(p, 3, n, &failure) || packing_alloc_walls(p, 1, &failure), &failure);
     p->dt = 1e-4, p->g = v3(0, 0, -9.81);
     p->wall[0] = (struct wall){ .n = v3(0, 0, 1) };
     for (int64_t i = 0; i < n; i++) {
@@ -77,9 +77,9 @@ static void test_threads(int side, bool shuffled)
     bool same = true, moved = false;
     struct packing p;
     struct contacts s = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     cube(&p, side, shuffled);
-    must(detect_contacts(&s, &p, 1e-6, NULL, &why), &why);
+    must(detect_contacts(&s, &p, 1e-6, NULL, &failure), &failure);
     size_t size = (size_t)p.n * sizeof *p.x;
     vec3 *start = malloc(size);
     if (!start || !(one = malloc(size))) exit(1);
@@ -87,7 +87,7 @@ static void test_threads(int side, bool shuffled)
     for (int threads = 1; threads <= 4; threads++) {
         memcpy(p.x, start, size);
         team_set_size(threads);
-        must(project_apart(&p, &s, NULL, &why), &why);
+        must(project_apart(&p, &s, NULL, &failure), &failure);
         if (threads == 1) memcpy(one, p.x, size), moved = memcmp(one, start, size) != 0;
         same = same && !memcmp(one, p.x, size);
     }

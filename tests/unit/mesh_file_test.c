@@ -11,13 +11,13 @@ int main(void)
     static const char text[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     struct scene_files files = { 0 };
     struct mesh mesh = { 0 };
-    struct why why = { 0 }, bytes = { 0 }, triangles = { 0 };
+    struct failure failure = { 0 }, bytes = { 0 }, triangles = { 0 };
     int32_t left_out;
     char name[] = "/tmp/nsd-mesh-XXXXXX";
     FILE *f = fdopen(mkstemp(name), "w");
     fputs(text, f), fclose(f);
-    mesh_file_read(&mesh, &files, name, 2, &left_out, &why);
-    ok(!why.status && files.mesh_bytes == (int64_t)strlen(text), "bytes that are read are counted");
+    mesh_file_read(&mesh, &files, name, 2, &left_out, &failure);
+    ok(!failure.status && files.mesh_bytes == (int64_t)strlen(text), "bytes that are read are counted");
     ok(mesh.elements == 1 && mesh.vertex[1].x == 2,
        "a unit of the file is as long as it is said to be");
     files.mesh_bytes = MESH_BYTES_MOST - (int64_t)strlen(text) + 1;

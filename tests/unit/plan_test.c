@@ -11,19 +11,19 @@
 
 static gsl_rng *rng;
 
-static void must(int failed, const struct why *why)
+static void must(int failed, const struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
 /* A cube of touching balls, `side` a side, on a floor; every tenth ball of the lowest layer is fixed. */
 static void cube(struct packing *p, struct contacts *s, int side)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int64_t n = (int64_t)side * side * side;
-    must(packing_init(p, 3, n, &why) || packing_alloc_walls(p, 1, &why), &why);
+    must(packing_init(p, 3, n, &failure) || packing_alloc_walls(p, 1, &failure), &failure);
     p->dt = 1e-4, p->g = v3(0, 0, -9.81);
     p->wall[0] = (struct wall){ .n = v3(0, 0, 1) };
     for (int64_t i = 0; i < n; i++) {
@@ -32,7 +32,7 @@ static void cube(struct packing *p, struct contacts *s, int side)
         p->x[i] =
             v3((double)(i % side), (double)(i / side % side), 0.5 + (double)(i / side / side));
     }
-    must(detect_contacts(s, p, 1e-6, NULL, &why), &why);
+    must(detect_contacts(s, p, 1e-6, NULL, &failure), &failure);
 }
 
 static bool same(const struct plan *a, const struct plan *b)
@@ -101,7 +101,7 @@ static void test_holds(int side, enum order order, int rounds)
 /* Two runs from the same state, one of which remembers; how often its plan was kept */
 static void test_run(const char *what, int steps, bool warm, int least, int most)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene scene;
     struct packing p[2];
     struct contacts s[2] = { { 0 }, { 0 } };
@@ -119,13 +119,13 @@ static void test_run(const char *what, int steps, bool warm, int least, int most
                                      .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
     int kept = 0;
     bool equal = true;
-    must(scene_paper(&scene, 3, 20, &why) || scene_build(&p[0], &scene, NULL, &why), &why);
+    must(scene_paper(&scene, 3, 20, &failure) || scene_build(&p[0], &scene, NULL, &failure), &failure);
     for (int k = 0; k < (warm ? 1500 : 0); k++)
-        must(step_advance(&p[0], &s[0], NULL, &o, &rep, &why), &why);
-    must(packing_copy(&p[1], &p[0], &why) || contacts_copy(&s[1], &s[0]), &why);
+        must(step_advance(&p[0], &s[0], NULL, &o, &rep, &failure), &failure);
+    must(packing_copy(&p[1], &p[0], &failure) || contacts_copy(&s[1], &s[0]), &failure);
     for (int k = 0; k < steps; k++) {
         for (int j = 0; j < 2; j++)
-            must(step_advance(&p[j], &s[j], j ? &m : NULL, &o, &rep, &why), &why);
+            must(step_advance(&p[j], &s[j], j ? &m : NULL, &o, &rep, &failure), &failure);
         kept += m.plan->schedule.sequence != NULL; // a mark that a new plan has not
         if (!m.plan->schedule.sequence) m.plan->schedule.sequence = malloc(1);
         equal &= !memcmp(p[0].x, p[1].x, (size_t)p[0].n * sizeof *p[0].x) &&

@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -46,7 +46,7 @@ struct grains {
 static void throw(struct packing * p, const struct grains *g, bool newton)
 {
     char text[2048];
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene sc;
     snprintf(
         text, sizeof text,
@@ -58,7 +58,7 @@ static void throw(struct packing * p, const struct grains *g, bool newton)
         uniform(0, 1) < 0.5 ? 0 : uniform(0, 1), newton ? "newton" : "bounded", g->shape,
         g->dim == 3 ? ", 0" : "", g->dim == 3 ? "0, " : "", g->dim == 3 ? "0, " : "",
         g->dim == 3 ? "0, " : "");
-    must(scene_parse(&sc, text, strlen(text), NULL, &why) || scene_build(p, &sc, NULL, &why), &why);
+    must(scene_parse(&sc, text, strlen(text), NULL, &failure) || scene_build(p, &sc, NULL, &failure), &failure);
     scene_free(&sc);
     p->overlap = OVERLAP_GAP;
     for (int i = 0; i < 2; i++) {
@@ -81,12 +81,12 @@ struct outcome {
 static struct outcome run(struct packing *p)
 {
     struct outcome o = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt opt = options();
     for (int k = 0; k < 600; k++) {
-        must(step_advance(p, &s, NULL, &opt, &rep, &why), &why);
+        must(step_advance(p, &s, NULL, &opt, &rep, &failure), &failure);
         const struct balance *b = &rep.balance;
         o.gained = fmax(o.gained, b->change / (b->kinetic - b->change));
         o.reported = fmax(o.reported, b->gained / (b->kinetic - b->change));
@@ -105,8 +105,8 @@ static void test_grains(const struct grains *g)
     for (int k = 0; k < THROWS; k++) {
         throw(&p, g, true);
         struct packing copy;
-        struct why why = { 0 };
-        must(packing_copy(&copy, &p, &why), &why);
+        struct failure failure = { 0 };
+        must(packing_copy(&copy, &p, &failure), &failure);
         for (int32_t i = 0; copy.law && i < copy.kinds * copy.kinds; i++)
             copy.law[i].impact = IMPACT_DEFAULT;
         struct outcome newton = run(&p), safe = run(&copy);

@@ -40,9 +40,9 @@ static struct packing build(const char *text)
 {
     struct scene s;
     struct packing p;
-    struct why why = { 0 };
-    if (scene_parse(&s, text, strlen(text), NULL, &why) || scene_build(&p, &s, NULL, &why)) {
-        printf("Bail out! %s\n", why.text);
+    struct failure failure = { 0 };
+    if (scene_parse(&s, text, strlen(text), NULL, &failure) || scene_build(&p, &s, NULL, &failure)) {
+        printf("Bail out! %s\n", failure.text);
         exit(1);
     }
     scene_free(&s);
@@ -67,7 +67,7 @@ static void check_solid(const char *name, const char *dim, const char *shape, do
                         double Ia, double Ib, double Ic, double part)
 {
     struct packing p = one(dim, shape, "");
-    vec3 I = top_moments(&p, 0);
+    vec3 I = rotation_moments(&p, 0);
     double m[3] = { I.x, I.y, I.z };
     for (int i = 0; i < 2; i++)
         for (int k = 0; k < 2; k++)
@@ -123,11 +123,11 @@ static void hulls_by_sampling(void)
 {
     vec3 x[12];
     struct shape s = { .form = SHAPE_HULL };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     for (int i = 0; i < 12; i++) x[i] = noise3();
-    hull_of_points(&s, 3, 12, x, &why);
+    hull_of_points(&s, 3, 12, x, &failure);
     struct solid o;
-    solid_of(&o, &s, 3, &why);
+    solid_of(&o, &s, 3, &failure);
     double inside = 0, xx = 0, n = 200000;
     vec3 sum = v3(0, 0, 0);
     vec3 *normal = calloc((size_t)s.faces + 1, sizeof *normal);
@@ -145,7 +145,7 @@ static void hulls_by_sampling(void)
         if (in) inside++, sum = v3_add(sum, y), xx += y.x * y.x;
     }
     double volume = 8 * inside / n, second = 8 * xx / n - volume * o.centre.x * o.centre.x;
-    ok(!why.status && near(o.volume, volume, 0.02) && near(o.second[0][0], second, 0.03) &&
+    ok(!failure.status && near(o.volume, volume, 0.02) && near(o.second[0][0], second, 0.03) &&
            v3_norm(v3_sub(o.centre, v3_scale(1 / inside, sum))) < 0.01,
        "a hull of 12 points has the volume that sampling finds: %.4g, %.4g", o.volume, volume);
     free(normal), free(at);
@@ -190,15 +190,15 @@ static quat spin(double dt, double t, double *energy, double *momentum, int *fli
 {
     struct packing p = one("", "{\"box\": [1, 2, 3]}", ", \"w\": [0.01, 5, 0.01]");
     struct contacts none = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     p.dt = dt, p.g = v3(0, 0, 0);
     contacts_alloc_found(&none);
-    vec3 L = top_momentum(&p, 0, p.q[0], p.w[0]);
+    vec3 L = rotation_momentum(&p, 0, p.q[0], p.w[0]);
     double E = energy_of(&p).kinetic, side = 1;
     *energy = *momentum = 0, *flips = 0;
     for (int64_t k = 0; k < (int64_t)(t / dt + 0.5); k++) {
-        move_step(&p, &none, NULL, &why);
-        vec3 now = top_momentum(&p, 0, p.q[0], p.w[0]);
+        move_step(&p, &none, NULL, &failure);
+        vec3 now = rotation_momentum(&p, 0, p.q[0], p.w[0]);
         *energy = fmax(*energy, fabs(energy_of(&p).kinetic / E - 1));
         *momentum = fmax(*momentum, v3_norm(v3_sub(now, L)) / v3_norm(L));
         double up = quat_turn(p.q[0], v3(0, 1, 0)).y;
@@ -238,13 +238,13 @@ static void tops_turn(void)
     // a symmetric top precesses about L with |L|/I_across, whatever the step
     struct packing p = one("", "{\"box\": [1, 1, 3]}", ", \"w\": [1, 0, 4]");
     struct contacts none = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     contacts_alloc_found(&none);
     p.dt = 0.1, p.g = v3(0, 0, 0);
-    vec3 I = top_moments(&p, 0), L0 = top_momentum(&p, 0, p.q[0], p.w[0]);
+    vec3 I = rotation_moments(&p, 0), L0 = rotation_momentum(&p, 0, p.q[0], p.w[0]);
     double rate = v3_norm(L0) / I.x;
     vec3 axis = v3_scale(1 / v3_norm(L0), L0), end;
-    for (int k = 0; k < 100; k++) move_step(&p, &none, NULL, &why);
+    for (int k = 0; k < 100; k++) move_step(&p, &none, NULL, &failure);
     end = quat_turn(p.q[0], v3(0, 0, 1));
     vec3 want = quat_turn(quat_rotation(v3_scale(10 * rate, axis)), v3(0, 0, 1));
     ok(v3_norm(v3_sub(end, want)) < 1e-11, "a symmetric top precesses exactly: off by %.2g",
@@ -255,9 +255,9 @@ static void tops_turn(void)
     // there and back again
     p = one("", "{\"box\": [1, 2, 3]}", ", \"w\": [1, -2, 3]");
     struct packing was;
-    packing_copy(&was, &p, &why);
+    packing_copy(&was, &p, &failure);
     contacts_alloc_found(&none);
-    move_step(&p, &none, NULL, &why), move_back(&p, &none, &why);
+    move_step(&p, &none, NULL, &failure), move_back(&p, &none, &failure);
     ok(v3_norm(v3_sub(p.w[0], was.w[0])) < 1e-13 && apart(p.q[0], was.q[0]) < 1e-14,
        "a step back undoes a step");
     contacts_free(&none);
@@ -316,8 +316,8 @@ static void cubes_meet(void)
         "["
         "{\"x\": [0, 0, 0], \"shape\": \"c\"}, {\"x\": [0.3, 0.2, 0.99], \"shape\": \"c\"}]}");
     struct contacts s = { 0 };
-    struct why why = { 0 };
-    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
+    struct failure failure = { 0 };
+    detect_contacts_at(&s, &p, p.x, 0, 0, &failure);
     double area = 0;
     bool up = s.n == 4;
     for (int64_t i = 0; i < s.n; i++) {
@@ -327,12 +327,12 @@ static void cubes_meet(void)
     ok(up && near(area, 0.7 * 0.8, 1e-12),
        "cube on cube: four places at the corners of the overlap");
     p.q[1] = quat_rotation(v3(0, 0, M_PI / 4)), p.x[1] = v3(0, 0, 0.99);
-    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 0, &failure);
     ok(s.n == 4, "turned by 45 degrees the overlap has eight corners, and four places are kept: %d",
        (int)s.n);
     // tipped: corners leave one by one, each with its own gap
     p.q[1] = quat_rotation(v3(0.01, 0.02, 0)), p.x[1] = v3(0, 0, 1.0);
-    detect_contacts_at(&s, &p, p.x, 0, 1, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 1, &failure);
     double lo = INFINITY, hi = -INFINITY;
     for (int64_t i = 0; i < s.n; i++) lo = fmin(lo, s.c[i].gap), hi = fmax(hi, s.c[i].gap);
     ok(s.n == 4 && near(hi - lo, 0.03, 0.05), "tipped, each corner has its own gap: %.3g to %.3g",
@@ -340,7 +340,7 @@ static void cubes_meet(void)
     // edge across edge
     p.q[0] = quat_rotation(v3(M_PI / 4, 0, 0)), p.q[1] = quat_rotation(v3(0, M_PI / 4, 0));
     p.x[1] = v3(0.1, -0.05, sqrt(2) - 0.01);
-    detect_contacts_at(&s, &p, p.x, 0, 0, &why);
+    detect_contacts_at(&s, &p, p.x, 0, 0, &failure);
     ok(s.n == 1 && near(s.c[0].gap, -0.01, 1e-9) && fabs(s.c[0].n.z - 1) < 1e-9 &&
            fabs(s.c[0].x.x - 0.1) < 1e-9 + 1 * 0.11,
        "crossed edges meet in one place");
@@ -358,10 +358,10 @@ static void steps_keep_momentum(bool rounded)
         struct packing p = two_hulls(0.9, rounded);
         struct contacts s = { 0 };
         struct report r = { 0 };
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         struct step_opt o = { .alpha = 0, .order = ORDER_COLOUR };
         p.overlap = OVERLAP_KEEP;
-        detect_contacts(&s, &p, 0, NULL, &why);
+        detect_contacts(&s, &p, 0, NULL, &failure);
         o.solve = (struct solve_opt){ .global = &solver_nlgs,
                                       .method = methods[k % METHOD_COUNT],
                                       .criterion = CRITERION_NATURAL,
@@ -374,14 +374,14 @@ static void steps_keep_momentum(bool rounded)
         double E = energy_of(&p).kinetic;
         for (int i = 0; i < 2; i++) {
             before = v3_axpy(before, p.mass[i], p.v[i]);
-            spin_before = v3_add(spin_before, top_momentum(&p, i, p.q[i], p.w[i]));
+            spin_before = v3_add(spin_before, rotation_momentum(&p, i, p.q[i], p.w[i]));
             spin_before =
                 v3_axpy(spin_before, p.mass[i], v3_cross(p.x[i], p.v[i])); // before the step
         }
-        step_solve(&p, &s, &o, &r, &why), move_step(&p, &s, NULL, &why);
+        step_solve(&p, &s, &o, &r, &failure), move_step(&p, &s, NULL, &failure);
         for (int i = 0; i < 2; i++) {
             after = v3_axpy(after, p.mass[i], p.v[i]);
-            spin_after = v3_add(spin_after, top_momentum(&p, i, p.q[i], p.w[i]));
+            spin_after = v3_add(spin_after, rotation_momentum(&p, i, p.q[i], p.w[i]));
             spin_after = v3_axpy(spin_after, p.mass[i], v3_cross(p.x[i], p.v[i]));
         }
         met += s.n > 0;
@@ -410,15 +410,15 @@ static void assembly_is_sweep(void)
         "\"jitter\": 0, \"box\": {\"x\": [0, 3], \"y\": [0, 3], \"z\": [0.5, null]}}, "
         "{\"count\": 4, \"shape\": \"p\", \"orientation\": \"random\"}]}");
     struct contacts s = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct problem q;
     struct assembly A;
     struct delassus W;
     struct apply a;
-    detect_contacts(&s, &p, 0.5, NULL, &why);
+    detect_contacts(&s, &p, 0.5, NULL, &failure);
     prepare_packing(&q, &p, &s, true,
-                    &(struct prepare_opt){ .rho_factor = 1, .order = ORDER_COLOUR }, &why);
-    assembly_init(&A, &q, &why), assembly_blocks(&A, &W, &why);
+                    &(struct prepare_opt){ .rho_factor = 1, .order = ORDER_COLOUR }, &failure);
+    assembly_init(&A, &q, &failure), assembly_blocks(&A, &W, &failure);
     double *x = calloc((size_t)(3 * q.slots) + 4, sizeof *x),
            *y = calloc((size_t)(3 * q.slots) + 4, sizeof *y);
     double *f = calloc((size_t)(3 * q.n) + 4, sizeof *f),

@@ -15,10 +15,10 @@
 static const struct solver *const tested[] = { &solver_anderson, &solver_cg };
 enum { TESTED = sizeof tested / sizeof *tested };
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -39,17 +39,17 @@ static struct step_opt options(const struct solver *global, double eps, int32_t 
 static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, double mu, double e,
                    int steps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene scene;
     struct report rep = { 0 };
     struct step_opt o = options(&solver_nlgs, 1e-6, 200);
     o.warm = true, o.solve.relax = 1.5;
-    must(scene_paper(&scene, dim, n, &why) || scene_build(p, &scene, NULL, &why), &why);
+    must(scene_paper(&scene, dim, n, &failure) || scene_build(p, &scene, NULL, &failure), &failure);
     scene_free(&scene);
     for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
     for (int k = 0; k < p->kinds * p->kinds && mu >= 0; k++) p->mu[k] = mu;
-    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &why), &why);
-    must(detect_contacts(s, p, 0, NULL, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &failure), &failure);
+    must(detect_contacts(s, p, 0, NULL, &failure), &failure);
     report_free(&rep);
 }
 
@@ -57,9 +57,9 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
 static struct contacts solve(const struct packing *p, const struct contacts *s,
                              const struct step_opt *o, struct report *rep)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct contacts c;
-    must(contacts_copy(&c, s) || step_solve(p, &c, o, rep, &why), &why);
+    must(contacts_copy(&c, s) || step_solve(p, &c, o, rep, &failure), &failure);
     return c;
 }
 
@@ -255,9 +255,9 @@ static struct {
 static int in_subset(struct solve *s)
 {
     struct scaled a;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     double unused;
-    if (nlgs_sweeps(s, 40, 1) || scaled_init(&a, s->p, &why)) return -1;
+    if (nlgs_sweeps(s, 40, 1) || scaled_init(&a, s->p, &failure)) return -1;
     size_t size = (size_t)a.size + 4;
     double *before = calloc(3 * size, sizeof *before), *x = before + size, *v = x + size;
     scaled_get(&a, s->p, before);

@@ -29,7 +29,7 @@ static const double six[6] = { 1, 2, 3, 4, 5, 6 };
 static struct objects make_list(void)
 {
     struct objects s = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     const struct object o[] = {
         { .kind = OBJECT_GROUP, .name = 3 },
         { .kind = OBJECT_NUMBERS,
@@ -44,18 +44,18 @@ static struct objects make_list(void)
     };
     static const char *const name[] = { "/g", "/g@a", "/g/x", "/g/t", "/g/o" };
     const void *data[] = { NULL, six, six, "words", NULL };
-    for (int k = 0; k < 5; k++) objects_add(&s, &o[k], shape, name[k], data[k], &why);
+    for (int k = 0; k < 5; k++) objects_add(&s, &o[k], shape, name[k], data[k], &failure);
     return s;
 }
 
 static bool round_trip(const struct objects *s)
 {
     struct list l;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     unsigned char *copy = malloc(s->size);
     if (!copy) return false;
     memcpy(copy, s->bytes, s->size);
-    bool good = !list_open(&l, copy, s->size, &why) && l.count == 5;
+    bool good = !list_open(&l, copy, s->size, &failure) && l.count == 5;
     double x[6] = { 0 };
     const struct listed *t = list_find(&l, "/g/x"), *a = list_attribute(&l, "/g", "a");
     good = good && t && a && t->object.rank == 2 && t->shape[0] == 2 && t->shape[1] == 3 &&
@@ -98,12 +98,12 @@ static void test_lists(void)
     bool good = true, cut = true;
     for (size_t n = 0; n <= s.size; n++) {
         struct list l;
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         unsigned char *copy = malloc(n + 1);
         if (!copy) return;
         memcpy(copy, s.bytes, n);
         good &= within(s.bytes, n);
-        if (!list_open(&l, copy, n, &why)) cut &= l.count < 5 || n == s.size;
+        if (!list_open(&l, copy, n, &failure)) cut &= l.count < 5 || n == s.size;
         list_free(&l);
     }
     ok(good && cut, "cut off anywhere, it has what is there, or is refused");
@@ -204,11 +204,11 @@ static void test_death(int signal, int status, const char *words)
     char *const file[] = { path };
     struct source *s = NULL;
     struct source_document d;
-    struct why why = { 0 }, after = { 0 };
+    struct failure failure = { 0 }, after = { 0 };
     bool more = false;
-    bool begun = !source_open(&s, 1, file, &why) && !source_next(s, &d, &more, &why) && more;
+    bool begun = !source_open(&s, 1, file, &failure) && !source_next(s, &d, &more, &failure) && more;
     if (!begun) {
-        ok(false, "a document is opened: %s", why.text);
+        ok(false, "a document is opened: %s", failure.text);
         source_close(s);
         return;
     }
@@ -220,9 +220,9 @@ static void test_death(int signal, int status, const char *words)
         return;
     }
     kill(child, signal);
-    char *text = source_text(s, "", "no such attribute", &why);
-    ok(!text && why.status == status && strstr(why.text, words), "killed by %s: %d, %s",
-       strsignal(signal), why.status, why.text);
+    char *text = source_text(s, "", "no such attribute", &failure);
+    ok(!text && failure.status == status && strstr(failure.text, words), "killed by %s: %d, %s",
+       strsignal(signal), failure.status, failure.text);
     source_next(s, &d, &more, &after);
     ok(after.status == EX_DATAERR && !more, "and no longer asked: %s", after.text);
     source_close(s);
@@ -236,13 +236,13 @@ static void test_two(void)
     for (int k = 0; k < 2; k++) {
         struct source *s[2] = { NULL, NULL };
         struct source_document d;
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         bool more, good = true;
         for (int i = 0; i < 2; i++)
-            good &= !source_open(&s[i], 1, file, &why) && !source_next(s[i], &d, &more, &why) &&
+            good &= !source_open(&s[i], 1, file, &failure) && !source_next(s[i], &d, &more, &failure) &&
                     more && source_has(s[i], "/x");
         source_close(s[k]);
-        good &= !source_next(s[1 - k], &d, &more, &why) && !more;
+        good &= !source_next(s[1 - k], &d, &more, &failure) && !more;
         source_close(s[1 - k]);
         ok(good && waitpid(-1, NULL, WNOHANG) < 0, "two at once, the %s closed first",
            k ? "second" : "first");
@@ -257,9 +257,9 @@ int main(void)
     h5_start();
     hid_t file = fd < 0 ? -1 : H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     hsize_t n = 6;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool made =
-        file >= 0 && !h5_write(file, "/x", h5_vector(H5T_NATIVE_DOUBLE, n, six), NULL, &why);
+        file >= 0 && !h5_write(file, "/x", h5_vector(H5T_NATIVE_DOUBLE, n, six), NULL, &failure);
     ok(made && H5Fclose(file) >= 0, "a file to read");
     test_death(SIGSEGV, EX_DATAERR, "libhdf5 breaks down");
 #ifdef __SANITIZE_ADDRESS__ // which takes the signal, and ends the process itself
@@ -271,7 +271,7 @@ int main(void)
     test_death(SIGKILL, EX_SOFTWARE, "no memory?");
     test_two();
     struct source *none;
-    ok(source_of_own(&none, -1, &why) == EX_DATAERR,
+    ok(source_of_own(&none, -1, &failure) == EX_DATAERR,
        "a file that could not be opened has nothing in it");
     source_close(none);
     source_close(NULL);

@@ -16,10 +16,10 @@ static double uniform(double a, double b)
     return a + (b - a) * gsl_rng_uniform(rng);
 }
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -36,29 +36,29 @@ static struct step_opt options(const struct method *m, double eps, int32_t sweep
 
 static void scene_file(struct packing *p, const char *path)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene s;
     static char text[1 << 16];
     FILE *f = fopen(path, "r");
     size_t n = f ? fread(text, 1, sizeof text, f) : 0;
     if (f) fclose(f);
-    must(scene_parse(&s, text, n, NULL, &why) || scene_build(p, &s, NULL, &why), &why);
+    must(scene_parse(&s, text, n, NULL, &failure) || scene_build(p, &s, NULL, &failure), &failure);
     scene_free(&s);
 }
 
 static void paper(struct packing *p, int dim, int64_t n)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene s;
-    must(scene_paper(&s, dim, n, &why) || scene_build(p, &s, NULL, &why), &why);
+    must(scene_paper(&s, dim, n, &failure) || scene_build(p, &s, NULL, &failure), &failure);
     scene_free(&s);
 }
 
 static void run(struct packing *p, struct contacts *c, const struct step_opt *o, int steps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
-    for (int k = 0; k < steps; k++) must(step_advance(p, c, NULL, o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, c, NULL, o, &rep, &failure), &failure);
     report_free(&rep);
 }
 
@@ -67,8 +67,8 @@ static void run(struct packing *p, struct contacts *c, const struct step_opt *o,
 /* Balls of very different sizes anywhere, some in one place, some far away, some fixed. */
 static void cloud(struct packing *p, int dim, int64_t n, double ratio)
 {
-    struct why why = { 0 };
-    must(packing_init(p, dim, n, &why) || packing_alloc_walls(p, 3, &why), &why);
+    struct failure failure = { 0 };
+    must(packing_init(p, dim, n, &failure) || packing_alloc_walls(p, 3, &failure), &failure);
     p->dt = 0.01;
     for (int64_t i = 0; i < n; i++) {
         p->radius[i] = 0.02 * pow(ratio, -gsl_rng_uniform(rng));
@@ -113,7 +113,7 @@ static int64_t same_contacts(const struct packing *p, const struct contacts *s, 
    to search, -1 if one found other contacts. */
 static int searches(struct packing *p, int steps, bool leaps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
     struct neighbours near = { 0 };
     struct contacts s = { 0 }, kept = { 0 }, anew = { 0 };
@@ -121,12 +121,12 @@ static int searches(struct packing *p, int steps, bool leaps)
     int searched = 0;
     for (int k = 0; k < steps && searched >= 0; k++) {
         vec3 was = near.listed ? near.listed[0] : v3(NAN, 0, 0);
-        must(detect_contacts(&kept, p, 0, &near, &why) || detect_contacts(&anew, p, 0, NULL, &why),
-             &why);
+        must(detect_contacts(&kept, p, 0, &near, &failure) || detect_contacts(&anew, p, 0, NULL, &failure),
+             &failure);
         searched += memcmp(&was, &near.listed[0], sizeof was) != 0;
         if (kept.n != anew.n || (kept.n && memcmp(kept.c, anew.c, (size_t)kept.n * sizeof *kept.c)))
             searched = -1;
-        must(step_advance(p, &s, NULL, &o, &rep, &why), &why);
+        must(step_advance(p, &s, NULL, &o, &rep, &failure), &failure);
         if (leaps && k % 7 == 3)
             p->x[k % p->n] = v3_axpy(p->x[(k + 1) % p->n], 1.5e-3, v3(1, 0, 0));
     }
@@ -156,11 +156,11 @@ static void test_detection(void)
         for (int k = 0; k < 8; k++) {
             const double ratios[4] = { 1, 3, 100, 1e4 };
             double gap = k < 4 ? 0 : 0.003;
-            struct why why = { 0 };
+            struct failure failure = { 0 };
             struct packing p;
             struct contacts s = { 0 };
             cloud(&p, dim, 1500, ratios[k % 4]);
-            must(detect_contacts(&s, &p, gap, NULL, &why), &why);
+            must(detect_contacts(&s, &p, gap, NULL, &failure), &failure);
             int64_t n = same_contacts(&p, &s, gap);
             ok(n > 20, "%dD, radii 1:%g, gap %g: the grid finds what brute force finds (%lld)", dim,
                ratios[k % 4], gap, (long long)s.n);
@@ -216,16 +216,16 @@ static void test_halves(const struct problem *q, const struct packing *p)
 
 static void test_identity(const struct packing *p, const struct contacts *s)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct problem q;
     struct contacts copy;
     for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
-        must(contacts_copy(&copy, s), &why);
+        must(contacts_copy(&copy, s), &failure);
         must(problem_prepare(&q, p, &copy,
                              &(struct prepare_opt){ .rho_factor = 1, .order = (enum order)order },
-                             &why),
-             &why);
-        must(problem_store(&q, &copy), &why);
+                             &failure),
+             &failure);
+        must(problem_store(&q, &copy), &failure);
         bool same = true, apart = true;
         for (int64_t i = 0; i < s->n; i++)
             same &= !memcmp(copy.found[i].r, s->found[i].r, sizeof s->found[i].r) &&
@@ -275,12 +275,12 @@ static vec3 spin(const struct packing *p, const vec3 *x)
 /* A step's change of momentum is what gravity and the walls gave; balls take nothing from balls. */
 static void test_momentum(const struct packing *start, const struct method *m)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     struct report rep = { 0 };
     struct step_opt o = options(m, 1e-6, 30); // far from converged: it must hold all the same
-    must(packing_copy(&p, start, &why), &why);
+    must(packing_copy(&p, start, &failure), &failure);
     vec3 *x = malloc((size_t)p.n * sizeof *x);
     double mass = 0, size = 0;
     vec3 force = { 0 }, moment = { 0 }, p0 = momentum(&p);
@@ -291,7 +291,7 @@ static void test_momentum(const struct packing *start, const struct method *m)
         moment = v3_add(moment, v3_cross(x[i], v3_scale(p.mass[i] * p.dt, p.g)));
     }
     vec3 l0 = spin(&p, x);
-    must(step_advance(&p, &s, NULL, &o, &rep, &why), &why);
+    must(step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
     for (int64_t i = 0; i < s.n; i++) {
         const struct contact *c = &s.c[i];
         const double *f = s.found[i].r;
@@ -321,7 +321,7 @@ static double largest_difference(const struct packing *a, const struct packing *
 /* All five methods from the same packing: the same velocities, though the reactions may differ. */
 static void test_agreement(const struct packing *start, const char *what)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing exact;
     for (int m = 4; m >= 0; m--) {
         struct packing p;
@@ -329,7 +329,7 @@ static void test_agreement(const struct packing *start, const char *what)
         struct report rep = { 0 };
         struct step_opt o = options(methods[m], 1e-11, 100000);
         o.solve.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
-        must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
+        must(packing_copy(&p, start, &failure) || step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
         if (m == 4) exact = p;
         double d = largest_difference(&p, &exact);
         ok(rep.converged && d < 1e-8,
@@ -351,7 +351,7 @@ static bool same_motion(const struct packing *a, const struct packing *b)
 /* Threads, and the way the criterion is evaluated, leave every bit and every count as it is. */
 static void test_threads(const struct packing *start)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     for (int order = ORDER_NATURAL; order <= ORDER_HALVES; order++) {
         struct packing one;
         int32_t sweeps = 0;
@@ -363,7 +363,7 @@ static void test_threads(const struct packing *start)
             o.order = (enum order)order;
             o.solve.threads = k < 3 ? 1 << k : 1;
             o.solve.every_sweep = k == 3;
-            must(packing_copy(&p, start, &why) || step_advance(&p, &s, NULL, &o, &rep, &why), &why);
+            must(packing_copy(&p, start, &failure) || step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
             if (k == 0)
                 one = p, sweeps = rep.sweeps;
             else
@@ -453,11 +453,11 @@ static void test_rolling(int dim, const struct method *m)
 /* A ball dropped on a floor with e_n leaves with e_n times the speed; e_t likewise, sticking. */
 static void test_restitution(double en, double et)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     struct step_opt o = options(&local_exact, 1e-14, 1000);
-    must(packing_init(&p, 3, 1, &why) || packing_alloc_walls(&p, 1, &why), &why);
+    must(packing_init(&p, 3, 1, &failure) || packing_alloc_walls(&p, 1, &failure), &failure);
     p.dt = 1e-3, p.radius[0] = 0.5;
     packing_solid(3, 0.5, 1000, &p.mass[0], &p.inertia[0]);
     p.wall[0].n = v3(0, 0, 1);
@@ -475,7 +475,7 @@ static void test_restitution(double en, double et)
 /* Balls that meet in the plane z = 0 of space do what the same in dim 2 does. */
 static void test_plane(void)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p[2];
     struct contacts s[2] = { { 0 }, { 0 } };
     struct step_opt o = options(&local_ebp, 1e-12, 20000);
@@ -486,19 +486,19 @@ static void test_plane(void)
     }
     double d = largest_difference(&p[0], &p[1]);
     ok(d < 1e-9 && s[0].n > 20, "30 discs, 600 steps: dim 2 and dim 3 agree to %.1e m/s", d);
-    (void)why;
+    (void)failure;
     for (int k = 0; k < 2; k++) contacts_free(&s[k]), packing_free(&p[k]);
 }
 
 static void test_unmove(const struct packing *start)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct packing p;
     struct contacts s = { 0 };
     struct step_opt o = options(&local_exact, 1e-8, 2000);
-    must(packing_copy(&p, start, &why), &why);
+    must(packing_copy(&p, start, &failure), &failure);
     run(&p, &s, &o, 1);
-    must(move_back(&p, &s, &why), &why);
+    must(move_back(&p, &s, &failure), &failure);
     double dx = 0, dv = largest_difference(&p, start);
     for (int64_t i = 0; i < p.n; i++) dx = fmax(dx, v3_norm(v3_sub(p.x[i], start->x[i])));
     ok(dx < 1e-16 && dv < 1e-14 && p.step == start->step, "unmove undoes move (%.1e m, %.1e m/s)",

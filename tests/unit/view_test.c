@@ -23,10 +23,10 @@ static struct view view(int size, double azimuth, double elevation)
 static struct picture draw(struct view v, const struct packing *p)
 {
     struct picture pic;
-    struct why why = { 0 };
-    if (!view_extend(&v, p, &why)) view_fit(&v, p);
-    if (why.status || view_draw(&v, p, &pic, &why)) {
-        ok(false, "a picture is drawn: %s", why.text);
+    struct failure failure = { 0 };
+    if (!view_extend(&v, p, &failure)) view_fit(&v, p);
+    if (failure.status || view_draw(&v, p, &pic, &failure)) {
+        ok(false, "a picture is drawn: %s", failure.text);
         exit(1);
     }
     return pic;
@@ -35,8 +35,8 @@ static struct picture draw(struct view v, const struct packing *p)
 static struct packing balls(int dim, int n, const double (*x)[4]) /* x y z radius */
 {
     struct packing p;
-    struct why why = { 0 };
-    if (packing_init(&p, dim, n, &why) || packing_alloc_kinds(&p, 3, &why)) exit(1);
+    struct failure failure = { 0 };
+    if (packing_init(&p, dim, n, &failure) || packing_alloc_kinds(&p, 3, &failure)) exit(1);
     p.dt = 1;
     for (int i = 0; i < n; i++) p.x[i] = v3(x[i][0], x[i][1], x[i][2]), p.radius[i] = x[i][3];
     return p;
@@ -44,8 +44,8 @@ static struct packing balls(int dim, int n, const double (*x)[4]) /* x y z radiu
 
 static void walls(struct packing *p, int n, const vec3 (*w)[2]) /* point, normal */
 {
-    struct why why = { 0 };
-    if (packing_alloc_walls(p, n, &why)) exit(1);
+    struct failure failure = { 0 };
+    if (packing_alloc_walls(p, n, &failure)) exit(1);
     for (int i = 0; i < n; i++) p->wall[i] = boundary_plane(w[i][0], w[i][1], 0);
 }
 
@@ -107,8 +107,8 @@ static void test_size(void)
     struct packing p = balls(3, 1, (const double[][4]){ { 0, 0, 0, 1 } });
     for (int i = 0; i < 6; i++) {
         struct view v = view(400, where[i][0], where[i][1]), seen = v;
-        struct why why = { 0 };
-        view_extend(&seen, &p, &why), view_fit(&seen, &p);
+        struct failure failure = { 0 };
+        view_extend(&seen, &p, &failure), view_fit(&seen, &p);
         struct picture pic = draw(v, &p);
         double area = M_PI * seen.camera.scale * seen.camera.scale;
         ok(fabs(drawn(&pic) / area - 1) < 0.01,
@@ -393,8 +393,8 @@ static void test_threads(void)
 {
     struct packing p = balls(3, 1, (const double[][4]){ { 0, 0, 0, 1 } });
     packing_free(&p);
-    struct why why = { 0 };
-    if (packing_init(&p, 3, 2000, &why)) exit(1);
+    struct failure failure = { 0 };
+    if (packing_init(&p, 3, 2000, &failure)) exit(1);
     srand(5);
     for (int i = 0; i < 2000; i++) {
         double s = 1.0 / RAND_MAX;
@@ -456,7 +456,7 @@ static void test_extremes(void)
                              { { 5, 0, 0 }, { 1, 0, 0 } },
                              { { -5, 0, 0 }, { -1, 0, 0 } } });
     extreme("walls twice, far away, and with nothing between them", &p, false);
-    if (packing_alloc_walls(&p, 500, &(struct why){ 0 })) exit(1);
+    if (packing_alloc_walls(&p, 500, &(struct failure){ 0 })) exit(1);
     for (int i = 0; i < 500; i++) {
         double a = 2 * M_PI * i / 500;
         p.wall[i] = boundary_plane(v3(-cos(a), -sin(a), 0), v3(cos(a), sin(a), 0), 0);
@@ -470,19 +470,19 @@ static void test_extremes(void)
         walls(&p, 1, (const vec3[][2]){ { { 0, 0, 0 }, { 0, dim == 2, dim == 3 } } });
         extreme("no bodies, one wall", &p, false);
         struct view v = view(64, 0, 0);
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         v.boxed = false, p.walls = 0;
-        ok(view_extend(&v, &p, &why) == EX_DATAERR, "no bodies and no walls: %s", why.text);
+        ok(view_extend(&v, &p, &failure) == EX_DATAERR, "no bodies and no walls: %s", failure.text);
         packing_free(&p);
     }
     p = balls(2, 1, (const double[][4]){ { 0, 0, 0, 1 } });
     extreme("one disc", &p, false);
     struct view v = view(64, 0, 0);
-    struct why why = { 0 };
-    view_extend(&v, &p, &why);
+    struct failure failure = { 0 };
+    view_extend(&v, &p, &failure);
     p.dim = 3;
-    ok(!why.status && view_extend(&v, &p, &why) == EX_DATAERR, "discs and balls in a series: %s",
-       why.text);
+    ok(!failure.status && view_extend(&v, &p, &failure) == EX_DATAERR, "discs and balls in a series: %s",
+       failure.text);
     packing_free(&p);
 }
 

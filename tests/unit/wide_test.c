@@ -13,10 +13,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void must(int failed, struct why *why)
+static void must(int failed, struct failure *failure)
 {
     if (!failed) return;
-    printf("Bail out! %s\n", why->text);
+    printf("Bail out! %s\n", failure->text);
     exit(1);
 }
 
@@ -35,15 +35,15 @@ static struct step_opt options(int m, double relax)
 /* The paper's balls some steps on, close enough to touch, with restitution or without */
 static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, double e, int steps)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct scene scene;
     struct report rep = { 0 };
     struct step_opt o = options(4, 1.4);
     o.warm = true, o.order = ORDER_COLOUR;
-    must(scene_paper(&scene, dim, n, &why) || scene_build(p, &scene, NULL, &why), &why);
+    must(scene_paper(&scene, dim, n, &failure) || scene_build(p, &scene, NULL, &failure), &failure);
     scene_free(&scene);
     for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
-    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &why), &why);
+    for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &failure), &failure);
     report_free(&rep);
 }
 
@@ -57,10 +57,10 @@ struct print {
 
 static struct print solve(const struct packing *p, const struct contacts *s, struct step_opt *o)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct report rep = { 0 };
     struct contacts c;
-    must(contacts_copy(&c, s) || step_solve(p, &c, o, &rep, &why), &why);
+    must(contacts_copy(&c, s) || step_solve(p, &c, o, &rep, &failure), &failure);
     struct print r = { 6 * s->n, malloc((size_t)(6 * s->n + 1) * sizeof(double)), rep.err,
                        rep.newton };
     for (int64_t i = 0; i < 6 * s->n; i++)
@@ -119,12 +119,12 @@ static void compare(const struct packing *p, const struct contacts *s, const cha
 /* W of a packing's problem; noise, relative to W_nn, in the coupling of n and t1 of every W_cc */
 static struct delassus operator(const struct packing *pack, const struct contacts *s, double noise)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct problem p;
     struct delassus W;
-    must(problem_prepare(&p, pack, s, &(struct prepare_opt){ .rho_factor = 1 }, &why) ||
-             scaled_assemble(&W, &p, &why),
-         &why);
+    must(problem_prepare(&p, pack, s, &(struct prepare_opt){ .rho_factor = 1 }, &failure) ||
+             scaled_assemble(&W, &p, &failure),
+         &failure);
     for (int64_t c = 0; c < s->n; c++)
         for (int k = 1; k < 4; k += 2) W.diag[9 * c + k] += noise * W.diag[9 * c];
     problem_free(&p);
@@ -150,14 +150,14 @@ static void test_given(const struct packing *p, const struct contacts *s, const 
         for (int64_t i = 0; i < s->n; i++)
             for (int k = 0; k < p->dim; k++) r[p->dim * i + k] = of_bodies.x[6 * i + k];
         for (int k = 0; k < 2; k++) {
-            struct why why = { 0 };
+            struct failure failure = { 0 };
             struct report rep = { 0 };
             struct problem shape;
             struct delassus W = operator(p, s, noise[k]);
             must(problem_prepare_delassus(&shape, &W, &(struct prepare_opt){ .rho_factor = 1 },
-                                          &why),
-                 &why);
-            must(step_solve_delassus(&W, u, &o, &rep, &why), &why);
+                                          &failure),
+                 &failure);
+            must(step_solve_delassus(&W, u, &o, &rep, &failure), &failure);
             double far = apart(&W, r);
             ok(shape.kind.full == (k == 1) && far < 1e-9,
                "%s, %s: the reactions of %s W are those of the bodies: %.1e", what,
@@ -198,11 +198,11 @@ int main(void)
         int64_t n;
     } large[] = { { "3000 balls", 3000 }, { "50 000 balls", 50000 } };
     for (int k = 0; k < 2; k++) {
-        struct why why = { 0 };
+        struct failure failure = { 0 };
         struct packing p;
         struct contacts s = { 0 };
         fallen(&p, &s, 3, large[k].n, 0, 0);
-        must(detect_contacts(&s, &p, 4e-4, NULL, &why), &why);
+        must(detect_contacts(&s, &p, 4e-4, NULL, &failure), &failure);
         diag("%s: %lld contacts", large[k].name, (long long)s.n);
         compare(&p, &s, large[k].name, false);
         contacts_free(&s), packing_free(&p);

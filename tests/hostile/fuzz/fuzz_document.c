@@ -21,17 +21,17 @@ static void read_all(char *path)
     struct reader *r = NULL;
     struct writer *w = NULL;
     struct frame f = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     bool more;
-    if (reader_open(&r, 1, &path, &why)) abort();
+    if (reader_open(&r, 1, &path, &failure)) abort();
     reader_copies(r);
-    while (!reader_next(r, NULL, &f, &more, &why) && more) {
-        struct why other = { 0 };
+    while (!reader_next(r, NULL, &f, &more, &failure) && more) {
+        struct failure other = { 0 };
         if (!w && writer_open(&w, "/dev/null", WRITER_STREAM, &other)) abort();
         if (writer_frame(w, &f, &other) && !other.text[0]) abort();
     }
-    if (why.status && (!why.text[0] || strchr(why.text, '\n'))) abort();
-    if (w) writer_close(w, &(struct why){ 0 });
+    if (failure.status && (!failure.text[0] || strchr(failure.text, '\n'))) abort();
+    if (w) writer_close(w, &(struct failure){ 0 });
     frame_free(&f);
     reader_close(r);
 }

@@ -11,7 +11,7 @@
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct packing p = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     if (size < 1) return -1;
     const struct import_wish wish = { .dim = data[0] & 1 ? 2 : 3,
                                       .frame = (data[0] >> 1 & 3) - 1,
@@ -20,10 +20,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     char *text = malloc(size); // one byte less, and a zero: none is behind it
     if (!text) abort();
     memcpy(text, data + 1, size - 1), text[size - 1] = 0;
-    int e = import_bytes(&p, "f", text, (int64_t)size - 1, &wish, &why);
+    int e = import_bytes(&p, "f", text, (int64_t)size - 1, &wish, &failure);
     free(text);
-    if (e && (!why.status || !why.text[0] || strchr(why.text, '\n'))) abort();
-    if (!e && packing_check(&p, &why)) abort();
+    if (e && (!failure.status || !failure.text[0] || strchr(failure.text, '\n'))) abort();
+    if (!e && packing_check(&p, &failure)) abort();
     if (!e) packing_free(&p);
     return 0;
 }

@@ -14,11 +14,11 @@
 static void make_grain(const struct mesh *m, bool hull)
 {
     struct shape s = { .form = SHAPE_HULL };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct solid_frame was;
-    if (!mesh_shape(&s, m, hull, &why) && !solid_settle(&s, 3, &was, &why))
-        shape_finish(&s, 3, &why);
-    if (why.status && (!why.text[0] || strchr(why.text, '\n'))) abort();
+    if (!mesh_shape(&s, m, hull, &failure) && !solid_settle(&s, 3, &was, &failure))
+        shape_finish(&s, 3, &failure);
+    if (failure.status && (!failure.text[0] || strchr(failure.text, '\n'))) abort();
     shape_free(&s);
 }
 
@@ -27,17 +27,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static const char *const name[] = { "m.stl", "m.obj", "m.ply", "m" };
     struct mesh m = { 0 };
     struct scene_files files = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     int32_t left_out = 0;
     if (size < 1) return -1;
     char *text = malloc(size); // one byte less, and a zero: none is behind it
     if (!text) abort();
     memcpy(text, data + 1, size - 1), text[size - 1] = 0;
     const struct mesh_bytes all = { name[data[0] % 4], text, (int64_t)size - 1, 1 };
-    int e = mesh_bytes_read(&m, &files, &all, &left_out, &why);
+    int e = mesh_bytes_read(&m, &files, &all, &left_out, &failure);
     free(text);
-    if (e && (!why.status || !why.text[0] || strchr(why.text, '\n'))) abort();
-    if (!e && (left_out < 0 || m.elements < 1 || mesh_check(&m, 3, &why))) abort();
+    if (e && (!failure.status || !failure.text[0] || strchr(failure.text, '\n'))) abort();
+    if (!e && (left_out < 0 || m.elements < 1 || mesh_check(&m, 3, &failure))) abort();
     if (!e && m.vertices < 200) make_grain(&m, false), make_grain(&m, true);
     mesh_free(&m);
     return 0;

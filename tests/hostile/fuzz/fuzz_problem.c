@@ -56,7 +56,7 @@ static void put_integers(hid_t file, const char *group, const char *name, int co
     hsize_t n = (hsize_t)count;
     for (int k = 0; k < count; k++) x[k] = integer(in);
     snprintf(path, sizeof path, "%s/%s", group, name);
-    h5_write(file, path, h5_vector(H5T_NATIVE_INT32, n, x), NULL, &(struct why){ 0 });
+    h5_write(file, path, h5_vector(H5T_NATIVE_INT32, n, x), NULL, &(struct failure){ 0 });
 }
 
 static void put_reals(hid_t file, const char *group, const char *name, int count, struct input *in)
@@ -66,7 +66,7 @@ static void put_reals(hid_t file, const char *group, const char *name, int count
     hsize_t n = (hsize_t)count;
     for (int k = 0; k < count; k++) x[k] = real(in);
     snprintf(path, sizeof path, "%s/%s", group, name);
-    h5_write(file, path, h5_vector(H5T_NATIVE_DOUBLE, n, x), NULL, &(struct why){ 0 });
+    h5_write(file, path, h5_vector(H5T_NATIVE_DOUBLE, n, x), NULL, &(struct failure){ 0 });
 }
 
 static void put_matrix(hid_t file, const char *group, struct input *in)
@@ -81,7 +81,7 @@ static void put_matrix(hid_t file, const char *group, struct input *in)
 
 static void solve(struct fclib *F)
 {
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     struct step_opt o = { .solve = { .global = &solver_nlgs,
                                      .method = &local_exact,
                                      .local = { .newton_eps = 1e-12, .newton_max = 20 },
@@ -92,7 +92,7 @@ static void solve(struct fclib *F)
                                      .threads = 1 } };
     struct report report = { 0 };
     double *u = calloc((size_t)(F->W.n * F->W.d) + 1, sizeof *u);
-    if (u && F->W.n < 64) step_solve_delassus(&F->W, u, &o, &report, &why);
+    if (u && F->W.n < 64) step_solve_delassus(&F->W, u, &o, &report, &failure);
     report_free(&report);
     free(u);
 }
@@ -102,7 +102,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     struct input in = { data, size };
     struct fclib F = { 0 };
     struct source *s = NULL;
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     h5_start();
     hid_t plist = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fapl_core(plist, 1 << 16, 0);
@@ -123,8 +123,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     } else {
         put_matrix(file, "/fclib_local/W", &in);
     }
-    if (!source_of_own(&s, file, &why) && !fclib_read(&F, s, &why)) solve(&F);
-    if (why.status && !why.text[0]) abort();
+    if (!source_of_own(&s, file, &failure) && !fclib_read(&F, s, &failure)) solve(&F);
+    if (failure.status && !failure.text[0]) abort();
     source_close(s);
     fclib_free(&F);
     H5Fclose(file);

@@ -9,14 +9,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     struct scene scene;
     struct packing packing = { 0 };
-    struct why why = { 0 };
+    struct failure failure = { 0 };
     char *text = malloc(size + 1); // the parser gets no byte behind its text
     if (!text) abort();
     memcpy(text, data, size);
-    int e = scene_parse(&scene, text, size, NULL, &why);
+    int e = scene_parse(&scene, text, size, NULL, &failure);
     free(text);
     if (e) {
-        if (!why.status || !why.text[0] || strchr(why.text, '\n')) abort();
+        if (!failure.status || !failure.text[0] || strchr(failure.text, '\n')) abort();
         return 0;
     }
     int64_t bodies = 0;
@@ -25,8 +25,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         bodies += scene.bodies[g].count < 1000 ? scene.bodies[g].count : 1000;
         table |= scene.bodies[g].from == SCENE_TABLE;
     }
-    if (bodies < 1000 && !table && !scene_build(&packing, &scene, NULL, &why) &&
-        packing_check(&packing, &(struct why){ 0 }))
+    if (bodies < 1000 && !table && !scene_build(&packing, &scene, NULL, &failure) &&
+        packing_check(&packing, &(struct failure){ 0 }))
         abort(); // what is built is what a reader takes
     packing_free(&packing);
     scene_free(&scene);
