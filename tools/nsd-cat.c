@@ -1,8 +1,8 @@
 /* nsd-cat: joins, cuts and thins streams and trajectories, and turns one into the other. */
-#include "cli/cli.h"
-#include "export/vtk_parts.h"
-#include "io/reader.h"
-#include "io/writer.h"
+#include "run/cli.h"
+#include "convert/vtk_parts.h"
+#include "file/reader.h"
+#include "file/writer.h"
 
 static bool last, stream;
 static const char *steps, *output;

@@ -1,11 +1,11 @@
 /* nsd-detect: finds the contacts of packings. */
-#include "bodies/wrap.h"
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/tool_filter.h"
-#include "detect/detect.h"
-#include "detect/touching.h"
-#include "scene/flow.h"
+#include "state/wrap.h"
+#include "run/cli.h"
+#include "run/options.h"
+#include "run/tool_filter.h"
+#include "contact/detect.h"
+#include "contact/touching.h"
+#include "scene/inlet.h"
 
 #include <stdlib.h>
 

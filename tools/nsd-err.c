@@ -1,11 +1,11 @@
 /* nsd-err: says how good a solution is, recomputed from the problem and the reactions. */
-#include "cli/cli.h"
-#include "io/reader.h"
-#include "io/report_json.h"
-#include "motion/move.h"
-#include "problem/err.h"
-#include "problem/prepare.h"
-#include "problem/self_stress.h"
+#include "run/cli.h"
+#include "file/reader.h"
+#include "file/report_json.h"
+#include "step/move.h"
+#include "solve/err.h"
+#include "solve/prepare.h"
+#include "solve/self_stress.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

@@ -1,12 +1,12 @@
 /* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
 #include "base/output.h"
-#include "bodies/chosen.h"
-#include "cli/cli.h"
-#include "cli/tool_filter.h"
-#include "export/format.h"
-#include "export/pvd.h"
-#include "export/some_bodies.h"
-#include "io/reader.h"
+#include "state/selection.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "convert/format.h"
+#include "convert/pvd.h"
+#include "convert/some_bodies.h"
+#include "file/reader.h"
 
 #include <ctype.h>
 #include <errno.h>

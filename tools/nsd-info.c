@@ -1,12 +1,12 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
-#include "bodies/chosen.h"
-#include "bodies/energy.h"
-#include "bodies/face_of.h"
-#include "bodies/kinematics.h"
-#include "bodies/room.h"
-#include "cli/cli.h"
-#include "io/reader.h"
-#include "io/report_json.h"
+#include "state/selection.h"
+#include "state/energy.h"
+#include "state/face_of.h"
+#include "state/kinematics.h"
+#include "state/servo_box.h"
+#include "run/cli.h"
+#include "file/reader.h"
+#include "file/report_json.h"
 #include "measure/stress.h"
 
 #include <math.h>

@@ -1,10 +1,10 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
-#include "bodies/energy.h"
-#include "cli/cli.h"
-#include "cli/tool_filter.h"
-#include "motion/move.h"
-#include "motion/sum_step.h"
-#include "solve/step.h"
+#include "state/energy.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "step/move.h"
+#include "step/sum_step.h"
+#include "step/step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

@@ -1,7 +1,7 @@
 /* nsd-solve: solves the contact problem of one step, or one in the FCLIB format. */
-#include "cli/cli.h"
-#include "cli/options.h"
-#include "cli/tool_filter.h"
+#include "run/cli.h"
+#include "run/options.h"
+#include "run/tool_filter.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* nsd-stat: numbers of frames: fraction, stress, forces, profiles, distributions; and fields. */
 #include "base/output.h"
-#include "cli/cli.h"
-#include "cli/tool_filter.h"
-#include "export/vti.h"
-#include "io/fields_write.h"
-#include "io/reader.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "convert/vti.h"
+#include "convert/fields_write.h"
+#include "file/reader.h"
 #include "measure/asked.h"
 #include "measure/measured.h"
 

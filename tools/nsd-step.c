@@ -1,14 +1,14 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
-#include "cli/cli.h"
-#include "cli/loop.h"
-#include "cli/options.h"
-#include "cli/processes.h"
-#include "cli/tool_filter.h"
-#include "io/background_writer.h"
-#include "io/reader.h"
-#include "io/writer.h"
-#include "motion/adapt.h"
-#include "scene/flow.h"
+#include "run/cli.h"
+#include "run/loop.h"
+#include "run/options.h"
+#include "run/processes.h"
+#include "run/tool_filter.h"
+#include "file/background_writer.h"
+#include "file/reader.h"
+#include "file/writer.h"
+#include "step/adapt.h"
+#include "scene/inlet.h"
 
 #include <float.h>
 #include <malloc.h>

@@ -1,14 +1,14 @@
 /* nsd-view: draws the bodies, one picture, a series or a film. */
 #include "base/team.h"
-#include "bodies/chosen.h"
-#include "cli/cli.h"
-#include "cli/tool_filter.h"
+#include "state/selection.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
 #include "draw/film.h"
 #include "draw/images.h"
 #include "draw/overlay.h"
 #include "draw/svg.h"
 #include "draw/values.h"
-#include "io/reader.h"
+#include "file/reader.h"
 
 #include <ctype.h>
 #include <stdio.h>

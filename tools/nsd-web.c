@@ -1,10 +1,10 @@
 /* nsd-web: a trajectory as one page that plays it in a browser. */
 #include "base/output.h"
-#include "bodies/energy.h"
-#include "cli/cli.h"
-#include "cli/tool_filter.h"
+#include "state/energy.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
 #include "draw/page.h"
-#include "io/reader.h"
+#include "file/reader.h"
 #include "measure/unit.h"
 
 #include <jansson.h>

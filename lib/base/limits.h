@@ -4,7 +4,7 @@
 #ifndef NSD_LIMITS_H
 #define NSD_LIMITS_H
 
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stdint.h>
 

@@ -1,11 +1,11 @@
 /*
  * base/option.h: a row of a table of options: what it is called, the variable that it sets, and which values it takes.
- * Command lines (cli/cli.h) and programs that call the library (api/nsd.h) read the same tables.
+ * Command lines (run/cli.h) and programs that call the library (run/nsd.h) read the same tables.
  */
 #ifndef NSD_OPTION_H
 #define NSD_OPTION_H
 
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -2,7 +2,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "base/output.h"
 
-#include "base/guest.h"
+#include "base/embedded.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -5,7 +5,7 @@
 #ifndef NSD_SPARSE_H
 #define NSD_SPARSE_H
 
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 #include "draw/facets.h"
 
-#include "draw/sight.h"
+#include "draw/ray.h"
 
 #include <stdlib.h>
 

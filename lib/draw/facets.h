@@ -6,8 +6,8 @@
 #ifndef NSD_FACETS_H
 #define NSD_FACETS_H
 
-#include "base/why.h"
-#include "bodies/packing.h"
+#include "base/failure.h"
+#include "state/packing.h"
 
 struct facets_triangle {
     vec3 corner[3];

@@ -6,8 +6,8 @@
 #ifndef NSD_OUTLINE_H
 #define NSD_OUTLINE_H
 
-#include "base/why.h"
-#include "bodies/packing.h"
+#include "base/failure.h"
+#include "state/packing.h"
 
 enum { OUTLINE_FACETS = 64 };
 

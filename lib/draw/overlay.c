@@ -1,7 +1,7 @@
 /* draw/overlay.c: what cairo draws over a picture [draw/overlay.h]. */
 #include "draw/overlay.h"
 
-#include "bodies/kinematics.h"
+#include "state/kinematics.h"
 
 #include <stdio.h>
 #include <stdlib.h>

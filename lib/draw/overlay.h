@@ -8,7 +8,7 @@
 #ifndef NSD_OVERLAY_H
 #define NSD_OVERLAY_H
 
-#include "bodies/contact.h"
+#include "state/contact.h"
 #include "draw/view.h"
 
 #include <cairo.h>

@@ -8,7 +8,7 @@
 #ifndef NSD_PAGE_H
 #define NSD_PAGE_H
 
-#include "bodies/contact.h"
+#include "state/contact.h"
 #include "draw/page_meta.h"
 
 /* Each returns 0, EX_SOFTWARE, EX_IOERR or EX_DATAERR (more than INT32_MAX grains or contacts). */

@@ -2,7 +2,7 @@
 #ifndef NSD_PAGE_SHAPES_H
 #define NSD_PAGE_SHAPES_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 #include "draw/page_chunk.h"
 
 /*

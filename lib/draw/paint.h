@@ -2,7 +2,7 @@
 #ifndef NSD_PAINT_H
 #define NSD_PAINT_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 
 enum colour {
     COLOUR_RADIUS,

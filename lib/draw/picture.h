@@ -2,7 +2,7 @@
 #ifndef NSD_PICTURE_H
 #define NSD_PICTURE_H
 
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stddef.h>
 

@@ -3,7 +3,7 @@
 
 #include "base/team.h"
 #include "draw/shade.h"
-#include "draw/sight.h"
+#include "draw/ray.h"
 
 #include <stdlib.h>
 

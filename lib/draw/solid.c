@@ -1,6 +1,6 @@
 #include "draw/solid.h"
 
-#include "bodies/chosen.h"
+#include "state/selection.h"
 
 #include <math.h>
 #include <stdio.h>

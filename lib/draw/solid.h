@@ -1,11 +1,11 @@
 /*
  * draw/solid.h: boundaries that are drawn solid and shaded: which of their faces, and in which colour: one for each name,
- * or by what bodies have done to each face, from the sums of nsd-step --sums [bodies/sums.h].
+ * or by what bodies have done to each face, from the sums of nsd-step --sums [state/wall_load.h].
  */
 #ifndef NSD_SOLID_H
 #define NSD_SOLID_H
 
-#include "bodies/face_of.h"
+#include "state/face_of.h"
 #include "draw/paint.h"
 
 enum solid_by { SURFACE_NAME, SURFACE_PRESSURE, SURFACE_FRICTION, SURFACE_RUB, SURFACE_COUNT };
@@ -29,7 +29,7 @@ struct solid_walls {
 };
 
 struct solid_opt {
-    const char *list; /* names and numbers of boundaries [bodies/chosen.h]; NULL: all */
+    const char *list; /* names and numbers of boundaries [state/selection.h]; NULL: all */
     enum solid_by by;
     double lo, hi; /* the palette's ends; NAN: those of what there is */
     const struct paint *paint;

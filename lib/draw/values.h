@@ -2,7 +2,7 @@
 #ifndef NSD_VALUES_H
 #define NSD_VALUES_H
 
-#include "bodies/contact.h"
+#include "state/contact.h"
 #include "draw/paint.h"
 
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
-#include "bodies/chosen.h"
+#include "state/selection.h"
 #include "draw/glass.h"
 #include "draw/images.h"
 #include "draw/raster.h"

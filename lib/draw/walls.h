@@ -6,7 +6,7 @@
 #ifndef NSD_WALLS_H
 #define NSD_WALLS_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 
 /* m: a box with its sides along the axes */
 struct extent {

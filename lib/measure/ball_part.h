@@ -13,7 +13,7 @@
 #ifndef NSD_BALL_PART_H
 #define NSD_BALL_PART_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 
 /* m^3, of a disc m^2: of the whole ball */
 double ball_volume(int dim, double radius);

@@ -1,5 +1,5 @@
 /* measure/boundaries.c: what pushes boundaries. */
-#include "bodies/face_of.h"
+#include "state/face_of.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
 

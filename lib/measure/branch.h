@@ -8,8 +8,8 @@
 #ifndef NSD_BRANCH_H
 #define NSD_BRANCH_H
 
-#include "bodies/contact_law.h"
-#include "bodies/kinematics.h"
+#include "contact/contact_law.h"
+#include "state/kinematics.h"
 
 /* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
    the whole distance to it. */

@@ -3,14 +3,14 @@
  * of the periodic cell and, along other axes, by how far walls are apart that are upright to the axis,
  * or the bodies reach where there are none.
  *
- * The edges of a cell are a basis of a lattice, and a run may change it [bodies/wrap.h]. From one frame to
+ * The edges of a cell are a basis of a lattice, and a run may change it [state/wrap.h]. From one frame to
  * the next E' = F E N, N whole numbers of determinant 1 or -1: those that leave F nearest to what the
  * edges' rates say.
  */
 #ifndef NSD_DEFORMED_H
 #define NSD_DEFORMED_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 #include "measure/tensor.h"
 
 /* All zero to begin with. */

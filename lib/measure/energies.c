@@ -1,6 +1,6 @@
 /* measure/energies.c: energies, and what a step takes of them. */
-#include "bodies/contact_law.h"
-#include "bodies/top.h"
+#include "contact/contact_law.h"
+#include "state/top.h"
 #include "measure/measures.h"
 #include "measure/step_start.h"
 
@@ -21,7 +21,7 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-/* What contacts take in the step, and what boundaries give, by the motion at each contact [motion/contact_motion.h] */
+/* What contacts take in the step, and what boundaries give, by the motion at each contact [step/contact_motion.h] */
 static int energies_add_step(double **at, const struct snapshot *s, double *stored, struct failure *failure)
 {
     struct step_start m;

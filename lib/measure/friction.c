@@ -1,5 +1,5 @@
 /* measure/friction.c: forces of contacts, their distributions, and how much of friction is used. */
-#include "law/local.h"
+#include "solve/local.h"
 #include "measure/branch.h"
 #include "measure/histogram.h"
 #include "measure/measures.h"

@@ -17,7 +17,7 @@ enum needs {
     NEEDS_FORCES,          /* contacts that are solved */
     NEEDS_BEFORE,          /* a frame before this one */
     NEEDS_CONTACTS_BEFORE, /* both have contacts */
-    NEEDS_SUMS, /* sums over steps [bodies/sums.h], and the frame before if there is one */
+    NEEDS_SUMS, /* sums over steps [state/wall_load.h], and the frame before if there is one */
 };
 
 /* What names of --only mean to a measure. Names of walls mean nothing to one of bodies, which is then of all. */

@@ -1,6 +1,6 @@
 #include "measure/near.h"
 
-#include "detect/grid.h"
+#include "contact/grid.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef NSD_PERIOD_H
 #define NSD_PERIOD_H
 
-#include "geometry/cell.h"
+#include "shape/cell.h"
 
 /* A cell, and the inverse of its edges; an edge that does not repeat is taken upright to the others. */
 struct period {

@@ -9,8 +9,8 @@
 #ifndef NSD_REGION_H
 #define NSD_REGION_H
 
-#include "base/why.h"
-#include "bodies/packing.h"
+#include "base/failure.h"
+#include "state/packing.h"
 #include "measure/period.h"
 
 struct region {

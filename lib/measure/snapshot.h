@@ -5,9 +5,9 @@
 #ifndef NSD_SNAPSHOT_H
 #define NSD_SNAPSHOT_H
 
-#include "bodies/chosen.h"
-#include "bodies/contact.h"
-#include "bodies/packing.h"
+#include "state/selection.h"
+#include "state/contact.h"
+#include "state/packing.h"
 #include "measure/kept.h"
 #include "measure/region.h"
 #include "measure/table.h"

@@ -1,6 +1,6 @@
 #include "measure/step_start.h"
 
-#include "motion/move.h"
+#include "step/move.h"
 
 int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure)
 {

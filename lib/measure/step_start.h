@@ -6,7 +6,7 @@
 #define NSD_STEP_START_H
 
 #include "measure/snapshot.h"
-#include "motion/contact_motion.h"
+#include "step/contact_motion.h"
 
 struct step_start {
     const struct packing *p; /* where the step begins */

@@ -1,6 +1,6 @@
-/* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [bodies/sums.h]. */
+/* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [state/wall_load.h]. */
 
-#include "bodies/face_of.h"
+#include "state/face_of.h"
 #include "measure/measures.h"
 
 #include <math.h>

@@ -89,7 +89,7 @@ static void json_value(FILE *out, const double *x, int width)
     fputc(']', out);
 }
 
-/* Names need no escapes [bodies/names.h]. */
+/* Names need no escapes [state/names.h]. */
 static void print_word(FILE *out, const struct table *t, double x, const char *quote,
                        const char *none)
 {

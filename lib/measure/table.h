@@ -6,8 +6,8 @@
 #define NSD_TABLE_H
 
 #include "base/vec.h"
-#include "base/why.h"
-#include "bodies/names.h"
+#include "base/failure.h"
+#include "state/names.h"
 #include "measure/quantity.h"
 #include "measure/tensor.h"
 

@@ -10,9 +10,9 @@
 #ifndef NSD_CLUMP_FIT_H
 #define NSD_CLUMP_FIT_H
 
-#include "geometry/mesh.h"
-#include "geometry/shape.h"
-#include "geometry/solid.h"
+#include "shape/mesh.h"
+#include "shape/shape.h"
+#include "shape/solid.h"
 
 enum { CLUMP_BALLS_MOST = 1000 };
 

@@ -1,6 +1,6 @@
 #include "scene/clump_grid.h"
 
-#include "geometry/surface_tree.h"
+#include "shape/surface_tree.h"
 #include "scene/line_crossings.h"
 
 #include <stdlib.h>

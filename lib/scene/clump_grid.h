@@ -5,7 +5,7 @@
 #ifndef NSD_CLUMP_GRID_H
 #define NSD_CLUMP_GRID_H
 
-#include "geometry/mesh.h"
+#include "shape/mesh.h"
 
 enum { CLUMP_GRID = 64 /* points along the longest side */ };
 

@@ -5,7 +5,7 @@
 #ifndef NSD_GRAINS_H
 #define NSD_GRAINS_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 #include "scene/scene.h"
 
 struct grain {

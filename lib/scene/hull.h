@@ -10,7 +10,7 @@
 #ifndef NSD_HULL_H
 #define NSD_HULL_H
 
-#include "geometry/shape.h"
+#include "shape/shape.h"
 
 /* Of the extent: what is closer to a plane is in it, as are the corners of files in single precision, whose last
    bit is 6e-8 of the largest; what is closer together is one point, for a shape's faces are flat to 1e-6. */

@@ -7,7 +7,7 @@
 #define NSD_HULL_FACES_H
 
 #include "base/vec.h"
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stdint.h>
 

@@ -11,7 +11,7 @@
 #define NSD_JSON_NODE_H
 
 #include "base/vec.h"
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <jansson.h>
 #include <stdbool.h>

@@ -5,7 +5,7 @@
 #ifndef NSD_LINE_CROSSINGS_H
 #define NSD_LINE_CROSSINGS_H
 
-#include "geometry/mesh.h"
+#include "shape/mesh.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 #include "scene/mesh_shape.h"
 
-#include "geometry/solid.h"
+#include "shape/solid.h"
 #include "scene/hull.h"
 #include "scene/line_crossings.h"
 #include "scene/thin.h"

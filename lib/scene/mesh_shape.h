@@ -8,8 +8,8 @@
 #ifndef NSD_MESH_SHAPE_H
 #define NSD_MESH_SHAPE_H
 
-#include "geometry/mesh.h"
-#include "geometry/shape.h"
+#include "shape/mesh.h"
+#include "shape/shape.h"
 
 /* s's vertices (m), faces and corners. hull: of the corners, whatever the triangles are. Returns 0,
    EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE. *by_hull: the hull may do where the surface does not. */

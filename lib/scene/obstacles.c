@@ -1,6 +1,6 @@
 #include "scene/obstacles.h"
 
-#include "geometry/surface_tree.h"
+#include "shape/surface_tree.h"
 #include "scene/line_crossings.h"
 #include "scene/mesh_shape.h"
 

@@ -9,8 +9,8 @@
 #ifndef NSD_OBSTACLES_H
 #define NSD_OBSTACLES_H
 
-#include "bodies/packing.h"
-#include "geometry/mesh.h"
+#include "state/packing.h"
+#include "shape/mesh.h"
 #include "scene/scene.h"
 
 #define OBSTACLES_SEEN ((int64_t)1 << 33) /* some minutes */

@@ -1,6 +1,6 @@
 #include "scene/random_start.h"
 
-#include "detect/neighbours.h"
+#include "contact/neighbours.h"
 #include "scene/obstacles.h"
 #include "scene/scene_height.h"
 

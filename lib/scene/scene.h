@@ -36,7 +36,7 @@
  *   { document: string, frame: integer, at_rest: true | false }      the bodies of a document
  *                                      [nsd-format(5)]: frame [-1], -1 is the last, 0 the first
  *   { import: string, frame, at_rest, types: { "1": NAME, ... }, repeats: [true | false, ...] }   the balls of a
- *                                      file of another program [import/import_file.h]: types are its numbers of
+ *                                      file of another program [convert/import_file.h]: types are its numbers of
  *                                      materials [the kind of that name; "ball" where there is one type], repeats
  *                                      along which edges its box is periodic [as it says, else none]
  *   a relative name starts at the scene
@@ -93,7 +93,7 @@
  *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
  *   with name NAME [none], velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, wear 1/Pa and all
  *   but the box load. Several walls may have one name. Mesh and polygon may have parts: "groups", of the OBJ file, or
- *   [ { name: NAME, faces: [first, last] }, ... ], triangles or segments from 0 [bodies/names.h].
+ *   [ { name: NAME, faces: [first, last] }, ... ], triangles or segments from 0 [state/names.h].
  *   Bodies stay on the side that the normal points to; in a box they stay inside.
  *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
  *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
@@ -105,10 +105,10 @@
  *   Its weight is a force like others: gravity does not pull at boundaries.
  *
  * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
- *   phase, or table [[t, way], ...]; from, until s [geometry/drive.h]
+ *   phase, or table [[t, way], ...]; from, until s [shape/drive.h]
  *
  * ROOM { walls: NAME or [NAME, ...], pressure: Pa, strain_rate: vector, center: vector, mass: kg, growth: 1/s, travel:
- *   [m, ...] }   planes that move in proportion to their distances from the center [bodies/room.h]
+ *   [m, ...] }   planes that move in proportion to their distances from the center [state/servo_box.h]
  *   pressure    a number or a signal as of a load [none: the size does not yield]
  *   strain_rate 1/s, along the axes, extension is positive [0]; with a pressure its sum is 0
  *   center      [midway between opposite walls; where the room has only one of two, on the other]
@@ -132,7 +132,7 @@
  * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
  *   radius } }, radius: SIZE, v, w, name, kind, density or mass, from [time] s, until s, count, and shape,
  *   size, orientation as of a group of bodies }
- *   [scene/flow.h]; in the plane the disc is a segment.
+ *   [scene/inlet.h]; in the plane the disc is a segment.
  *
  * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } } [anywhere], with kind [any], id integer
  *   or [integer, ...] [any], name of a group or of a pour [any], from, until s: bodies go whose centre is there.
@@ -147,9 +147,9 @@
 #ifndef NSD_SCENE_H
 #define NSD_SCENE_H
 
-#include "base/why.h"
-#include "bodies/packing.h"
-#include "geometry/solid.h"
+#include "base/failure.h"
+#include "state/packing.h"
+#include "shape/solid.h"
 #include "scene/scene_size.h"
 
 #include <stddef.h>
@@ -313,7 +313,7 @@ struct scene {
     bool has_walls;          /* else those of the first document are taken */
     double t;                /* s: the packing's time */
 
-    int32_t pours, removals;       /* inlets and outlets [scene/flow.h] */
+    int32_t pours, removals;       /* inlets and outlets [scene/inlet.h] */
     struct scene_pour *pour;       /* [pours] */
     struct scene_removal *removal; /* [removals] */
     struct scene_cell cell;

@@ -4,10 +4,10 @@
 #include "base/limits.h"
 #include "base/random.h"
 
-#include "bodies/room.h"
-#include "bodies/wrap.h"
-#include "detect/detect.h"
-#include "scene/counter.h"
+#include "state/servo_box.h"
+#include "state/wrap.h"
+#include "contact/detect.h"
+#include "base/counter.h"
 #include "scene/grains.h"
 #include "scene/orientation.h"
 #include "scene/random_start.h"
@@ -540,7 +540,7 @@ static int inherit_walls(struct packing *p, const struct scene *s, struct failur
     return 0;
 }
 
-/* kg m^2: what a room's wall adds to its inertia: its mass by the square of its lever [bodies/room.h] */
+/* kg m^2: what a room's wall adds to its inertia: its mass by the square of its lever [state/servo_box.h] */
 static int set_room_mass(struct packing *p, const struct scene *s, int32_t w, struct failure *failure)
 {
     struct load *l = &p->wall[w].load;

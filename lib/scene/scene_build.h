@@ -2,7 +2,7 @@
 #ifndef NSD_SCENE_BUILD_H
 #define NSD_SCENE_BUILD_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 #include "scene/scene.h"
 
 /*

@@ -7,7 +7,7 @@
 #ifndef NSD_SCENE_CARRY_H
 #define NSD_SCENE_CARRY_H
 
-#include "bodies/packing.h"
+#include "state/packing.h"
 #include "scene/scene.h"
 
 /* Once p has the scene's bodies, of the documents' groups in their order, walls and laws; row[g]: where group g begins.

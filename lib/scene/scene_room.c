@@ -1,4 +1,4 @@
-/* scene/scene_room.c: the room between walls, from its JSON: the load that its walls have together [bodies/room.h]. */
+/* scene/scene_room.c: the room between walls, from its JSON: the load that its walls have together [state/servo_box.h]. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
-#include "geometry/solid.h"
+#include "shape/solid.h"
 #include "scene/clump_fit.h"
 #include "scene/hull.h"
 #include "scene/mesh_shape.h"

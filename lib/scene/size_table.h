@@ -6,7 +6,7 @@
 #ifndef NSD_SIZE_TABLE_H
 #define NSD_SIZE_TABLE_H
 
-#include "base/why.h"
+#include "base/failure.h"
 #include "scene/scene_size.h"
 
 #include <stdbool.h>

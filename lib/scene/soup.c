@@ -2,7 +2,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "scene/soup.h"
 
-#include "bodies/names.h"
+#include "state/names.h"
 #include "scene/ears.h"
 
 #include <float.h>

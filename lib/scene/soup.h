@@ -8,7 +8,7 @@
 #ifndef NSD_SOUP_H
 #define NSD_SOUP_H
 
-#include "geometry/mesh.h"
+#include "shape/mesh.h"
 
 enum {
     SOUP_TRIANGLES_MOST = 1 << 24, /* of a file; as many as documents of 1 GB have */

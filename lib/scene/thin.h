@@ -3,7 +3,7 @@
 #define NSD_THIN_H
 
 #include "base/vec.h"
-#include "base/why.h"
+#include "base/failure.h"
 
 #include <stdint.h>
 

@@ -2,9 +2,9 @@
 #include "scene/time_step.h"
 
 #include "base/number.h"
-#include "bodies/room.h"
-#include "detect/detect.h"
-#include "geometry/between.h"
+#include "state/servo_box.h"
+#include "contact/detect.h"
+#include "shape/between.h"
 
 #include <stdio.h>
 #include <stdlib.h>

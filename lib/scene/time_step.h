@@ -8,13 +8,13 @@
  *
  *     a lasting acceleration a, of which a resting contact gets some in every step:
  *         a dt^2 <= 0.002 r        what a projection takes of an overlap in a step at least; as the slop of
- *                                  gravity [motion/project.h] a thousandth of a diameter, 0.3 % of the
+ *                                  gravity [step/project.h] a thousandth of a diameter, 0.3 % of the
  *                                  solid fraction, which has lengths in the third power
  *     a lasting rate of strain L, by which neighbours approach with L 2 r:
  *         L 2 r dt <= 0.002 r
  *     a passing impact at velocity v, whose overlap is taken back in the steps that follow:
  *         v dt <= 0.05 r           two that meet are then in one another by no more than the 0.1 r at which
- *                                  a run fails [detect/depth.h]
+ *                                  a run fails [contact/depth.h]
  *     a wall that turns with w, whose normals are those of the middle of the step:
  *         w dt <= 0.02             an error of (w dt)^2 / 8 of its radius
  *     a drive of frequency f, which moves by a chord in each step:

@@ -20,9 +20,9 @@
 #include "solve/anderson.h"
 
 #include "base/team.h"
-#include "problem/backend.h"
-#include "problem/device.h"
-#include "problem/exchange.h"
+#include "solve/backend.h"
+#include "solve/device.h"
+#include "solve/exchange.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
 

@@ -7,7 +7,7 @@
  * The choice rests on how fast the criterion falls, and on prices that are counted
  * [solve/prices.h].
  */
-#include "problem/exchange.h"
+#include "solve/exchange.h"
 #include "solve/anderson.h"
 #include "solve/even.h"
 #include "solve/ipm.h"

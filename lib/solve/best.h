@@ -8,7 +8,7 @@ struct best {
     double value; /* of the point kept, smaller is better; INFINITY: none is kept */
     int64_t size; /* numbers of a point */
     double *x;    /* [size] the point kept */
-    int place;    /* of it on a device [problem/device.h] */
+    int place;    /* of it on a device [solve/device.h] */
 };
 
 /* Allocates room for a point. Returns 0, or -1 when memory is short: then nothing is ever kept. */

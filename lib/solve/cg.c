@@ -20,8 +20,8 @@
  * r_t; W p includes the curvature of the discs; a step that makes the energy larger than in all of
  * the last ten is shortened; and the bounds are held for up to a hundred steps, not for one.
  */
-#include "problem/apply.h"
-#include "problem/backend.h"
+#include "solve/apply.h"
+#include "solve/backend.h"
 #include "solve/prices.h"
 #include "solve/solver.h"
 

@@ -13,7 +13,7 @@
 #ifndef NSD_FACES_H
 #define NSD_FACES_H
 
-#include "problem/delassus.h"
+#include "solve/delassus.h"
 
 #include <stdbool.h>
 

@@ -1,7 +1,7 @@
 /* solve/newton.c: the steps, and the strategy of steps and sweeps in turn [solve/newton.h]. */
 #include "solve/newton.h"
 
-#include "law/method.h"
+#include "solve/method.h"
 #include "solve/nlgs.h"
 #include "solve/prices.h"
 

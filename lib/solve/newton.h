@@ -4,7 +4,7 @@
  *
  *     Z_c(x, v) = x_c - proj(x_c - rho v_c, C) = 0,   v = W x + q + a (x - x_0)      [predbipo]
  *
- * Each contact's Z and its derivatives A and B are those of law/local_eal.h, so that a step solves
+ * Each contact's Z and its derivatives A and B are those of solve/local_eal.h, so that a step solves
  *
  *     (A + B (W + a I)) dx = -Z.
  *

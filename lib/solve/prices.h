@@ -7,7 +7,7 @@
 #ifndef NSD_PRICES_H
 #define NSD_PRICES_H
 
-#include "problem/problem.h"
+#include "solve/problem.h"
 
 /* A sweep over all contacts */
 double price_sweep(const struct problem *p);

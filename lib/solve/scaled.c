@@ -1,8 +1,8 @@
 /* solve/scaled.c: the scaled W, vectors in its units, and the natural map [solve/scaled.h]. */
 #include "solve/scaled.h"
 
-#include "problem/assembly.h"
-#include "problem/device.h"
+#include "solve/assembly.h"
+#include "solve/device.h"
 
 #include <stdlib.h>
 #include <string.h>

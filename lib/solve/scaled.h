@@ -5,7 +5,7 @@
  *     v = W x + q,   r_c = s_c x_c,   s_c = 1/sqrt(lambda_max(W_cc)),
  *
  * so that every W_cc is of order 1 whatever the masses, and x and v have the same unit, sqrt(J).
- * (v, x) satisfies the law where (u, r) does. A packing's W is assembled [problem/assembly.h].
+ * (v, x) satisfies the law where (u, r) does. A packing's W is assembled [solve/assembly.h].
  */
 #ifndef NSD_SCALED_H
 #define NSD_SCALED_H

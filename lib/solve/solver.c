@@ -2,12 +2,12 @@
 #include "solve/solver.h"
 
 #include "base/team.h"
-#include "problem/apply.h"
-#include "problem/backend.h"
-#include "problem/device.h"
-#include "problem/device_check.h"
-#include "problem/exchange.h"
-#include "problem/self_stress.h"
+#include "solve/apply.h"
+#include "solve/backend.h"
+#include "solve/device.h"
+#include "solve/device_check.h"
+#include "solve/exchange.h"
+#include "solve/self_stress.h"
 #include "solve/prices.h"
 
 #include <math.h>

@@ -10,8 +10,8 @@
 #ifndef NSD_SOLVER_H
 #define NSD_SOLVER_H
 
-#include "law/method.h"
-#include "problem/err.h"
+#include "solve/method.h"
+#include "solve/err.h"
 #include "solve/best.h"
 
 struct solver;
@@ -26,7 +26,7 @@ struct solve_opt {
     double max_seconds; /* s on the wall; 0: no limit */
     double relax; /* omega: r + omega (r_new - r), back onto the cone; 0: the solver's choice */
     int threads;
-    struct device *device; /* borrowed: makes the sweeps [problem/device.h]; NULL: the CPU does */
+    struct device *device; /* borrowed: makes the sweeps [solve/device.h]; NULL: the CPU does */
     bool every_sweep; /* evaluate the criterion after every sweep, not only when it may be met */
     bool history;     /* keep the terms of every sweep (implies every_sweep) */
     void (*progress)(int32_t sweeps, double value); /* called at each evaluation; or NULL */

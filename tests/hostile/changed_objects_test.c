@@ -5,7 +5,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): asprintf
 #include "frames.h"
 
-#include "io/frame_read.h"
+#include "file/frame_read.h"
 
 #include <math.h>
 

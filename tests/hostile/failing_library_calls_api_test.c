@@ -1,9 +1,9 @@
-/* A run in a program (api/nsd.h) when it does not get what it asks for: a call that fails leaves the run as it was
+/* A run in a program (run/nsd.h) when it does not get what it asks for: a call that fails leaves the run as it was
    [tests/support/failing_library_calls.h]. */
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): asprintf
 #include "failing_library_calls.h"
 
-#include "api/run.h"
+#include "run/run.h"
 
 static uint32_t add(uint32_t crc, const void *bytes, size_t size)
 {

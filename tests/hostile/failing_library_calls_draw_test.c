@@ -2,7 +2,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): asprintf
 #include "failing_library_calls.h"
 
-#include "detect/detect.h"
+#include "contact/detect.h"
 #include "draw/images.h"
 #include "draw/page.h"
 #include "draw/svg.h"

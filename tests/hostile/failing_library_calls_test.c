@@ -2,10 +2,10 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): asprintf
 #include "frames.h"
 
-#include "export/format.h"
-#include "export/vti.h"
-#include "io/fields_write.h"
-#include "io/frame_read.h"
+#include "convert/format.h"
+#include "convert/vti.h"
+#include "convert/fields_write.h"
+#include "file/frame_read.h"
 #include "measure/measures.h"
 
 #include <fcntl.h>

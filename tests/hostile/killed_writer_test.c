@@ -3,8 +3,8 @@
  * that crosses two pages of the file, a reader finds every frame that the sink had finished before,
  * whole, and no other.
  */
-#include "io/reader.h"
-#include "io/writer.h"
+#include "file/reader.h"
+#include "file/writer.h"
 #include "tap.h"
 
 #include <stdlib.h>

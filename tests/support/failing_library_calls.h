@@ -6,7 +6,7 @@
 #ifndef NSD_FAILING_H
 #define NSD_FAILING_H
 
-#include "hdf5/stream.h"
+#include "file/stream.h"
 #include "scene/scene_build.h"
 #include "tap.h"
 

@@ -7,11 +7,11 @@
 
 #include "failing_library_calls.h"
 
-#include "hdf5/source.h"
-#include "io/reader.h"
-#include "io/writer.h"
-#include "scene/flow.h"
-#include "solve/step.h"
+#include "file/source.h"
+#include "file/reader.h"
+#include "file/writer.h"
+#include "scene/inlet.h"
+#include "step/step.h"
 
 static struct frame frame[SCENES + 1]; /* one of each, solved; and a foreign problem, also solved */
 static char *document[SCENES + 1]; /* files that have them, with things that nsd does not know */

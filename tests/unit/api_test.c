@@ -1,5 +1,5 @@
-/* A run in a program (api/nsd.h): closed forms of what acts on it, documents, threads, bad input, calls at random. */
-#include "api/nsd.h"
+/* A run in a program (run/nsd.h): closed forms of what acts on it, documents, threads, bad input, calls at random. */
+#include "run/nsd.h"
 #include "tap.h"
 
 #include <math.h>

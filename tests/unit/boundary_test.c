@@ -1,9 +1,9 @@
 /* What must hold of boundaries: the nearest place of each shape by a search over its surface, meshes by
    all of their triangles, motions by finite differences, and motion on them by closed solutions. */
-#include "detect/detect.h"
-#include "geometry/mesh.h"
-#include "motion/move.h"
-#include "solve/step.h"
+#include "contact/detect.h"
+#include "shape/mesh.h"
+#include "step/move.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

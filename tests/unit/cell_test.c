@@ -1,10 +1,10 @@
 /* What must hold where the cell repeats: detection among images, and motion that knows no border. */
-#include "bodies/wrap.h"
-#include "detect/detect.h"
-#include "motion/move.h"
-#include "problem/assembly.h"
+#include "state/wrap.h"
+#include "contact/detect.h"
+#include "step/move.h"
+#include "solve/assembly.h"
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

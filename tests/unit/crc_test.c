@@ -1,5 +1,5 @@
 /* The checksum of documents is zlib's CRC-32, of any number of bytes from anywhere, in any pieces. */
-#include "hdf5/crc.h"
+#include "file/crc.h"
 #include "tap.h"
 
 #include <zlib.h>

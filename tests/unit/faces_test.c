@@ -1,6 +1,6 @@
 /* Contacts that repeat one another are found in W, and the system solved without them is the same. */
 #include "solve/faces.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "solve/system.h"
 #include "tap.h"
 

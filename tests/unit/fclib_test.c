@@ -1,7 +1,7 @@
 /* FCLIB problems: every stored one is read, what is written is what libfclib reads, and nothing
    wrong in a file is believed. */
-#include "hdf5/source.h"
-#include "io/fclib.h"
+#include "file/source.h"
+#include "file/fclib.h"
 #include "tap.h"
 
 #include </usr/include/fclib.h> // libfclib's own; ours stands before it in the path

@@ -1,12 +1,12 @@
 /* What must hold of loads: closed solutions, the same problem by all solvers, W by brute force, and the
    balances of energy and momentum. */
-#include "bodies/wrap.h"
-#include "detect/detect.h"
-#include "motion/move.h"
-#include "problem/assembly.h"
-#include "problem/prepare.h"
+#include "state/wrap.h"
+#include "contact/detect.h"
+#include "step/move.h"
+#include "solve/assembly.h"
+#include "solve/prepare.h"
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  * to 1e-2 of its size; bodies turned, moved and scaled. Their volumes are known. The hull must be one that a shape
  * accepts, with that volume to the noise, and the faces of the body where noise is below 1e-8.
  */
-#include "geometry/solid.h"
+#include "shape/solid.h"
 #include "scene/hull.h"
 #include "tap.h"
 

@@ -4,7 +4,7 @@
  * the units. Scenes with every kind of cell, load, law and shape are transformed, stepped, and transformed back.
  */
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* The laws beyond friction and restitution by themselves: forces are the slopes of energies, the
    damage of a bond follows its equation. */
-#include "bodies/contact_law.h"
-#include "law/rolling.h"
+#include "contact/contact_law.h"
+#include "solve/rolling.h"
 #include "tap.h"
 
 #include <math.h>

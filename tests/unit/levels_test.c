@@ -1,8 +1,8 @@
 /* tests/unit/levels_test.c: contacts by levels are visited as they are in their order, and by threads at once. */
 #include "base/team.h"
-#include "detect/detect.h"
-#include "motion/levels.h"
-#include "motion/project.h"
+#include "contact/detect.h"
+#include "step/levels.h"
+#include "step/project.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

@@ -4,7 +4,7 @@
  */
 #include "base/eigen.h"
 #define METHOD_CODE
-#include "law/method.h"
+#include "solve/method.h"
 #include "tap.h"
 
 #include <gsl/gsl_deriv.h>

@@ -1,8 +1,8 @@
 /* What is declared of OpenCL is what Khronos' headers declare, and each file of the kernels is in their text once. */
 #include "tap.h"
 
-#include "problem/opencl_api.h"
-#include "problem/opencl_text.h"
+#include "solve/opencl_api.h"
+#include "solve/opencl_text.h"
 
 #include <stdlib.h>
 #include <string.h>

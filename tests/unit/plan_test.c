@@ -1,8 +1,8 @@
 /* tests/unit/plan_test.c: a plan is kept where, and only where, a new one would be the same. */
-#include "detect/detect.h"
-#include "problem/plan.h"
+#include "contact/detect.h"
+#include "solve/plan.h"
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

@@ -3,7 +3,7 @@
  * Newton's law gains nothing it holds to the bit. Random impacts of all kinds of grains on a floor and on each other.
  */
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -1,11 +1,11 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
-#include "detect/detect.h"
-#include "problem/backend.h"
+#include "contact/detect.h"
+#include "solve/backend.h"
 #include "scene/scene_build.h"
 #include "solve/arc.h"
 #include "solve/ipm.h"
 #include "solve/nlgs.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "solve/subset.h"
 #include "tap.h"
 

@@ -2,8 +2,8 @@
  * What the tool believes of the process that reads for it: a list of objects however it is cut or
  * changed, numbers of every type, and the end of that process, whichever it dies of.
  */
-#include "hdf5/listed.h"
-#include "hdf5/source.h"
+#include "file/listed.h"
+#include "file/source.h"
 #include "tap.h"
 
 #include <math.h>

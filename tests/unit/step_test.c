@@ -1,8 +1,8 @@
 /* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
-#include "detect/detect.h"
-#include "motion/move.h"
+#include "contact/detect.h"
+#include "step/move.h"
 #include "scene/scene_build.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_rng.h>

@@ -3,11 +3,11 @@
  * the same reactions whether a problem is given by bodies, by its W, or by a W whose diagonal blocks
  * are not those of balls.
  */
-#include "detect/detect.h"
-#include "problem/backend.h"
+#include "contact/detect.h"
+#include "solve/backend.h"
 #include "scene/scene_build.h"
 #include "solve/scaled.h"
-#include "solve/step.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -6,9 +6,9 @@
  */
 #define _GNU_SOURCE
 #include "fuzz.h"
-#include "hdf5/stream.h"
-#include "io/reader.h"
-#include "io/writer.h"
+#include "file/stream.h"
+#include "file/reader.h"
+#include "file/writer.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
  * them; the first byte of the input says the dimension, the frame and what repeats.
  */
 #include "fuzz.h"
-#include "import/import_file.h"
+#include "convert/import_file.h"
 
 #include <stdlib.h>
 #include <string.h>

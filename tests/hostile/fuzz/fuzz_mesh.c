@@ -3,7 +3,7 @@
  * name the file has. What is read is made a grain, too, if it has few corners.
  */
 #include "fuzz.h"
-#include "geometry/solid.h"
+#include "shape/solid.h"
 #include "scene/mesh_file.h"
 #include "scene/mesh_shape.h"
 

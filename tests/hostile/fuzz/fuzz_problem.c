@@ -4,9 +4,9 @@
  * that passes them is solved for some sweeps.
  */
 #include "fuzz.h"
-#include "hdf5/source.h"
-#include "io/fclib.h"
-#include "solve/step.h"
+#include "file/source.h"
+#include "file/fclib.h"
+#include "step/step.h"
 
 #include <stdlib.h>
 #include <string.h>

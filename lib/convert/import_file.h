@@ -1,0 +1,33 @@
+/*
+ * convert/import_file.h: packings of other programs: LAMMPS' and LIGGGHTS' data files and dumps, Yade's tables, and
+ * ON-DEM's exchange format. A file is read by a process of its own [base/bounded.h, io/source.h], and what it says is
+ * checked as that of a document.
+ */
+#ifndef NSD_IMPORT_FILE_H
+#define NSD_IMPORT_FILE_H
+
+#include "state/packing.h"
+#include "convert/imported.h"
+
+/* Which frame of it, and what it does not say itself */
+struct import_wish {
+    int dim;       /* 2: discs in the plane z = 0 */
+    int64_t frame; /* from 0, or from the end: -1 is the last */
+    bool
+        has_repeats; /* along which edges of its box it is periodic; else as it says, or not at all */
+    bool repeats[3];
+};
+
+/*
+ * p = the balls of the file at path; ON-DEM's also have other shapes and walls. Kinds are named by the file's numbers
+ * for them, "1", "2" ..., ON-DEM's by their labels; masses as *said has
+ * it; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
+ */
+int import_file(struct packing *p, const char *path, const struct import_wish *wish,
+                struct import_said *said, struct failure *failure);
+
+/* Of n bytes with a 0 behind them, as of a file of this name, in this process: for who tests the readers */
+int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t n,
+                 const struct import_wish *wish, struct failure *failure);
+
+#endif

@@ -1,0 +1,28 @@
+/*
+ * file/contact_rows.h: the contacts in a document, /contacts [nsd-format(5)]: a block of rows for each
+ * frame that keeps its contacts.
+ */
+#ifndef NSD_CONTACT_ROWS_H
+#define NSD_CONTACT_ROWS_H
+
+#include "file/table_read.h"
+#include "file/table_write.h"
+
+/* The contacts of a document that is read */
+struct contact_rows {
+    struct source *source;
+    int64_t *step;  /* [blocks] of the frames whose contacts are kept, */
+    int64_t *start; /* [blocks] the first row of each, */
+    int64_t *count; /* [blocks] and the number of rows */
+    int64_t blocks;
+};
+
+int contact_rows_open(struct contact_rows *rows, struct source *source, struct failure *failure);
+void contact_rows_close(struct contact_rows *rows);
+/* The contacts of the frame's packing, if the document keeps them; checked (EX_DATAERR) */
+int contact_rows_read(struct contact_rows *rows, struct frame *frame, struct failure *failure);
+
+/* The frame's contacts, as the next block */
+int contact_rows_write(struct table_write *tables, const struct frame *frame, struct failure *failure);
+
+#endif

@@ -1,0 +1,15 @@
+/*
+ * file/frame_write.h: a frame as the datasets of a document [nsd-format(5), file/layout.h], in three
+ * parts: what all frames share, what belongs to this one, and the step that makes it count.
+ */
+#ifndef NSD_FRAME_WRITE_H
+#define NSD_FRAME_WRITE_H
+
+#include "file/table_write.h"
+
+int frame_write_static(struct table_write *tables, const struct frame *frame, struct failure *failure);
+int frame_write_moment(struct table_write *tables, const struct frame *frame, struct failure *failure);
+/* /particles/all/position/step, to be written last: with its step a frame counts as there. */
+int frame_write_step(struct table_write *tables, const struct frame *frame, struct failure *failure);
+
+#endif

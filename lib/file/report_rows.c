@@ -1,0 +1,232 @@
+#include "file/report_rows.h"
+
+#include "file/h5.h"
+#include "file/account_rows.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
+
+/* Terms that the balances of some packings have, and where a report says that it has them */
+static const struct {
+    const struct column *columns;
+    size_t flag; /* of a bool in struct report */
+} parts[] = {
+    { layout_bond_balance, offsetof(struct report, tied) },
+    { layout_gain_balance, offsetof(struct report, may_gain) },
+    { layout_projection_balance, offsetof(struct report, projected) },
+    { layout_peculiar_balance, offsetof(struct report, sheared) },
+};
+enum { PARTS = sizeof parts / sizeof parts[0] };
+
+static bool *part_flag(struct report *rep, int k)
+{
+    return (bool *)((char *)rep + parts[k].flag);
+}
+
+static bool part_is_there(const struct report *rep, int k)
+{
+    return *(const bool *)((const char *)rep + parts[k].flag);
+}
+
+/* The reports whose numbers in these columns are there: a killed writer's may differ. */
+static void report_rows_count_rows(struct report_rows *r, const struct column *columns)
+{
+    for (const struct column *c = columns; c->name; c++) {
+        uint64_t shape[4];
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", r->group, c->name);
+        if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+            r->solves = (int64_t)shape[0];
+    }
+}
+
+int report_rows_open(struct report_rows *r, struct source *source, struct failure *failure)
+{
+    *r = (struct report_rows){ .source = source };
+    char path[80];
+    r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
+    snprintf(path, sizeof path, "%s/step", r->group);
+    if (source_has(r->source, path)) r->solved = table_read_steps(r->source, path, &r->solves, failure);
+    uint64_t shape[4];
+    snprintf(path, sizeof path, "%s/time", r->group);
+    if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
+        r->solves = (int64_t)shape[0];
+    report_rows_count_rows(r, layout_report);
+    report_rows_count_rows(r, layout_velocity);
+    report_rows_count_rows(r, layout_balance);
+    for (int k = 0; k < PARTS; k++) report_rows_count_rows(r, parts[k].columns);
+    r->solves = account_rows_count(source, r->solves);
+    if (!failure->status) r->solves = table_read_rising(r->solved, r->solves);
+    return failure->status;
+}
+
+/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+static int check_report(const struct report *rep, const char *group, struct failure *failure)
+{
+    uint8_t converged;
+    memcpy(&converged, &rep->converged, 1);
+    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
+        rep->safeguarded < 0 || rep->gave_up < 0)
+        return failure_set(failure, EX_DATAERR, "%s: a number of things is negative", group);
+    if (converged > 1) return failure_set(failure, EX_DATAERR, "%s/converged: is %d", group, converged);
+    if (converged && !isfinite(rep->err.paper.eps_glob))
+        return failure_set(failure, EX_DATAERR, "%s: has converged with errors that are not finite", group);
+    return 0;
+}
+
+static int read_history(struct source *doc, const char *group, struct report *rep, struct failure *failure)
+{
+    uint64_t n;
+    char path[80];
+    snprintf(path, sizeof path, "%s/history", group);
+    if (!source_has(doc, path)) return 0;
+    double *h = source_read_all(doc, path, COLUMN_F64, &n, failure);
+    if (!h) return failure->status;
+    rep->history = (struct terms *)h;
+    return n == 5 * (uint64_t)rep->sweeps
+               ? 0
+               : failure_set(failure, EX_DATAERR, "%s: not of shape %d x 5", path, rep->sweeps);
+}
+
+/* Numbers of a step are finite, else it is not made; a solve of a problem without bodies may end with any errors. */
+static int report_rows_read_table(const struct report_rows *r, int64_t at, struct records records,
+                      struct failure *failure)
+{
+    return (source_has(r->source, "/particles/all") ? table_read_finite : table_read_columns)(
+        r->source, r->group, "/value", at, records, failure);
+}
+
+/* Reports from `at` on, as many as there are up to AHEAD, but for their texts. */
+static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure)
+{
+    char time[80];
+    free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
+    int64_t n = r->solves - at < AHEAD ? r->solves - at : AHEAD;
+    r->ahead.first = at, r->ahead.n = 0;
+    r->ahead.row = calloc((size_t)n, sizeof *r->ahead.row);
+    r->ahead.account = calloc((size_t)n, sizeof *r->ahead.account);
+    r->ahead.time = calloc((size_t)n, sizeof *r->ahead.time);
+    if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
+        return failure_set(failure, EX_SOFTWARE, "no memory for %s", r->group);
+    snprintf(time, sizeof time, "%s/time", r->group);
+    if (report_rows_read_table(r, at, RECORDS(layout_report, n, r->ahead.row), failure) ||
+        source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, failure) ||
+        account_rows_read(r->source, at, n, r->ahead.account, failure))
+        return failure->status;
+    for (int64_t i = 0; i < n; i++)
+        if (!isfinite(r->ahead.time[i]))
+            return failure_set(failure, EX_DATAERR, "%s: a time is not finite", time);
+    snprintf(time, sizeof time, "%s/velocity/value", r->group);
+    bool velocity = source_has(r->source, time);
+    if (velocity && report_rows_read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), failure))
+        return failure->status;
+    for (int64_t i = 0; i < n && !velocity; i++)
+        r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
+    snprintf(time, sizeof time, "%s/dissipation/value", r->group);
+    bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
+    if (balanced && report_rows_read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), failure))
+        return failure->status;
+    bool has[PARTS];
+    for (int k = 0; k < PARTS; k++) {
+        snprintf(time, sizeof time, "%s/%s/value", r->group, parts[k].columns[0].name);
+        has[k] = balanced && source_has(r->source, time);
+        if (has[k] && report_rows_read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), failure))
+            return failure->status;
+    }
+    for (int64_t i = 0; i < n; i++) {
+        r->ahead.row[i].balanced = balanced;
+        for (int k = 0; k < PARTS; k++) *part_flag(&r->ahead.row[i], k) = has[k];
+    }
+    r->ahead.n = n;
+    return 0;
+}
+
+int report_rows_read(struct report_rows *r, int64_t step, struct report *rep,
+                     struct account *account, bool *there, struct failure *failure)
+{
+    const char *group = r->group;
+    const bool alone = r->one_frame && r->solves == 1;
+    int64_t at = alone ? 0 : table_read_row(r->solved, r->solves, step);
+    *there = at >= 0;
+    if (at < 0) return 0;
+    bool is_read = at >= r->ahead.first && at < r->ahead.first + r->ahead.n;
+    if (!is_read && read_ahead(r, at, failure)) return failure->status;
+    *rep = r->ahead.row[at - r->ahead.first], *account = r->ahead.account[at - r->ahead.first];
+    if (check_report(rep, group, failure)) return failure->status;
+    rep->step = r->solved[at], rep->t = r->ahead.time[at - r->ahead.first];
+    char *method = source_text(r->source, group, "method", failure);
+    char *criterion = source_text(r->source, group, "criterion", failure);
+    rep->options = source_text(r->source, group, "options", failure);
+    snprintf(rep->method, sizeof rep->method, "%s", method ? method : "");
+    for (int c = 0; criterion && c < CRITERION_COUNT; c++)
+        if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
+    free(method), free(criterion);
+    if (failure->status || source_attribute(r->source, group, "eps",
+                                        (struct numbers){ COLUMN_F64, -1, &rep->eps }, failure))
+        return failure->status;
+    if (!(rep->eps >= 0 && isfinite(rep->eps)))
+        return failure_set(failure, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
+    return read_history(r->source, group, rep, failure);
+}
+
+void report_rows_close(struct report_rows *r)
+{
+    free(r->solved), free(r->ahead.row), free(r->ahead.account), free(r->ahead.time);
+    *r = (struct report_rows){ 0 };
+}
+
+/* ---- to a document ---- */
+
+/* One table of the balances, beside the report, whose clocks they share */
+static int write_table(struct table_write *s, const struct column *table, const struct report *rep,
+                       bool first, struct failure *failure)
+{
+    const char *solver = LAYOUT_REPORT;
+    if (table_write_columns(s, solver, "/value", RECORDS(table, 1, rep), CHUNK_FRAMES, failure))
+        return failure->status;
+    if (first && (table_write_link(s, LAYOUT_REPORT "/step", "step", solver, table, failure) ||
+                  table_write_link(s, LAYOUT_REPORT "/time", "time", solver, table, failure)))
+        return failure->status;
+    return 0;
+}
+
+static int write_balance(struct table_write *s, const struct report *rep, bool first,
+                         struct failure *failure)
+{
+    if (write_table(s, layout_balance, rep, first, failure)) return failure->status;
+    for (int k = 0; k < PARTS; k++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", LAYOUT_REPORT, parts[k].columns[0].name);
+        // a trajectory has the terms of its first report in all of them, 0 where there is no such term
+        bool has = first ? part_is_there(rep, k) : table_write_grows(s, path);
+        if (has && write_table(s, parts[k].columns, rep, first, failure)) return failure->status;
+    }
+    return 0;
+}
+
+int report_rows_write(struct table_write *s, const struct report *rep, struct failure *failure)
+{
+    const char *solver = LAYOUT_REPORT;
+    bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
+    if (table_write_columns(s, solver, "/value", RECORDS(layout_report, 1, rep), CHUNK_FRAMES,
+                            failure) ||
+        table_write_clocks(s, solver, layout_report, rep->step, rep->t, failure) ||
+        (rep->criterion == CRITERION_VELOCITY &&
+         write_table(s, layout_velocity, rep, first, failure)) ||
+        (rep->balanced && write_balance(s, rep, first, failure)))
+        return failure->status;
+    if (first &&
+        (h5_attr_text(s->file, solver, "method", rep->method, failure) ||
+         h5_attr_text(s->file, solver, "criterion", criterion_name[rep->criterion], failure) ||
+         h5_attr(s->file, solver, "eps", h5_scalar(H5T_NATIVE_DOUBLE, &rep->eps), failure) ||
+         h5_attr_text(s->file, solver, "options", rep->options ? rep->options : "{}", failure)))
+        return failure->status;
+    if (!rep->history || s->growing) return 0;
+    const hsize_t shape[2] = { (hsize_t)rep->sweeps, 5 };
+    return h5_write(s->file, LAYOUT_REPORT "/history",
+                    h5_array(H5T_NATIVE_DOUBLE, 2, shape, rep->history), "1", failure);
+}

@@ -1,0 +1,39 @@
+/*
+ * file/report_rows.h: the solver's reports in a document, /nsd/solver [nsd-format(5)]: a row for each
+ * step that was solved.
+ */
+#ifndef NSD_REPORT_ROWS_H
+#define NSD_REPORT_ROWS_H
+
+#include "file/table_read.h"
+#include "file/table_write.h"
+#include "state/account.h"
+
+/* The reports of a document that is read */
+struct report_rows {
+    struct source *source;
+    const char *group; /* where they are */
+    int64_t *solved;   /* [solves] the steps that they are on */
+    int64_t solves;
+    bool
+        one_frame; /* the document has one frame: its one report is that, for nsd-solve reports on the
+                       step that is still to be made */
+    struct {
+        struct report *row; /* [n] reports from `first` on, read at once: a question of the document
+                               takes longer than its answer; or NULL */
+        struct account *account; /* [n] */
+        double *time;            /* [n] s */
+        int64_t first, n;
+    } ahead;
+};
+
+int report_rows_open(struct report_rows *rows, struct source *source, struct failure *failure);
+void report_rows_close(struct report_rows *rows);
+/* The report on the solve that led to this step, if there is one, and the account up to there */
+int report_rows_read(struct report_rows *rows, int64_t step, struct report *report,
+                     struct account *account, bool *there, struct failure *failure);
+
+/* The next row; texts and history are written with the first. */
+int report_rows_write(struct table_write *tables, const struct report *report, struct failure *failure);
+
+#endif

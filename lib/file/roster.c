@@ -1,0 +1,232 @@
+#include "file/roster.h"
+
+#include "file/h5.h"
+#include "scene/inlet.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    CHUNKS = 256,              /* of a frame, at most as a rule */
+    LEAST_CHUNK = 128,         /* rows */
+    UNBOUNDED_LEAST = 1 << 17, /* rows, where nothing bounds a pour, */
+    UNBOUNDED_TIMES = 16       /* or as many times the first bodies */
+};
+
+/* How many bodies a pour can bring in all; infinite where the scene sets no end to it */
+static double roster_most_of(const struct scene_pour *o)
+{
+    double by_time = o->by_mass ? INFINITY : floor(o->rate * fmax(o->until - o->from, 0)) + 1;
+    return fmin(o->count, by_time);
+}
+
+void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct failure *failure)
+{
+    struct flow flow;
+    double bound = (double)p->n;
+    *most = *chunk = 0;
+    if (flow_read(&flow, p, failure)) return;
+    for (int32_t k = 0; k < flow.scene.pours; k++) bound += roster_most_of(&flow.scene.pour[k]);
+    flow_free(&flow);
+    if (isinf(bound)) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
+    bound = fmin(fmax(bound, 1), INT32_MAX);
+    double rows = fmin(fmax(bound / CHUNKS, LEAST_CHUNK), CHUNK_BODIES);
+    *chunk = (int64_t)ceil(rows);
+    *most = ((int64_t)bound + *chunk - 1) / *chunk * *chunk;
+}
+
+void roster_free(struct roster *r)
+{
+    free(r->id), free(r->radius), free(r->mass);
+    *r = (struct roster){ 0 };
+}
+
+static int roster_grow(struct roster *r, struct failure *failure)
+{
+    if (r->rows < r->room) return 0;
+    size_t room = r->room ? 2 * (size_t)r->room : 256;
+    int32_t *id = realloc(r->id, room * sizeof *id);
+    if (id) r->id = id;
+    double *radius = realloc(r->radius, room * sizeof *radius);
+    if (radius) r->radius = radius;
+    double *mass = realloc(r->mass, room * sizeof *mass);
+    if (mass) r->mass = mass;
+    if (!id || !radius || !mass) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
+    r->room = (int64_t)room;
+    return 0;
+}
+
+/* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
+static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
+                      struct failure *failure)
+{
+    while (from < r->rows && r->id[from] != p->id[i]) from++;
+    if (from < r->rows) {
+        if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
+        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's"), -1;
+    }
+    if (roster_grow(r, failure)) return -1;
+    for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
+        if (r->id[k] == p->id[i])
+            return failure_set(failure, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
+    r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
+    return r->rows++;
+}
+
+/* Has the column a dataset of [frames][rows]? That of ids says which bodies a frame has. */
+static bool roster_moves(const struct body_column *b)
+{
+    return b->traits & BODY_MOVES || b == &body_columns[BODY_id];
+}
+
+/* The tables of bodies go on with those from `first` on, the last ones of the packing. */
+static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct failure *failure)
+{
+    const hsize_t n = (hsize_t)(p->n - first);
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
+        const hsize_t shape[2] = { n, (hsize_t)c->width };
+        char path[80];
+        if (roster_moves(b) || !column_array(c, p)) continue;
+        layout_body_path(b, path);
+        if (table_write_rows(s,
+                             (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
+                                               s->chunk_bodies, column_row(c, p, first), c->units },
+                             failure))
+            return failure->status;
+    }
+    return 0;
+}
+
+int roster_enter(struct roster *r, struct table_write *s, const struct packing *p, int64_t **row,
+                 struct failure *failure)
+{
+    int64_t had = r->rows, first = p->n, at = 0;
+    *row = malloc(((size_t)p->n + 1) * sizeof **row);
+    if (!*row) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
+    for (int64_t i = 0; i < p->n; i++) {
+        (*row)[i] = roster_row_of(r, p, i, at, failure);
+        if (failure->status) return failure->status;
+        if ((*row)[i] >= had && first == p->n) first = i;
+        at = (*row)[i] + 1;
+    }
+    if (r->rows > (int64_t)s->most_bodies)
+        return failure_set(failure, EX_DATAERR,
+                       "the trajectory has rows for %lld bodies, and more were poured: give the "
+                       "pour a count, or "
+                       "begin a new trajectory",
+                       (long long)s->most_bodies);
+    int64_t chunk = (int64_t)s->chunk_bodies;
+    while (r->width < r->rows || !r->width) r->width += chunk;
+    if (first < p->n || !had) return write_new(s, p, first, failure);
+    return 0;
+}
+
+static void moving_path(const struct body_column *b, char path[80])
+{
+    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
+}
+
+/* A column of bodies that move, of body i in row[i] */
+static int write_spread(struct roster *r, struct table_write *s, const struct body_column *b,
+                        const struct packing *p, const int64_t *row, struct failure *failure)
+{
+    const struct column *c = &b->column;
+    const char *data = column_array(c, p);
+    char path[80];
+    moving_path(b, path);
+    size_t number = column_size(c->type), bytes = column_bytes(c);
+    char *all = malloc((size_t)r->width * bytes);
+    if (!all) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
+    const double none = NAN;
+    const int32_t nobody = -1;
+    const void *empty = c->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody;
+    for (size_t k = 0; k < (size_t)r->width * (size_t)c->width; k++)
+        memcpy(all + k * number, empty, number);
+    for (int64_t i = 0; i < p->n; i++)
+        memcpy(all + (size_t)row[i] * bytes, data + (size_t)i * bytes, bytes);
+    const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
+    int e = table_write_rows(
+        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, failure);
+    free(all);
+    return e;
+}
+
+int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
+                 const int64_t *row, struct failure *failure)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        if (!roster_moves(b) || !column_array(&b->column, p)) continue;
+        if (write_spread(r, s, b, p, row, failure)) return failure->status;
+    }
+    return 0;
+}
+
+/* ---- from a document ---- */
+
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure)
+{
+    uint64_t shape[4];
+    const char *ids = "/particles/all/id/value";
+    *row = NULL;
+    if (source_shape(source, "/particles/all/radius", shape) != 1 || shape[0] > INT32_MAX)
+        return failure_set(failure, EX_DATAERR, "/particles/all/radius: not a list of numbers");
+    *n = (int64_t)shape[0];
+    if (!source_has(source, ids)) return 0;
+    if (source_shape(source, ids, shape) != 2 || shape[1] > INT32_MAX)
+        return failure_set(failure, EX_DATAERR, "%s: not of shape frames x bodies", ids);
+    int64_t rows = (int64_t)shape[1];
+    int32_t *id = malloc(((size_t)rows + 1) * sizeof *id);
+    *row = calloc((size_t)rows + 1, sizeof **row);
+    *n = 0;
+    if (!id || !*row) {
+        free(id);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)rows);
+    }
+    if (!source_rows(source, ids, (struct slab){ COLUMN_I32, k, 1, rows }, id, failure))
+        for (int64_t i = 0; i < rows; i++)
+            if (id[i] >= 0) (*row)[(*n)++] = i;
+    free(id);
+    return failure->status;
+}
+
+/* A column of p's bodies, of body i from row[i]: of frame k, or of a table that all frames share */
+static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct body_column *b,
+                       struct packing *p, struct failure *failure)
+{
+    const struct column *c = &b->column;
+    const int64_t n = p->n;
+    char path[80], *out = column_array(c, p);
+    if (roster_moves(b))
+        moving_path(b, path);
+    else
+        layout_body_path(b, path);
+    if (b->traits & BODY_OPTIONAL && !source_has(s, path)) return 0;
+    uint64_t shape[4];
+    int rank = source_shape(s, path, shape);
+    const bool moving = roster_moves(b);
+    if (rank < 1 + moving) return failure_set(failure, EX_DATAERR, "%s: no dataset of bodies", path);
+    int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
+    if (rows < most || rows > INT32_MAX)
+        return failure_set(failure, EX_DATAERR, "%s: fewer rows than bodies", path);
+    size_t bytes = (size_t)c->width * column_size(c->type);
+    char *all = malloc((size_t)rows * bytes + 1);
+    if (!all) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
+    int e = moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, failure)
+                   : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, failure);
+    for (int64_t i = 0; !e && i < n; i++)
+        memcpy(out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
+    free(all);
+    return e;
+}
+
+int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
+                struct failure *failure)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, failure))
+            return failure->status;
+    }
+    return 0;
+}

@@ -1,0 +1,43 @@
+/*
+ * file/roster.h: the rows of a trajectory with inlets or outlets [nsd-format(5)]. A body has one row
+ * for ever, in the order of coming; in the frames without it the row's id is -1 and its numbers are
+ * NaN. Datasets of [frames][rows] grow in both directions, along the rows by whole chunks, so that
+ * what is on disk of earlier frames stays as it is.
+ */
+#ifndef NSD_ROSTER_H
+#define NSD_ROSTER_H
+
+#include "file/source.h"
+#include "file/table_write.h"
+
+struct roster {
+    int64_t rows, room; /* bodies that ever were; how many there is memory for */
+    int32_t *id;        /* [rows] */
+    double *radius;     /* [rows] m */
+    double *mass;       /* [rows] kg */
+    int64_t width;      /* rows that the datasets have */
+};
+
+/* The most rows that a trajectory can have that begins with this packing, and the rows of a chunk:
+   functions of the packing, whoever writes it. */
+void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struct failure *failure);
+
+/*
+ * row[p->n] = the rows of the packing's bodies; new ones are written to the tables of bodies. *row is
+ * to be freed. EX_DATAERR: these are not the bodies that were there, or too many.
+ */
+int roster_enter(struct roster *r, struct table_write *s, const struct packing *p, int64_t **row,
+                 struct failure *failure);
+/* Ids and motion, as the next frame of their datasets */
+int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
+                 const int64_t *row, struct failure *failure);
+void roster_free(struct roster *r);
+
+/* How many bodies frame k of a document has, and which rows they are; *row is to be freed. NULL: no
+   body comes or goes, the frame has them all. */
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure);
+/* The bodies in these rows of frame k, into the packing's arrays of as many */
+int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
+                struct failure *failure);
+
+#endif

@@ -1,0 +1,57 @@
+/*
+ * file/served.h: an open document, all that is in it looked at before anything of it is believed. It
+ * belongs to a process of its own (file/server.h), for no check of ours makes libhdf5 safe against
+ * hostile bytes.
+ *
+ * A document is one file: links into others, data kept in others and filters from plugins are
+ * refused. What a document does not store is not believed.
+ */
+#ifndef NSD_SERVED_H
+#define NSD_SERVED_H
+
+#include "file/h5.h"
+#include "file/object.h"
+
+/* What a walk has found under one name. */
+struct served_entry {
+    char *path;      /* absolute */
+    haddr_t address; /* of the object in the file: several names may have one */
+    hid_t set;       /* an open dataset, or -1 */
+    bool owner;      /* it is closed here, not under another name */
+    struct object object;
+    hsize_t shape[OBJECT_RANK];
+    uint64_t bytes;  /* that it holds */
+    uint64_t stored; /* of them bytes that the file has, packed or not */
+    uint64_t chunk;  /* bytes of an unpacked chunk, where it is packed */
+    bool packed;     /* by a filter */
+};
+
+/* An open document */
+struct served {
+    hid_t file;                 /* -1: none */
+    uint64_t size;              /* bytes of the document */
+    uint64_t limit;             /* bytes that its datasets may hold in all, packed data unpacked */
+    uint64_t unpacked;          /* bytes that they do hold */
+    bool chunked;               /* some dataset is in chunks, as those of a trajectory are */
+    int64_t count, room;        /* of entries */
+    struct served_entry *entry; /* what is in it, in the order of a walk by names */
+    int64_t *sorted;            /* [count] the entries by their paths */
+};
+
+/* Once in a process that serves: no plugins, no links into other files. */
+void served_start(void);
+/*
+ * Takes the file over, to be closed by served_close even after a failure here, and looks at all that
+ * is in it. limit 0: the usual one. EX_DATAERR: it is more than one file, or holds too much.
+ */
+int served_open(struct served *served, hid_t file, uint64_t size, uint64_t limit, struct failure *failure);
+void served_close(struct served *served);
+
+/* What is under this name; NULL: nothing. */
+struct served_entry *served_find(const struct served *served, const char *path, struct failure *failure);
+/* Its dataset, to be closed unless it is entry->set; -1 on failure. */
+hid_t served_set(const struct served *served, const struct served_entry *entry, struct failure *failure);
+/* Is as much stored as is wanted of the dataset's first bytes? 0, or EX_DATAERR. */
+int served_stored(const struct served_entry *entry, uint64_t bytes, struct failure *failure);
+
+#endif

@@ -1,0 +1,229 @@
+#include "file/shape_tables.h"
+
+#include "file/h5.h"
+#include "file/table_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define SHAPE "/nsd/shape"
+
+enum { PER_BYTE = 16 }; /* vertices that are seen behind a face while a byte is read */
+
+/* What all shapes have, a row each: numbers, and how many of the rows of vertices and corners */
+struct shape_tables_row {
+    int32_t form, vertices, faces, corners;
+    double round, volume, moment[3];
+};
+
+static const struct column layout_rows[] = {
+    { "form", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, form) },
+    { "vertices", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, vertices) },
+    { "faces", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, faces) },
+    { "corners", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, corners) },
+    { "round", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, round) },
+    { "volume", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, volume) },
+    { "moment", "1", COLUMN_F64, 3, offsetof(struct shape_tables_row, moment) },
+    { 0 },
+};
+
+/* ---- from a document ---- */
+
+/* The lists that follow one another in the datasets of all shapes */
+struct listing {
+    vec3 *vertex;
+    double *ball;
+    int32_t *face, *corner; /* face: its number of corners */
+    uint64_t vertices, faces, corners;
+};
+
+static int read_lists(struct source *r, struct listing *l, struct failure *failure)
+{
+    uint64_t balls, n[4];
+    if (source_shape(r, SHAPE "/vertex", n) != 2 || n[0] > INT32_MAX)
+        return failure_set(failure, EX_DATAERR, SHAPE "/vertex: not of shape vertices x 3");
+    l->vertices = n[0];
+    l->vertex = calloc((size_t)n[0] + 1, sizeof *l->vertex);
+    if (!l->vertex) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    if (source_rows(r, SHAPE "/vertex", (struct slab){ COLUMN_F64, 0, (int64_t)n[0], 3 }, l->vertex,
+                    failure))
+        return failure->status;
+    l->ball = source_read_all(r, SHAPE "/ball", COLUMN_F64, &balls, failure);
+    l->face = source_read_all(r, SHAPE "/face", COLUMN_I32, &l->faces, failure);
+    l->corner = source_read_all(r, SHAPE "/corner", COLUMN_I32, &l->corners, failure);
+    if (!failure->status && balls != l->vertices)
+        failure_set(failure, EX_DATAERR, SHAPE "/ball: not a number for each vertex");
+    return failure->status;
+}
+
+static void listing_drop(struct listing *l)
+{
+    free(l->vertex), free(l->ball), free(l->face), free(l->corner);
+}
+
+/* Where the next shape begins in the lists */
+struct shape_tables_place {
+    const struct listing *of;
+    uint64_t vertices, faces, corners;
+};
+
+/* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
+static int shape_tables_make_shape(struct source *r, struct shape *s, const struct shape_tables_row *row, struct shape_tables_place *at,
+                      int dim, struct failure *failure)
+{
+    const struct listing *l = at->of;
+    if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
+        (uint64_t)row->vertices > l->vertices - at->vertices ||
+        (uint64_t)row->faces > l->faces - at->faces ||
+        (uint64_t)row->corners > l->corners - at->corners ||
+        (row->vertices && !(l->vertex && l->ball)) || (row->faces && !l->face) ||
+        (row->corners && !l->corner))
+        return failure_set(failure, EX_DATAERR, "more vertices or faces than there are");
+    if (source_draw(r, (uint64_t)row->vertices * (uint64_t)row->faces / PER_BYTE, failure))
+        return failure->status; // of each face all vertices are behind
+    if (shape_alloc(s, row->vertices, row->faces, row->corners, failure)) return failure->status;
+    s->form = row->form, s->round = row->round, s->volume = row->volume;
+    memcpy(s->moment, row->moment, sizeof s->moment);
+    for (int32_t i = 0; i < row->vertices; i++, at->vertices++)
+        s->vertex[i] = l->vertex[at->vertices], s->ball[i] = l->ball[at->vertices];
+    for (int32_t f = 0; f < row->faces && !failure->status; f++) {
+        int32_t n = l->face[at->faces++];
+        if (n < 3 || n > s->corners - s->first[f])
+            failure_set(failure, EX_DATAERR, "a face has %d corners", n);
+        else
+            s->first[f + 1] = s->first[f] + n;
+    }
+    for (int32_t i = 0; i < row->corners; i++) s->corner[i] = l->corner[at->corners++];
+    if (failure->status || shape_finish(s, dim, failure)) shape_free(s);
+    return failure->status;
+}
+
+/* The table of shapes */
+struct shape_tables_table {
+    int32_t n;
+    const struct shape_tables_row *row; /* [n] */
+    const char *names;     /* a line each */
+    struct listing lists;
+};
+
+/* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
+static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t, struct failure *failure)
+{
+    const char *names = t->names;
+    struct shape_tables_place at = { .of = &t->lists };
+    for (int32_t k = 0; k < t->n && !failure->status; k++) {
+        struct shape s = { 0 };
+        struct failure trouble = { 0 };
+        const char *end = strchr(names, '\n');
+        if (!end || end == names)
+            return failure_set(failure, EX_DATAERR, SHAPE "@names: fewer names than shapes");
+        char *name = strndup(names, (size_t)(end - names));
+        names = end + 1;
+        shape_tables_make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
+        if (trouble.status)
+            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
+        if (trouble.status) free(name);
+        s.name = trouble.status ? NULL : name;
+        bool twice = !failure->status && name && shapes_find(&p->shapes, name) >= 0;
+        if (!failure->status && shapes_add(&p->shapes, p->dim, &s, failure)) return failure->status;
+        if (twice) failure_set(failure, EX_DATAERR, SHAPE "@names: two shapes have one name");
+    }
+    return failure->status;
+}
+
+int shape_tables_read(struct source *r, struct packing *p, struct failure *failure)
+{
+    uint64_t n[4];
+    struct shape_tables_table t = { 0 };
+    if (!source_has(r, SHAPE)) return 0;
+    if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
+        return failure_set(failure, EX_DATAERR, SHAPE "/form: not a list of shapes");
+    struct shape_tables_row *row = calloc((size_t)n[0], sizeof *row);
+    char *names = row ? source_text(r, SHAPE, "names", failure) : NULL;
+    if (!row || (!names && !failure->status)) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    t.n = (int32_t)n[0], t.row = row, t.names = names;
+    if (!failure->status && !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), failure) &&
+        !read_lists(r, &t.lists, failure))
+        make_shapes(r, p, &t, failure);
+    listing_drop(&t.lists);
+    free(row), free(names);
+    return failure->status ? failure->status : packing_alloc_shapes(p, failure);
+}
+
+/* ---- to a document ---- */
+
+static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct failure *failure)
+{
+    const hsize_t n = (hsize_t)t->n - 1, wide[2] = { n, 3 };
+    struct shape_tables_row *row = calloc((size_t)n + 1, sizeof *row);
+    double *out = calloc((size_t)n + 1, sizeof row->moment);
+    if (!row || !out) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n && row && out; k++) {
+        const struct shape *s = &t->s[k];
+        row[k - 1] = (struct shape_tables_row){ s->form,
+                                   s->vertices,
+                                   s->faces,
+                                   s->corners,
+                                   s->round,
+                                   s->volume,
+                                   { s->moment[0], s->moment[1], s->moment[2] } };
+    }
+    for (const struct column *c = layout_rows; c->name && !failure->status; c++) {
+        char path[80];
+        snprintf(path, sizeof path, SHAPE "/%s", c->name);
+        column_gather(c, (int64_t)n, row, sizeof *row, out);
+        h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
+                 c->units, failure);
+    }
+    free(row), free(out);
+    return failure->status;
+}
+
+static int write_lists(hid_t file, const struct shapes *t, struct failure *failure)
+{
+    struct listing l = { 0 };
+    for (int32_t k = 1; k < t->n; k++) {
+        const struct shape *s = &t->s[k];
+        l.vertices += (uint64_t)s->vertices, l.faces += (uint64_t)s->faces;
+        l.corners += (uint64_t)s->corners;
+    }
+    const hsize_t vertices[2] = { l.vertices, 3 }, faces = l.faces, corners = l.corners;
+    l.vertex = calloc(l.vertices + 1, sizeof *l.vertex);
+    l.ball = calloc(l.vertices + 1, sizeof *l.ball);
+    l.face = calloc(l.faces + 1, sizeof *l.face);
+    l.corner = calloc(l.corners + 1, sizeof *l.corner);
+    uint64_t v = 0, f = 0, c = 0;
+    if (!l.vertex || !l.ball || !l.face || !l.corner)
+        failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n && !failure->status; k++) {
+        const struct shape *s = &t->s[k];
+        for (int32_t i = 0; i < s->vertices; i++, v++)
+            l.vertex[v] = s->vertex[i], l.ball[v] = s->ball[i];
+        for (int32_t i = 0; i < s->faces; i++) l.face[f++] = s->first[i + 1] - s->first[i];
+        for (int32_t i = 0; i < s->corners; i++) l.corner[c++] = s->corner[i];
+    }
+    bool bad =
+        failure->status ||
+        h5_write(file, SHAPE "/vertex", h5_array(H5T_NATIVE_DOUBLE, 2, vertices, l.vertex), "1",
+                 failure) ||
+        h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
+                 failure) ||
+        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", failure) ||
+        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", failure);
+    listing_drop(&l);
+    return bad ? failure->status : 0;
+}
+
+int shape_tables_write(hid_t file, const struct packing *p, struct failure *failure)
+{
+    size_t length = 1;
+    if (p->shapes.n < 2) return 0;
+    if (shape_tables_write_rows(file, &p->shapes, failure) || write_lists(file, &p->shapes, failure)) return failure->status;
+    for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
+    char *names = calloc(length, 1), *at = names;
+    if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < p->shapes.n; k++) at += sprintf(at, "%s\n", p->shapes.s[k].name);
+    int e = h5_attr_text(file, SHAPE, "names", names, failure);
+    free(names);
+    return e;
+}

@@ -1,0 +1,49 @@
+/*
+ * mpi/rows.h: the bodies as files have them: in rows, of which each rank has a block, one rank after the
+ * other. So they come from a document, before they are dealt (mpi/subdomain.h), and so they go into one.
+ */
+#ifndef NSD_ROWS_H
+#define NSD_ROWS_H
+
+#include "mpi/subdomain.h"
+
+#include "file/layout.h"
+
+struct rows {
+    struct comm *comm;
+    int64_t all, first; /* bodies of the whole; the first row here */
+    struct packing p;   /* the rows here, until they are dealt: bodies and nothing else */
+    double mass,
+        heavy; /* at the first: kg, the sum of masses along the rows; how many are above 0 */
+};
+
+/* Where rank k's block begins; of k = ranks: all */
+static inline int64_t rows_begin(int64_t all, int ranks, int k)
+{
+    int64_t each = all / ranks, more = all % ranks;
+    return each * k + (k < more ? k : more);
+}
+
+/* The first rank's block of rows, of a packing with `all` bodies, comes to those who have them; in the others it
+   is not looked at. From row 0 on; what was there before is dropped then. Collective, as all that follows. */
+void rows_take(struct rows *r, struct comm *t, const struct packing *block, int64_t first,
+               int64_t all);
+/* They become a part's own bodies, of which the first has all else in `settings`. */
+void rows_deal(struct rows *r, struct subdomain *y, struct decomposition *space,
+               const struct packing *settings);
+void rows_free(struct rows *r);
+
+/* Columns of bodies on their way into rows */
+struct haul {
+    const struct rows *rows;
+    const struct subdomain *part; /* NULL: they have not been dealt, and lie in the rows */
+    int64_t n;                    /* rows of this rank */
+    int64_t **at;                 /* [ranks][...] which of these comes from each, in order */
+};
+
+void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y);
+/* to[n][width] = the column's numbers in the rows of this rank. */
+void haul_column(struct haul *h, const struct column *c, void *to);
+void haul_end(struct haul *h);
+
+#endif

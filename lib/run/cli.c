@@ -1,0 +1,278 @@
+#include "run/cli.h"
+
+#include "base/output.h"
+#include "file/reader.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <jansson.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdio_ext.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum {
+    MESSAGE = 8192, /* bytes of a message: names of files are at most 4096 */
+    OPTIONS = 64,   /* room for a tool's options */
+    OF_ALL = 3,     /* options of every tool */
+    LEFT = 28,      /* characters of --help's left column */
+    HELP = 1000,    /* what getopt_long returns: beyond all letters */
+    VERSION,
+    UNPACK,
+    FIRST_LONG /* + the option's index */
+};
+
+static char *history;
+static char **arguments;
+static const void *given[OPTIONS]; /* the variables that were set, NULL between */
+
+static void cli_message(const char *format, va_list ap)
+{
+    char text[MESSAGE];
+    vsnprintf(text, sizeof text, format, ap);
+    failure_plain(text);
+    progress_end();
+    fprintf(stderr, "%s: %s\n", tool.name, text);
+}
+
+void die(int status, const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    cli_message(format, ap);
+    va_end(ap);
+    if (status == EX_IOERR) __fpurge(stdout); // what comes after a piece that is missing
+    exit(status);
+}
+
+void die_usage(const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    cli_message(format, ap);
+    va_end(ap);
+    fprintf(stderr, "usage: %s [OPTION ...] %s (see --help)\n", tool.name, tool.operands);
+    exit(EX_USAGE);
+}
+
+void die_why(const struct failure *failure)
+{
+    die(failure->status, "%s", failure->text);
+}
+
+void warn(const char *format, ...)
+{
+    va_list ap;
+    va_start(ap, format);
+    cli_message(format, ap);
+    va_end(ap);
+}
+
+static bool progress_shown;
+static double between_lines; /* s; 0: only on a terminal */
+
+void progress_lines(double seconds)
+{
+    between_lines = seconds;
+}
+
+/* s of real time: when a line was shown last, or nothing yet when it was asked first */
+static double progress_last;
+
+bool progress_due(void)
+{
+    struct timespec t;
+    bool terminal = isatty(STDERR_FILENO);
+    if (!terminal && !(between_lines > 0)) return false;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    double now = (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    if (progress_last == 0) progress_last = now; // what is done at once needs no line
+    if (now - progress_last < (terminal ? 0.1 : between_lines)) return false;
+    progress_last = now;
+    return true;
+}
+
+void progress_now(const char *format, ...)
+{
+    bool terminal = isatty(STDERR_FILENO);
+    va_list ap;
+    va_start(ap, format);
+    fprintf(stderr, terminal ? "\r\033[K%s: " : "%s: ", tool.name);
+    vfprintf(stderr, format, ap);
+    va_end(ap);
+    if (!terminal) fputc('\n', stderr);
+    progress_shown = terminal;
+}
+
+void progress_end(void)
+{
+    if (progress_shown) fprintf(stderr, "\r\033[K");
+    progress_shown = false;
+}
+
+static bool stdout_named; /* a file that had a name when the tool began */
+
+void finish_stdout(void)
+{
+    bool bad = ferror(stdout), removed = stdout_named && output_removed(STDOUT_FILENO);
+    if (bad) // errno is of something else
+        die(EX_IOERR, "standard output: not all was written (disk full?)");
+    if (fflush(stdout) || (fclose(stdout) && errno != EBADF))
+        die(EX_IOERR, "standard output: %s", strerror(errno));
+    if (removed) die(EX_IOERR, "standard output: another program has removed it");
+}
+
+const char *cli_history(void)
+{
+    return history;
+}
+
+char **cli_arguments(void)
+{
+    return arguments;
+}
+
+bool cli_given(const void *to)
+{
+    for (int k = 0; k < OPTIONS; k++)
+        if (given[k] == to) return true;
+    return false;
+}
+
+/* The words of a choice, "a|b|c", for --help. */
+static const char *cli_words(const struct cli_option *o)
+{
+    static char text[200];
+    option_words(o, text, sizeof text);
+    return text;
+}
+
+/* "  -m, --method a|b|c      help [default]", and a line for each choice that explains itself */
+static void help_option(const struct cli_option *o)
+{
+    char left[240], letter[5] = "    ";
+    if (o->letter) snprintf(letter, sizeof letter, "-%c, ", o->letter);
+    const char *arg = o->choice ? cli_words(o) : o->arg ? o->arg : "";
+    snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, *arg ? " " : "", arg);
+    if (strlen(left) > LEFT - 1)
+        printf("  %s\n%*s", left, LEFT + 4, "");
+    else
+        printf("  %-*s  ", LEFT, left);
+    printf(o->usual ? "%s [%s]\n" : "%s\n", o->help, o->usual ? o->usual(o->to) : "");
+    for (int k = 0; o->choice && o->choice(k).name; k++)
+        if (o->choice(k).help) printf("%8s%-8s  %s\n", "", o->choice(k).name, o->choice(k).help);
+}
+
+static void help(void)
+{
+    printf("usage: %s [OPTION ...] %s\n\n%s\n", tool.name, tool.operands, tool.about);
+    for (const struct cli_option *const *t = tool.tables; *t; t++) {
+        if ((*t)->kind != CLI_END) printf("\n");
+        for (const struct cli_option *o = *t; o->kind; o++) help_option(o);
+    }
+    printf("\n  %-*s  accept documents that unpack to GB [64 times their size, >= 0.067]\n", LEFT,
+           "    --unpack GB");
+    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "    --help", LEFT,
+           "    --version");
+    if (tool.more) printf("\n%s", tool.more);
+    printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
+    finish_stdout();
+    exit(0);
+}
+
+/* -o -: standard output, as without the option; a file of this name is ./- */
+static bool is_standard_output(const struct cli_option *o, const char *text)
+{
+    return o->letter == 'o' && o->kind == CLI_TEXT && !strcmp(text, "-");
+}
+
+/* Sets the option and returns its value for the history. */
+static json_t *cli_set(const struct cli_option *o, const char *text)
+{
+    struct failure failure = { 0 };
+    if (option_set(o, o->to, text, &failure)) die_usage("%s", failure.text);
+    const struct cli_every *e = o->to;
+    switch (o->kind) {
+    case CLI_FLAG:
+    case CLI_UNFLAG:
+        return json_true();
+    case CLI_TEXT:
+    case CLI_CHOICE:
+        return json_string(text);
+    case CLI_EVERY:
+        return e->steps ? json_integer(e->steps) : json_string(text);
+    case CLI_INT:
+        return json_integer(*(int64_t *)o->to);
+    default:
+        return json_real(*(double *)o->to);
+    }
+}
+
+/* Of every tool, for it is every reader's: how much a packed document may hold */
+static double gigabytes;
+static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
+                                          "GB",     .max = 1e6, .silent = true };
+
+int cli_parse(int argc, char **argv)
+{
+    struct option lng[OPTIONS + OF_ALL + 1] = { { "help", 0, NULL, HELP },
+                                                { "version", 0, NULL, VERSION },
+                                                { "unpack", 1, NULL, UNPACK } };
+    const struct cli_option *at[OPTIONS];
+    char letters[2 * OPTIONS + 2] = ":";
+    int n = 0;
+    for (const struct cli_option *const *t = tool.tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
+            at[n] = o;
+            bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
+            int wants = flag ? no_argument : required_argument;
+            lng[n + OF_ALL] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+            if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
+        }
+    json_t *value[OPTIONS] = { NULL };
+    int c;
+    stdout_named = !output_removed(STDOUT_FILENO);
+    size_t size = ((size_t)argc + 1) * sizeof *argv;
+    if (!(arguments = malloc(size))) die(EX_SOFTWARE, "no memory");
+    memcpy(arguments, argv, size);
+    opterr = 0;
+    while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
+        if (c == HELP) help();
+        if (c == UNPACK) {
+            cli_set(&unpack, optarg);
+            reader_unpack(1e9 * gigabytes);
+            continue;
+        }
+        if (c == VERSION) {
+            printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
+            finish_stdout();
+            exit(0);
+        }
+        if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
+        if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
+        if (c == '?') die_usage("%s: no such option", argv[optind - 1]);
+        int k = c - FIRST_LONG;
+        for (int i = 0; c < HELP && i < n; i++)
+            if (at[i]->letter == c) k = i;
+        json_decref(value[k]);
+        value[k] = cli_set(at[k], optarg);
+        given[k] = at[k]->to;
+        if (!is_standard_output(at[k], optarg)) continue;
+        json_decref(value[k]);
+        value[k] = NULL, given[k] = NULL, *(const char **)at[k]->to = NULL;
+    }
+    json_t *options = json_object();
+    for (int i = 0; i < n; i++) {
+        if (value[i] && !at[i]->silent) json_object_set(options, at[i]->name, value[i]);
+        json_decref(value[i]);
+    }
+    json_t *line = json_pack("{s:s, s:s, s:o}", "command", tool.name, "version", NSD_VERSION,
+                             "options", options);
+    history = json_dumps(line, JSON_COMPACT);
+    json_decref(line);
+    if (!history) die(EX_SOFTWARE, "no memory");
+    return optind;
+}

@@ -1,0 +1,103 @@
+#include "run/rollback.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void rollback_free(struct rollback *u)
+{
+    free(u->x), free(u->v), free(u->w), free(u->q), free(u->image), free(u->wall), free(u->recall);
+    if (u->whole) packing_free(&u->was), control_free(&u->acts);
+    *u = (struct rollback){ 0 };
+}
+
+static int rollback_no_memory(struct failure *failure)
+{
+    return failure_set(failure, EX_SOFTWARE, "no memory for the state before a step");
+}
+
+/* Memory for the parts of p that a step changes */
+static int rollback_make_room(struct rollback *u, const struct packing *p, struct failure *failure)
+{
+    size_t n = (size_t)p->n + 1;
+    if (!u->x || u->n != p->n || u->walls != p->walls || !u->image != !p->image) {
+        rollback_free(u);
+        u->recall = NULL; // as it is; the analyzer loses sight of it
+        u->n = p->n, u->walls = p->walls;
+        u->x = malloc(n * sizeof *u->x), u->v = malloc(n * sizeof *u->v);
+        u->w = malloc(n * sizeof *u->w), u->q = malloc(n * sizeof *u->q);
+        u->wall = malloc(((size_t)p->walls + 1) * sizeof *u->wall);
+        u->image = p->image ? malloc(n * sizeof *u->image) : NULL;
+    }
+    if (!u->recall || u->room < p->memory.n) {
+        int64_t room = p->memory.n + p->memory.n / 2;
+        struct recall *more = realloc(u->recall, ((size_t)room + 1) * sizeof *more);
+        if (!more) return rollback_free(u), rollback_no_memory(failure);
+        u->recall = more, u->room = room;
+    }
+    if (u->x && u->v && u->w && u->q && u->wall && u->recall && (u->image || !p->image)) return 0;
+    rollback_free(u);
+    return rollback_no_memory(failure);
+}
+
+/* Does a step change more than places and velocities? */
+static bool changes_more(const struct packing *p)
+{
+    return packing_varies(p) || p->law;
+}
+
+int rollback_take(struct rollback *u, const struct packing *p, const struct control *acts, struct failure *failure)
+{
+    size_t n = (size_t)p->n;
+    if (u->whole) rollback_free(u);
+    if (changes_more(p)) {
+        rollback_free(u);
+        if (packing_copy(&u->was, p, failure)) return u->was = (struct packing){ 0 }, failure->status;
+        if (packing_varies(p) && control_copy(&u->acts, acts, p->walls, failure))
+            return packing_free(&u->was), failure->status;
+        u->whole = true;
+        return 0;
+    }
+    if (rollback_make_room(u, p, failure)) return failure->status;
+    memcpy(u->x, p->x, n * sizeof *u->x), memcpy(u->v, p->v, n * sizeof *u->v);
+    memcpy(u->w, p->w, n * sizeof *u->w), memcpy(u->q, p->q, n * sizeof *u->q);
+    if (p->walls) memcpy(u->wall, p->wall, (size_t)p->walls * sizeof *u->wall);
+    if (p->image) memcpy(u->image, p->image, n * sizeof *u->image);
+    if (p->memory.n) memcpy(u->recall, p->memory.recall, (size_t)p->memory.n * sizeof *u->recall);
+    u->was = *p;
+    return 0;
+}
+
+/* The numbers of `was` go into the arrays of p, which go into was: they stay where they are. */
+static void keep_places(struct packing *was, struct packing *p)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        void *stays = column_array(&b->column, p), *from = column_array(&b->column, was);
+        if (!stays || !from) continue;
+        memcpy(stays, from, (size_t)was->n * column_bytes(&b->column));
+        column_set_array(&b->column, p, from), column_set_array(&b->column, was, stays);
+    }
+}
+
+void rollback_back(struct rollback *u, struct packing *p, struct control *acts)
+{
+    size_t n = (size_t)u->n;
+    if (u->whole) {
+        const bool varies = packing_varies(&u->was);
+        if (!varies) keep_places(&u->was, p);
+        packing_free(p);
+        *p = u->was;
+        if (varies)
+            control_free(acts), *acts = u->acts; // else a step that fails leaves them as they are
+        u->whole = false, u->was = (struct packing){ 0 }, u->acts = (struct control){ 0 };
+        return;
+    }
+    memcpy(p->x, u->x, n * sizeof *u->x), memcpy(p->v, u->v, n * sizeof *u->v);
+    memcpy(p->w, u->w, n * sizeof *u->w), memcpy(p->q, u->q, n * sizeof *u->q);
+    if (u->walls) memcpy(p->wall, u->wall, (size_t)u->walls * sizeof *u->wall);
+    if (p->image) memcpy(p->image, u->image, n * sizeof *u->image);
+    p->step = u->was.step, p->t = u->was.t, p->t0 = u->was.t0, p->step0 = u->was.step0;
+    p->dt = u->was.dt, p->halved = u->was.halved, p->cell = u->was.cell;
+    free(p->memory.recall); // another than it was, perhaps
+    p->memory = (struct memory){ u->was.memory.on, u->was.memory.n, u->room, u->recall };
+    u->recall = NULL, u->room = 0;
+}

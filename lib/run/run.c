@@ -1,0 +1,426 @@
+/* run/run.c: a run: made, set, stepped and closed. */
+#include "run/run.h"
+
+#include "run/document.h"
+#include "base/number.h"
+#include "base/team.h"
+#include "convert/scene_file.h"
+#include "step/adapt.h"
+#include "solve/err.h"
+#include "scene/scene_build.h"
+
+#include <errno.h>
+#include <float.h>
+#include <gsl/gsl_errno.h>
+#include <jansson.h>
+#include <libgen.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- reasons ---- */
+
+static _Thread_local struct failure of_thread;
+
+struct failure *run_why_of_thread(void)
+{
+    of_thread = (struct failure){ 0 };
+    return &of_thread;
+}
+
+struct failure *run_why(struct nsd_run *r)
+{
+    if (!r) {
+        failure_set(run_why_of_thread(), NSD_USAGE, "there is no run: it was closed, or never made");
+        return NULL;
+    }
+    r->failure = (struct failure){ 0 };
+    if (!process_owns(r->maker)) {
+        failure_set(&r->failure, NSD_USAGE,
+                "the run belongs to process %lld, of which this one is a copy by fork(): make "
+                "another run here",
+                (long long)r->maker);
+        return NULL;
+    }
+    team_set_size((int)r->options.threads);
+    return &r->failure;
+}
+
+const char *nsd_error(const struct nsd_run *r)
+{
+    return r ? r->failure.text : of_thread.text;
+}
+
+const char *nsd_version(void)
+{
+    return NSD_VERSION;
+}
+
+/* ---- made ---- */
+
+static struct nsd_run *new_run(struct failure *failure)
+{
+    struct nsd_run *r = calloc(1, sizeof *r);
+    const pid_t maker = process_begin();
+    if (!r) return failure_set(failure, NSD_SOFTWARE, "no memory for a run"), NULL;
+    r->maker = maker;
+    r->f.packed = true;
+    r->options.threads = 1, r->options.substeps = SUBSTEPS_MOST;
+    r->asked = (struct asked)ASKED_DEFAULT;
+    return r;
+}
+
+/* The run with its packing: what it needs before the first step */
+static int run_begin(struct nsd_run *r, struct failure *failure)
+{
+    struct packing *p = &r->f.packing;
+    p->events.n = 0; // they belong to the frame that was read
+    if (control_take(&r->acts, p, failure)) return failure->status;
+    external_force_forget(&p->outside);
+    if (flow_read(&r->flow, p, failure)) return r->flow = (struct flow){ 0 }, failure->status;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->id[i] >= r->next_id) r->next_id = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
+    if (p->first_id > r->next_id) r->next_id = p->first_id;
+    return packing_check(p, failure);
+}
+
+/* What all constructors begin with: what it is to put its reason into; NULL: there is no place for the run, which is said. */
+static struct failure *place_for(struct nsd_run **run)
+{
+    struct failure *failure = run_why_of_thread();
+    if (run) return *run = NULL, failure;
+    failure_set(failure, NSD_USAGE, "there is no place for the run");
+    return NULL;
+}
+
+/* What all constructors end with */
+static int run_done(struct nsd_run **out, struct nsd_run *r, struct failure *failure)
+{
+    if (r && !failure->status) run_begin(r, failure);
+    if (failure->status) nsd_close(&r);
+    *out = r;
+    return failure->status;
+}
+
+static int build(struct nsd_run *r, const char *text, size_t n, const char *name,
+                 const char *folder, struct failure *failure)
+{
+    struct scene scene;
+    process_lock(); // a scene may take bodies from documents
+    if (!scene_file_parse(&scene, text, n, name, folder, failure)) {
+        if (scene_build(&r->f.packing, &scene, folder, failure)) r->f.packing = (struct packing){ 0 };
+        scene_free(&scene);
+    }
+    process_unlock();
+    return failure->status;
+}
+
+int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
+{
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
+    if (!text) return failure_set(failure, NSD_USAGE, "there is no text of a scene");
+    struct nsd_run *r = new_run(failure);
+    if (r) build(r, text, strlen(text), NULL, folder, failure);
+    return run_done(run, r, failure);
+}
+
+int nsd_from_scene_file(struct nsd_run **run, const char *path)
+{
+    struct failure *failure = place_for(run);
+    size_t n = 0;
+    if (!failure) return NSD_USAGE;
+    if (!path) return failure_set(failure, NSD_USAGE, "there is no path of a scene");
+    FILE *f = fopen(path, "re");
+    if (!f) return failure_set(failure, NSD_NO_INPUT, "%.200s: %s", path, strerror(errno));
+    char *text = scene_file_slurp(f, path, &n, failure), *copy = strdup(path);
+    fclose(f);
+    struct nsd_run *r = NULL;
+    if (text && !copy) failure_set(failure, NSD_SOFTWARE, "%.200s: no memory", path);
+    if (text && copy && (r = new_run(failure))) build(r, text, n, path, dirname(copy), failure);
+    free(text), free(copy);
+    return run_done(run, r, failure);
+}
+
+int nsd_from_document(struct nsd_run **run, const char *path)
+{
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
+    if (!path || !strcmp(path, "-"))
+        return failure_set(failure, NSD_USAGE, "a document has a path; standard input is the program's");
+    struct nsd_run *r = new_run(failure);
+    process_lock();
+    if (r) document_read_file(&r->f, path, failure);
+    process_unlock();
+    return run_done(run, r, failure);
+}
+
+int nsd_from_memory(struct nsd_run **run, const void *document, size_t size)
+{
+    struct failure *failure = place_for(run);
+    if (!failure) return NSD_USAGE;
+    if (!document) return failure_set(failure, NSD_USAGE, "there is no document");
+    struct nsd_run *r = new_run(failure);
+    process_lock();
+    if (r) document_read(&r->f, document, size, failure);
+    process_unlock();
+    return run_done(run, r, failure);
+}
+
+int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
+                    const struct nsd_bodies *bodies)
+{
+    struct failure *failure = place_for(run);
+    struct nsd_run *r;
+    if (!failure) return NSD_USAGE;
+    if (nsd_from_scene(&r, scene, folder)) return failure->status;
+    if (r->f.packing.n)
+        failure_set(failure, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
+    else
+        run_add(r, bodies, NULL, failure);
+    r->other_bodies = false;
+    if (failure->status) nsd_close(&r);
+    *run = r;
+    return failure->status;
+}
+
+void nsd_close(struct nsd_run **run)
+{
+    struct nsd_run *r = run ? *run : NULL;
+    if (!r) return;
+    *run = NULL;
+    if (!process_owns(r->maker))
+        return; // another thread may have been changing it as this process began
+    nsd_finish(r);
+    if (r->solved) r->f.report.options = NULL;
+    free(r->option_json);
+    process_lock();
+    frame_free(&r->f);
+    process_unlock();
+    contacts_free(&r->spare);
+    step_forget(&r->memory);
+    neighbours_free(&r->ahead);
+    flow_free(&r->flow);
+    rollback_free(&r->undo), control_free(&r->acts), external_force_free(&r->last);
+    frame_memory_free(&r->first), frame_memory_free(&r->before);
+    for (int k = 0; k < MADE_MOST; k++) free(r->made[k]);
+    free(r->text);
+    free(r);
+}
+
+/* ---- options ---- */
+
+static const struct cli_option threads = { CLI_INT, .name = "threads", .to = &options.threads,
+                                           .min = 1, .max = 1024 };
+static const struct cli_option warm = { CLI_FLAG, .name = "warm", .to = &options.warm };
+
+static const struct cli_option substeps = { CLI_INT, .name = "substeps", .to = &options.substeps,
+                                            .min = 1, .max = 1e6 };
+
+static const struct cli_option *option_named(const char *name)
+{
+    if (!strcmp(name, substeps.name)) return &substeps;
+    if (!strcmp(name, threads.name)) return &threads;
+    if (!strcmp(name, warm.name)) return &warm;
+    for (int t = 0; t < 2; t++)
+        for (const struct cli_option *o = t ? options_detect : options_solve; o->kind; o++)
+            if (!strcmp(o->name, name)) return o;
+    return NULL;
+}
+
+/* "1e-4", "auto:0.01" */
+static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failure)
+{
+    static const char word[] = "auto:";
+    struct packing *p = &r->f.packing;
+    bool adapts = !strncmp(text, word, sizeof word - 1);
+    const char *number = adapts ? text + sizeof word - 1 : text;
+    char *end;
+    double x = number_read(number, &end);
+    if (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX)))
+        return failure_set(
+            failure, NSD_USAGE,
+            "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
+            "of a radius above 0 and at most 1",
+            text);
+    if (r->out) return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
+    if (adapts) return r->tol = x, p->adapts = true, 0;
+    const struct packing was = *p;
+    p->halved = 0;
+    packing_set_dt(p, x);
+    if (packing_check_clock(p, failure)) {
+        p->dt = was.dt, p->halved = was.halved, p->t0 = was.t0, p->step0 = was.step0;
+        return failure->status;
+    }
+    memory_scale(&p->memory, x / was.dt);
+    r->tol = 0, p->adapts = false, p->tolerance = 0;
+    return 0;
+}
+
+static int run_set_flag(bool *to, const char *name, const char *value, struct failure *failure)
+{
+    const struct cli_option o = { CLI_FLAG, .name = name };
+    return option_set(&o, to, value, failure);
+}
+
+static int set_option(struct nsd_run *r, const char *name, const char *value, struct failure *failure)
+{
+    if (!strcmp(name, "dt")) return run_set_dt(r, value, failure);
+    if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, failure);
+    if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, failure);
+    if (asked_has(name)) return asked_set(&r->asked, name, value, failure);
+    const struct cli_option *o = option_named(name);
+    if (!o) return failure_set(failure, NSD_USAGE, "%.60s: no such option", name);
+    struct options asked = r->options;
+    if (option_set(o, options_member(&asked, o->to), value, failure)) return failure->status;
+    options_give(&asked, o->to);
+    if (!strcmp(name, "theta") && r->out && asked.theta != r->f.packing.theta)
+        return failure_set(failure, NSD_USAGE, "theta: a trajectory has one: nsd_finish() ends it");
+    r->options = asked;
+    r->chosen = false;
+    return 0;
+}
+
+int nsd_set(struct nsd_run *r, const char *option, const char *value)
+{
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (!option || !value) return failure_set(failure, NSD_USAGE, "an option has a name and a value");
+    if (set_option(r, option, value, failure) && !strncmp(failure->text, "--", 2))
+        memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
+    return failure->status;
+}
+
+int run_choose(struct nsd_run *r, struct failure *failure)
+{
+    struct packing *p = &r->f.packing;
+    if (r->chosen) return 0;
+    if (options_names(&r->options, failure)) return failure->status;
+    struct step_opt o = options_step_of(&r->options, p->dt, false);
+    char *text = options_json_of(&r->options, &o);
+    if (!text) return failure_set(failure, NSD_SOFTWARE, "no memory for the options");
+    if (options_has(&r->options, &options.theta)) p->theta = r->options.theta;
+    p->overlap = options_overlap_of(&r->options, p, false);
+    free(r->option_json);
+    r->option_json = text, r->o = o;
+    if (r->solved) r->f.report.options = text;
+    r->chosen = r->f.stale = true;
+    return 0;
+}
+
+/* ---- steps ---- */
+
+static void swap_forces(struct external_force *a, struct external_force *b)
+{
+    const struct external_force was = *a;
+    a->force = b->force, a->torque = b->torque, a->push = b->push, a->most = b->most;
+    b->force = was.force, b->torque = was.torque, b->push = was.push, b->most = was.most;
+}
+
+/* dt of the step to come */
+static int adapt(struct nsd_run *r, struct failure *failure)
+{
+    struct packing *p = &r->f.packing;
+    double had = p->dt;
+    const double tol = r->tol > 0 ? r->tol : p->tolerance;
+    if (!(tol > 0)) return 0;
+    if (adapt_step(p, tol, &r->ahead, failure)) return failure->status;
+    r->o.solve.local.newton_abs *= p->dt / had;
+    return 0;
+}
+
+/* Its contacts are r->spare, its report *rep. */
+static int run_advance(struct nsd_run *r, struct report *rep, struct failure *failure)
+{
+    struct packing *p = &r->f.packing;
+    bool changed = false;
+    if (adapt(r, failure) || flow_step(&r->flow, p, NULL, &changed, failure)) return failure->status;
+    if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
+    if (control_begin(&r->acts, p, failure)) return failure->status;
+    if (step_advance(p, &r->spare, &r->memory, &r->o, rep, failure)) return failure->status;
+    if (report_made(rep)) return 0;
+    char text[160];
+    report_says_end(rep, text, sizeof text);
+    return failure_set(failure, NSD_DIVERGED, "%s: the bodies have not moved", text);
+}
+
+/* Puts the step in front of the reason, unless it is there. */
+static void name_step(int64_t step, struct failure *failure)
+{
+    char text[sizeof failure->text];
+    if (!strncmp(failure->text, "step ", 5)) return;
+    memcpy(text, failure->text, sizeof text);
+    snprintf(failure->text, sizeof failure->text, "step %lld: %.360s", (long long)step, text);
+}
+
+static int step_once(struct nsd_run *r, struct failure *failure)
+{
+    struct packing *p = &r->f.packing;
+    struct report rep = { 0 };
+    const struct step_opt o = r->o;
+    if (r->solved) rep = r->f.report;
+    rep.options = r->option_json;
+    if (rollback_take(&r->undo, p, &r->acts, failure)) return failure->status;
+    bool whole = r->undo.whole;
+    if (!whole) swap_forces(&p->outside, &r->last);
+    if (run_advance(r, &rep, failure)) {
+        name_step(r->undo.was.step + 1, failure);
+        if (!whole) swap_forces(&p->outside, &r->last);
+        rollback_back(&r->undo, p, &r->acts);
+        step_forget(&r->memory), neighbours_free(&r->ahead);
+        r->o = o;
+        return failure->status;
+    }
+    struct contacts had = r->f.contacts;
+    r->f.contacts = r->spare, r->spare = had;
+    if (!r->solved) report_free(&r->f.report);
+    r->f.report = rep, r->solved = true;
+    r->f.detected = r->f.reported = r->f.moved = true;
+    account_add(&r->f.account, &rep), account_add(&r->account, &rep);
+    control_end(&r->acts, p->walls);
+    return 0;
+}
+
+int nsd_step(struct nsd_run *r, int64_t n)
+{
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    if (n < 0) return failure_set(failure, NSD_USAGE, "%lld steps cannot be made", (long long)n);
+    if (n && run_choose(r, failure)) return failure->status;
+    for (int64_t k = 0; k < n && !failure->status; k++) step_once(r, failure);
+    return failure->status;
+}
+
+/* s: what a time may differ from that of its step, as nsd-step has it */
+static double slack(const struct packing *p, double t)
+{
+    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
+}
+
+int nsd_until(struct nsd_run *r, double t)
+{
+    struct failure *failure = run_why(r);
+    if (!failure) return NSD_USAGE;
+    const struct packing *p = &r->f.packing;
+    if (!isfinite(t)) return failure_set(failure, NSD_USAGE, "a time of %g s is never reached", t);
+    if (!((t - p->t) / p->dt < 1e15))
+        return failure_set(failure, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t, p->dt);
+    if (run_choose(r, failure)) return failure->status;
+    while (!failure->status && p->t < t - slack(p, t)) step_once(r, failure);
+    return failure->status;
+}
+
+int nsd_resizes(const struct nsd_run *r)
+{
+    return r && packing_varies(&r->f.packing);
+}
+
+void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s)
+{
+    packing_free(&r->f.packing), contacts_free(&r->f.contacts);
+    r->f.packing = *p, r->f.contacts = *s;
+    step_forget(&r->memory), neighbours_free(&r->ahead);
+    external_force_free(&r->last);
+    r->other_bodies = true;
+}

@@ -1,0 +1,18 @@
+/*
+ * shape/gjk.h: the distance of two convex cores [Gilbert, Johnson & Keerthi 1988], with the places
+ * of both that are nearest. What points, segments and hulls that do not overlap need; libccd, which
+ * is at hand, says only whether they overlap.
+ */
+#ifndef NSD_GJK_H
+#define NSD_GJK_H
+
+#include "shape/core.h"
+
+struct nearest {
+    double distance; /* m; 0: they overlap, or touch */
+    vec3 a, b;       /* m: the nearest places of either */
+};
+
+struct nearest gjk_nearest(const struct core *a, const struct core *b);
+
+#endif

@@ -1,0 +1,82 @@
+/*
+ * shape/shape.h: the shapes that grains have, a table from which each grain takes a row.
+ *
+ * A shape is a ball (row 0 of every table), a clump of balls, a capsule, or a convex hull: in space a
+ * polyhedron, in the plane a polygon. Capsules and hulls are rounded: all points within `round` of
+ * their core. Everything is described in the principal axes about the centre of mass, in units of the
+ * radius of the ball around it: a grain of `radius` r reaches r from its centre, whatever its shape,
+ * and is the shape r times as large.
+ */
+#ifndef NSD_SHAPE_H
+#define NSD_SHAPE_H
+
+#include "base/vec.h"
+#include "base/failure.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum shape_form { SHAPE_BALL, SHAPE_CLUMP, SHAPE_CAPSULE, SHAPE_HULL, SHAPE_FORMS };
+
+enum {
+    SHAPE_VERTICES_MOST = 4096, /* of one shape, so that keys of contacts are 32 bits wide */
+    SHAPES_MOST = 1 << 16       /* in a table */
+};
+
+struct shape_edge {
+    int32_t tail, head;  /* vertices, counterclockwise around the face `left` */
+    int32_t left, right; /* faces; in the plane both 0 */
+};
+
+struct shape {
+    char *name;
+    int32_t form;
+    double round;     /* of capsules and hulls; 0: sharp */
+    double volume;    /* of the shape with radius 1; in the plane its area */
+    double moment[3]; /* principal moments of inertia of mass 1 and radius 1; in the plane [2] */
+
+    int32_t vertices;
+    vec3 *vertex; /* [vertices] of a clump the balls' centres; of a capsule the two ends */
+    double *ball; /* [vertices] radii of a clump's balls; of other shapes `round` */
+
+    /* Of a hull: its faces, corners counterclockwise seen from outside; in the plane one, from +z. */
+    int32_t faces, corners;
+    int32_t *first;  /* [faces + 1] face f has corner[first[f]] .. corner[first[f + 1] - 1] */
+    int32_t *corner; /* [corners] vertices */
+
+    /* What follows from these, by shape_finish() */
+    vec3 *normal; /* [faces] outward unit normals; in the plane [vertices], of the sides */
+    int32_t edges;
+    struct shape_edge *edge; /* [edges] in the plane edge k begins at the k-th corner */
+};
+
+struct shapes {
+    int32_t n;       /* 0: all grains are balls */
+    int32_t room;    /* rows that the arrays below have memory for */
+    struct shape *s; /* [n] s[0] is the ball */
+    int32_t *sorted; /* [n] rows by their names */
+};
+
+void shapes_free(struct shapes *t);
+/* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
+int shapes_copy(struct shapes *to, const struct shapes *from, struct failure *failure);
+/* A new last row, which takes what *s owns, also where it fails; before the first one comes the ball.
+   Returns 0, EX_DATAERR where there are too many, or EX_SOFTWARE. */
+int shapes_add(struct shapes *t, int dim, struct shape *s, struct failure *failure);
+/* The row with this name; -1: none */
+int32_t shapes_find(const struct shapes *t, const char *name);
+/* Is it the same shape, whatever its name? */
+bool shape_same(const struct shape *a, const struct shape *b);
+
+/* Arrays for so many vertices, faces and corners, all zero. Returns 0, or EX_SOFTWARE with nothing to
+   free. */
+int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct failure *failure);
+void shape_free(struct shape *s);
+/*
+ * Checks that a shape is one, and makes normals and edges: numbers finite and in range, faces flat and
+ * closed, all vertices behind every face, all within the ball of radius 1. Returns 0, EX_DATAERR with
+ * what is wrong, or EX_SOFTWARE.
+ */
+int shape_finish(struct shape *s, int dim, struct failure *failure);
+
+#endif

@@ -1,0 +1,587 @@
+/* state/packing.c: memory for a packing, and the check of its numbers. */
+#include "state/packing.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
+                                                  "push", "project", "gap-project" };
+/* Boundaries that bodies may have: each body asks each, which takes up to 40 ns; for many bodies, and for few */
+enum { BOUNDARIES_BODY = 4096, BOUNDARIES_LEAST = 1 << 26 };
+enum { IMAGES_MOST = 1 << 30 }; /* so that sums and differences of images are numbers too */
+
+static void *array(int64_t n, size_t size)
+{
+    return calloc(n > 0 ? (size_t)n : 1, size);
+}
+
+#define ROW(ctype, member, type, width, name, unit, traits)                                        \
+    { { name, unit, COLUMN_##type, width, offsetof(struct packing, member) }, traits },
+const struct body_column body_columns[] = { EACH_BODY_COLUMN(ROW){ { 0 }, 0 } };
+#undef ROW
+
+static bool is_optional(const struct body_column *b)
+{
+    return b->traits & (BODY_OPTIONAL | BODY_BY_SETTINGS);
+}
+
+static void free_column(struct packing *p, const struct column *c)
+{
+    free(column_array(c, p));
+    column_set_array(c, p, NULL);
+}
+
+int packing_alloc_column(struct packing *p, int column, struct failure *failure)
+{
+    const struct column *c = &body_columns[column].column;
+    free_column(p, c);
+    column_set_array(c, p, array(p->n, column_bytes(c)));
+    return column_array(c, p) ? 0
+                              : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
+                                        (long long)p->n, c->name);
+}
+
+uint32_t packing_optional(const struct packing *p)
+{
+    uint32_t set = 0;
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if (is_optional(&body_columns[k]) && column_array(&body_columns[k].column, p))
+            set |= 1u << k;
+    return set;
+}
+
+int packing_alloc_optional(struct packing *p, uint32_t set, struct failure *failure)
+{
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if ((set & 1u << k) && packing_alloc_column(p, k, failure)) return failure->status;
+    return 0;
+}
+
+/* Bodies first .. n - 1, whose arrays are zero */
+static void set_default(struct packing *p, int64_t first)
+{
+    for (int64_t i = first; i < p->n; i++) p->id[i] = -1, p->q[i].w = 1;
+}
+
+int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
+{
+    *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
+    for (int k = 0; k < BODY_COLUMNS && !failure->status; k++)
+        if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, failure);
+    if (failure->status || packing_alloc_walls(p, 0, failure) || packing_alloc_kinds(p, 1, failure)) {
+        packing_free(p);
+        return failure->status;
+    }
+    set_default(p, 0);
+    for (int64_t i = 0; i < n; i++) p->id[i] = (int32_t)i;
+    return 0;
+}
+
+static void kinds_free(struct packing *p)
+{
+    for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
+    free(p->kind_name), free(p->law);
+    p->kind_name = NULL, p->law = NULL, p->kinds = 0;
+#define FREE(member, ...) free(p->member), p->member = NULL;
+    EVERY_PAIR_COLUMN(FREE)
+#undef FREE
+}
+
+void packing_free(struct packing *p)
+{
+    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
+    free(p->wall), free(p->scene);
+    shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
+    drives_free(&p->drives), drives_free(&p->pushes), drives_free(&p->pulls);
+    mesh_free(&p->mesh);
+    free(p->poured), free(p->removed);
+    events_free(&p->events);
+    bonds_free(&p->bonds);
+    memory_free(&p->memory);
+    external_force_free(&p->outside);
+    cell_free(&p->cell);
+    kinds_free(p);
+    memset(p, 0, sizeof *p);
+}
+
+int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure)
+{
+    free(p->wall);
+    p->walls = k;
+    p->wall = array(k, sizeof *p->wall);
+    for (int32_t w = 0; p->wall && w < k; w++) p->wall[w].until = INFINITY;
+    return p->wall ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d walls", k);
+}
+
+int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure)
+{
+    kinds_free(p);
+    p->kind_name = array(k, sizeof *p->kind_name);
+    bool allocated = p->kind_name;
+#define ALLOC(member, ...)                                                                         \
+    p->member = array((int64_t)k * k, sizeof *p->member);                                          \
+    allocated = allocated && p->member;
+    EVERY_PAIR_COLUMN(ALLOC)
+#undef ALLOC
+    for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", p->kinds);
+        allocated = (p->kind_name[p->kinds] = strdup(name));
+    }
+    return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", k);
+}
+
+int packing_alloc_laws(struct packing *p, struct failure *failure)
+{
+    free(p->law);
+    p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
+    return p->law ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+}
+
+bool packing_sticks(const struct packing *p)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (p->mu_s[k] > 0) return true;
+    return false;
+}
+
+bool packing_rolls(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        if (pair_law_rolls(&p->law[k])) return true;
+    return false;
+}
+
+bool packing_may_gain(const struct packing *p)
+{
+    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+        if (p->mu[k] > 0 && p->en[k] > 0) return true;
+    return false;
+}
+
+bool packing_bounds(const struct packing *p, const struct contact *c)
+{
+    const int32_t k = packing_pair(p, c->a, c->b);
+    const double law = p->law ? p->law[k].impact : IMPACT_DEFAULT;
+    bool shaped = p->shape && (p->shape[c->b] > 0 || (c->a >= 0 && p->shape[c->a] > 0));
+    return p->mu[k] > 0 && p->en[k] > 0 &&
+           (law == IMPACT_BOUNDED || (law == IMPACT_DEFAULT && shaped));
+}
+
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct failure *failure)
+{
+    free(p->poured), free(p->removed);
+    p->poured = array(pours, sizeof *p->poured);
+    p->removed = array(removals, sizeof *p->removed);
+    p->pours = p->poured ? pours : 0, p->removals = p->removed ? removals : 0;
+    return p->poured && p->removed ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for passages");
+}
+
+int packing_resize(struct packing *p, int64_t n, struct failure *failure)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++) {
+        const struct column *c = &b->column;
+        size_t bytes = column_bytes(c);
+        char *old = column_array(c, p);
+        if (!old && is_optional(b)) continue;
+        char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
+        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
+        column_set_array(c, p, more);
+    }
+    int64_t had = p->n;
+    if (external_force_resize(&p->outside, had, n, failure)) return failure->status;
+    p->n = n;
+    set_default(p, had);
+    return 0;
+}
+
+void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i)
+{
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p) && column_array(&b->column, from))
+            memcpy(column_row(&b->column, p, to), column_row(&b->column, from, i),
+                   column_bytes(&b->column));
+}
+
+struct packing packing_with_bodies(const struct packing *p, const struct packing *bodies,
+                                   int64_t first, int64_t n)
+{
+    struct packing q = *p;
+    q.n = n;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        column_set_array(&b->column, &q,
+                         column_array(&b->column, bodies) ? column_row(&b->column, bodies, first)
+                                                          : NULL);
+    return q;
+}
+
+int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
+{
+    if (packing_init(to, p->dim, p->n, failure)) return failure->status;
+    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure)) goto fail;
+    size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
+    to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
+    to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
+    to->tolerance = p->tolerance;
+    to->overlap = p->overlap;
+    to->seed = p->seed, to->pulls_most = p->pulls_most;
+    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, failure) ||
+        packing_alloc_optional(to, packing_optional(p), failure))
+        goto fail;
+    for (const struct body_column *b = body_columns; b->column.name; b++)
+        if (column_array(&b->column, p))
+            memcpy(column_array(&b->column, to), column_array(&b->column, p),
+                   n * column_bytes(&b->column));
+    memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
+    if (drives_copy(&to->drives, &p->drives, failure) || drives_copy(&to->pushes, &p->pushes, failure) ||
+        drives_copy(&to->pulls, &p->pulls, failure) || mesh_copy(&to->mesh, &p->mesh, failure) ||
+        names_copy(&to->names, &p->names, failure) || sums_copy(&to->sums, &p->sums, failure))
+        goto fail;
+#define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
+    EVERY_PAIR_COLUMN(COPY)
+#undef COPY
+    if (p->law && packing_alloc_laws(to, failure)) goto fail;
+    if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
+    if (bonds_copy(&to->bonds, &p->bonds, failure) || memory_copy(&to->memory, &p->memory, failure))
+        goto fail;
+    if (external_force_copy(&to->outside, &p->outside, p->n, p->walls, failure)) goto fail;
+    for (int32_t i = 0; i < p->kinds; i++) {
+        free(to->kind_name[i]);
+        if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
+    }
+    if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
+    if (packing_alloc_passages(to, p->pours, p->removals, failure)) goto fail;
+    to->first_id = p->first_id;
+    for (int32_t k = 0; k < p->pours; k++) to->poured[k] = p->poured[k];
+    for (int32_t k = 0; k < p->removals; k++) to->removed[k] = p->removed[k];
+    for (int64_t i = 0; i < p->events.n; i++)
+        if (events_add(&to->events, &p->events.e[i], failure)) goto fail;
+    return 0;
+fail:
+    packing_free(to);
+    return failure_set(failure, EX_SOFTWARE, "no memory for a copy of the packing");
+}
+
+void packing_count_from(struct packing *p, double t0, int64_t step0)
+{
+    p->t0 = t0, p->step0 = step0;
+    if (packing_time(p, p->step) != p->t) p->t0 = p->t, p->step0 = p->step;
+}
+
+/* Is the step n steps before this one exact as a double? */
+static bool packing_step_fits(int64_t step, double n)
+{
+    return fabs((double)step - n) <= (double)((int64_t)1 << STEPS_LOG2);
+}
+
+void packing_set_dt(struct packing *p, double dt)
+{
+    double n = nearbyint((p->t - p->t0) / dt);
+    p->dt = dt;
+    if (fabs(n) < (double)((int64_t)1 << STEPS_LOG2) && packing_step_fits(p->step, n))
+        p->step0 = p->step - (int64_t)n;
+    packing_count_from(p, p->t0, p->step0);
+}
+
+int packing_check_clock(const struct packing *p, struct failure *failure)
+{
+    double t = fmax(fabs(p->t), fabs(packing_next_time(p)));
+    double grain = nextafter(t, INFINITY) - t;
+    if (grain <= p->dt) return 0;
+    return failure_set(
+        failure, EX_DATAERR,
+        "dt = %g s does not change a time of %g s, where numbers are %.2g s apart: begin "
+        "at an earlier time, or with a longer dt",
+        p->dt, p->t, grain);
+}
+
+double packing_mean_mass(const struct packing *p)
+{
+    double sum = 0;
+    int64_t n = 0;
+    for (int64_t i = 0; i < p->n; i++) sum += p->mass[i], n += p->mass[i] > 0;
+    return n ? sum / (double)n : 1;
+}
+
+struct whole packing_whole(const struct packing *p)
+{
+    if (p->whole) return *p->whole;
+    struct whole all = { .small = INFINITY, .apart = -INFINITY };
+    for (int64_t i = 0; i < p->n; i++) {
+        double speed = v3_norm(p->v[i]);
+        all.speed = dmax(all.speed, speed);
+        all.rotation_speed = dmax(all.rotation_speed, speed + p->radius[i] * v3_norm(p->w[i]));
+        all.small = dmin(all.small, p->radius[i]), all.large = dmax(all.large, p->radius[i]);
+    }
+    for (int64_t i = 0; i < p->bonds.n; i++)
+        if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
+            all.apart = dmax(all.apart, p->bonds.bond[i].gap);
+    return all;
+}
+
+/* What is wrong with a column's real numbers of body i, or NULL */
+static const char *packing_number_trouble(const struct body_column *b, const struct packing *p, int64_t i)
+{
+    const double *x = column_row(&b->column, p, i);
+    for (int k = 0; k < b->column.width; k++) {
+        if ((b->traits & BODY_POSITIVE) && !(x[k] > 0 && isfinite(x[k])))
+            return "must be positive and finite";
+        if ((b->traits & BODY_NOT_NEGATIVE) && !(x[k] >= 0 && isfinite(x[k])))
+            return "must be finite and not negative";
+        if (!isfinite(x[k])) return "is not finite";
+    }
+    return NULL;
+}
+
+static const char *body_trouble(const struct packing *p, int64_t i)
+{
+    if (p->mass[i] > 0 && !(p->inertia[i] > 0)) return "inertia must be positive where mass is";
+    quat q = p->q[i];
+    if (!(fabs(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z - 1) < 1e-6))
+        return "orientation is not a unit quaternion";
+    if (p->dim == 2 && (p->x[i].z != 0 || p->v[i].z != 0 || p->w[i].x != 0 || p->w[i].y != 0))
+        return "leaves the plane z = 0, and dim is 2";
+    if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
+    if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
+        return "rotates out of the plane, and dim is 2";
+    if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
+    if (p->group && (p->group[i] < 0 || p->group[i] > p->names.n)) return "group has no name";
+    return NULL;
+}
+
+enum {
+    SPREAD_MOST = 1000
+}; /* boundaries, each of which may bound the face of each that a pressure is on */
+
+static const char *packing_load_trouble(const struct packing *p, const struct wall *w)
+{
+    const struct load *l = &w->load;
+    if (l->way == LOAD_NONE) return NULL;
+    if (l->way < 0 || l->way >= LOAD_WAYS) return "its load neither translates nor rotates it";
+    bool room = l->way == LOAD_ROOM; // [state/servo_box.h]
+    if (!((l->mass > 0 || (room && l->mass == 0)) && isfinite(l->mass)))
+        return "the mass of its load must be positive";
+    if (!isfinite(l->rate) || (!room && l->rate != 0))
+        return "it has a strain rate that is not finite, or no room";
+    if (room && l->mass > 0 && !l->spread) return "the load of its room is no pressure";
+    if (room && w->shape != BOUNDARY_PLANE) return "it belongs to a room, and is no plane";
+    if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
+        return "its load is not finite";
+    if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
+    bool turns = l->way == LOAD_TURNS;
+    bool leaves = turns ? l->axis.x != 0 || l->axis.y != 0 : l->axis.z != 0;
+    if (p->dim == 2 && (leaves || l->point.z != 0))
+        return "its load leaves the plane, and dim is 2";
+    if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != BOUNDARY_PLANE)))
+        return "its pressure is not on a plane that translates";
+    if (l->spread && p->walls > SPREAD_MOST)
+        return "its pressure is on one of more than 1000 boundaries: give a force";
+    if (l->spread && room && !(wall_face(p, w, p->t) > 0))
+        return "its room needs planes on all sides of its face, or a periodic cell";
+    if (l->spread && !(wall_face(p, w, p->t) > 0))
+        return "its pressure needs planes on all sides of its face, or a periodic cell: "
+               "give a force";
+    if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
+        return "it rotates about another axis than its normal";
+    return NULL;
+}
+
+/* Of a wall of the room [state/servo_box.h], beside the load of its first wall */
+static const char *room_trouble(const struct packing *p, const struct wall *w,
+                                const struct load *first)
+{
+    const struct load *l = &w->load;
+    if (l->speed != first->speed || l->point.x != first->point.x || l->point.y != first->point.y ||
+        l->point.z != first->point.z)
+        return "its room has another centre or growth than that of the walls before";
+    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its room is not on the side of its normal";
+    if (w->until < INFINITY) return "it belongs to a room, and vanishes";
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns) return "it belongs to a room, and turns";
+    if (load_grows_too_fast(l, p->dt))
+        return "its room changes by more than a tenth in a step: take a smaller dt, a larger mass "
+               "or slower rates";
+    return NULL;
+}
+
+/* Do the loads of its walls make one room? */
+static int check_room(const struct packing *p, struct failure *failure)
+{
+    const struct load *first = NULL;
+    double mass = 0;
+    for (int32_t i = 0; i < p->walls; i++) {
+        const struct wall *w = &p->wall[i];
+        if (w->load.way != LOAD_ROOM) continue;
+        if (!first) first = &w->load;
+        mass += w->load.mass;
+        const char *trouble = room_trouble(p, w, first);
+        if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
+    }
+    if (first && first->speed != 0 && !(mass > 0))
+        return failure_set(failure, EX_DATAERR, "the room of the walls grows, and has no mass");
+    return 0;
+}
+
+static const char *wall_trouble(const struct packing *p, const struct wall *w)
+{
+    const char *trouble = boundary_trouble(w, p->dim);
+    if (trouble) return trouble;
+    bool mesh = w->shape == BOUNDARY_MESH;
+    if (mesh && (w->first_element < 0 || w->first_element > p->mesh.elements ||
+                 w->elements > p->mesh.elements - w->first_element))
+        return "its mesh is missing";
+    if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
+    if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
+    if (!v3_finite(w->belt)) return "belt is not finite";
+    if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
+    return packing_load_trouble(p, w);
+}
+
+/* Is the wall the same after a shift by this edge? */
+static bool repeats_along(const struct packing *p, const struct wall *w, vec3 edge)
+{
+    double tiny = 1e-9 * v3_norm(edge);
+    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
+        if (p->drives.drive[k].turns && w->shape == BOUNDARY_PLANE) return false;
+    if (w->shape == BOUNDARY_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
+    if (w->shape != BOUNDARY_CYLINDER || w->size[2] > 0) return false;
+    return v3_norm(v3_cross(edge, w->n)) <= tiny;
+}
+
+static int check_images(const struct packing *p, int64_t first, struct failure *failure)
+{
+    for (int64_t i = 0; p->image && i < p->n; i++)
+        for (int k = 0; k < 3; k++)
+            if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
+                return failure_set(failure, EX_DATAERR, "body %lld: image is out of range",
+                               (long long)(first + i));
+    return 0;
+}
+
+/* The cell, which the largest body must fit into, and the images. */
+static int check_cell(const struct packing *p, struct failure *failure)
+{
+    double most = 0;
+    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
+    if (cell_check(&p->cell, p->dim, 2 * most, failure)) return failure->status;
+    if (cell_repeats(&p->cell) != (p->image != NULL))
+        return failure_set(failure, EX_DATAERR, "images without a periodic cell, or the reverse");
+    if (check_images(p, 0, failure)) return failure->status;
+    for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
+        for (int k = 0; k < 3; k++) {
+            if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
+                return failure_set(failure, EX_DATAERR, "wall %d: crosses a periodic edge of the cell", i);
+            if (p->cell.repeats[k] && cell_moves(&p->cell, k))
+                return failure_set(failure, EX_DATAERR,
+                               "wall %d: the edges along it move, so that its bodies' images "
+                               "would meet it at other speeds",
+                               i);
+        }
+    return 0;
+}
+
+static int packing_check_each_body(const struct packing *p, int64_t first, struct failure *failure)
+{
+    for (int64_t i = 0; i < p->n; i++) {
+        const char *trouble = NULL;
+        for (const struct body_column *b = body_columns; b->column.name && !trouble; b++) {
+            bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
+            trouble = real ? packing_number_trouble(b, p, i) : NULL;
+            if (trouble)
+                return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
+                               b->column.name, trouble);
+        }
+        if ((trouble = body_trouble(p, i)))
+            return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
+    }
+    return 0;
+}
+
+int packing_check_bodies(const struct packing *p, int64_t first, struct failure *failure)
+{
+    return packing_check_each_body(p, first, failure) || check_images(p, first, failure) ? failure->status : 0;
+}
+
+int packing_check(const struct packing *p, struct failure *failure)
+{
+    if (p->dim != 2 && p->dim != 3)
+        return failure_set(failure, EX_DATAERR, "dim is %d, not 2 or 3", p->dim);
+    if (!(p->dt > 0 && isfinite(p->dt))) return failure_set(failure, EX_DATAERR, "dt must be positive");
+    if (!isfinite(p->t)) return failure_set(failure, EX_DATAERR, "time is not finite");
+    if (!(p->theta >= 0 && p->theta <= 1))
+        return failure_set(failure, EX_DATAERR, "theta must lie in [0, 1]");
+    if (!v3_finite(p->g)) return failure_set(failure, EX_DATAERR, "gravity is not finite");
+    if (external_force_check(&p->outside, p->dim, p->n, p->walls, failure)) return failure->status;
+    if (p->dim == 2 && p->g.z != 0)
+        return failure_set(failure, EX_DATAERR, "gravity leaves the plane, and dim is 2");
+    for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
+        const char *pair = "the material of kinds %s and %s: %s";
+        const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
+        const char *trouble = p->law ? pair_law_trouble(&p->law[i]) : NULL;
+#define CHECK(member, name, unit, key, most, range)                                                \
+    if (!(p->member[i] >= 0 && p->member[i] <= (most) && isfinite(p->member[i])))                  \
+        trouble = name " " range;
+        EVERY_PAIR_COLUMN(CHECK)
+#undef CHECK
+        if (p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
+        if (trouble) return failure_set(failure, EX_DATAERR, pair, a, b, trouble);
+    }
+    if (packing_check_each_body(p, 0, failure)) return failure->status;
+    if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
+        return failure_set(
+            failure, EX_DATAERR,
+            "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
+            (long long)p->n, p->walls, BOUNDARIES_BODY);
+    if (drives_check(&p->drives, p->walls, p->dim, "drive", failure) ||
+        drives_check(&p->pushes, p->walls, p->dim, "push", failure))
+        return failure->status; // before any wall is asked where it is
+    for (int32_t i = 0; i < p->walls; i++) {
+        const char *trouble = wall_trouble(p, &p->wall[i]);
+        if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
+    }
+    if (check_room(p, failure)) return failure->status;
+    if (names_check(&p->names, p->walls, p->wall, failure) ||
+        sums_check(&p->sums, p->walls, p->wall, failure))
+        return failure->status;
+    for (int32_t i = 0; i < p->pushes.n; i++)
+        if (!p->wall[p->pushes.drive[i].boundary].load.way)
+            return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled", i);
+    if (pulls_check(&p->pulls, p->pulls_most, p->dim, failure)) return failure->status;
+    if (mesh_check(&p->mesh, p->dim, failure)) return failure->status;
+    if (bonds_check(&p->bonds, p->dim, p->n, p->walls, failure)) return failure->status;
+    return check_cell(p, failure);
+}
+
+struct cell_flow packing_flow(const struct packing *p)
+{
+    struct cell_flow f;
+    vec3 half[3], gain[3];
+    cell_predict(&p->cell, step_ahead(p), half);
+    cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), gain);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(gain[k], p->cell.rate[k]);
+    cell_flow_init(&f, &p->cell, half, gain);
+    return f;
+}
+
+void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                         double *mass, double *inertia)
+{
+    const double *m = s->moment;
+    double mean = dim == 2 ? m[2] : (m[0] + m[1] + m[2]) / 3;
+    *mass = density * s->volume * (dim == 2 ? radius * radius : radius * radius * radius);
+    *inertia = *mass * radius * radius * mean;
+}
+
+void packing_solid(int dim, double radius, double density, double *mass, double *inertia)
+{
+    double r2 = radius * radius;
+    if (dim == 2) {
+        *mass = density * M_PI * r2;
+        *inertia = 0.5 * *mass * r2;
+        return;
+    }
+    *mass = density * 4.0 / 3 * M_PI * r2 * radius;
+    *inertia = 0.4 * *mass * r2;
+}

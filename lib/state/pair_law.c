@@ -1,0 +1,77 @@
+/* state/pair_law.c: the checks of a pair's law, and the liquid bridge [state/pair_law.h]. */
+#include "state/pair_law.h"
+
+#include "base/vec.h"
+
+#include <math.h>
+#include <stddef.h>
+
+static bool positive(double x)
+{
+    return x > 0 && isfinite(x);
+}
+
+static bool pair_law_not_negative(double x)
+{
+    return x >= 0 && isfinite(x);
+}
+
+const char *pair_law_trouble(const struct pair_law *l)
+{
+    if (!pair_law_not_negative(l->cohesion) || !pair_law_not_negative(l->range))
+        return "cohesion and its range must not be negative";
+    if (!pair_law_not_negative(l->volume) || !pair_law_not_negative(l->tension))
+        return "volume and tension of a bridge must not be negative";
+    if (!(l->wetting >= 0 && l->wetting < M_PI / 2))
+        return "the wetting angle must lie in [0, pi/2)";
+    if (!pair_law_not_negative(l->mu_r) || !pair_law_not_negative(l->mu_p))
+        return "mu_r and mu_p must not be negative";
+    if (!pair_law_not_negative(l->w) || !pair_law_not_negative(l->eta) || !pair_law_not_negative(l->area))
+        return "energy, viscosity and area of a bond must not be negative";
+    if (!pair_law_not_negative(l->cn) || !pair_law_not_negative(l->ct) || (l->w > 0 && !positive(l->cn)))
+        return "the stiffness of a bond must be positive";
+    if (!(l->beta >= 0 && l->beta <= 1)) return "beta must lie in [0, 1]";
+    if (!isfinite(l->made)) return "the time of bonds is not finite";
+    if (!(l->impact >= 0 && l->impact < IMPACT_LAWS) || l->impact != floor(l->impact))
+        return "an impact is Newton's or bounded: 0, 1 or 2";
+    return l->forever == 0 || l->forever == 1 ? NULL : "bonds are made at a time or for ever";
+}
+
+double bridge_radius(double a, double b)
+{
+    return a > 0 ? 2 * a * b / (a + b) : 2 * b;
+}
+
+double bridge_reach(const struct pair_law *l)
+{
+    return pair_law_wets(l) ? (1 + l->wetting / 2) * cbrt(l->volume) : 0;
+}
+
+/* N: with which bodies that touch are pulled together. The cosine is not libm's, whose last bits differ
+   between machines, as those of its hypot do. */
+static double at_touch(const struct pair_law *l, double R)
+{
+    return 2 * M_PI * R * l->tension * quat_rotation(v3(2 * l->wetting, 0, 0)).w;
+}
+
+static double hypotenuse(double g, double c)
+{
+    return sqrt(g * g + c * c);
+}
+
+double bridge_force(const struct pair_law *l, double R, double g)
+{
+    double c = sqrt(2 * l->volume / (M_PI * R));
+    if (g <= 0) return at_touch(l, R);
+    return g >= bridge_reach(l) ? 0 : at_touch(l, R) * (1 - g / hypotenuse(g, c));
+}
+
+double bridge_energy(const struct pair_law *l, double R, double g)
+{
+    double c = sqrt(2 * l->volume / (M_PI * R)), end = bridge_reach(l);
+    if (g >= end) return 0;
+    double apart = fmax(g, 0), overlap = fmin(g, 0);
+    // the integral of 1 - g/hypot(g, c) is g - hypot(g, c), here without its cancellation
+    double rest = c * c / (apart + hypotenuse(apart, c)) - c * c / (end + hypotenuse(end, c));
+    return at_touch(l, R) * (overlap - rest);
+}

@@ -1,0 +1,63 @@
+/*
+ * step/balance.h: the balances of energy and momentum over one step.
+ *
+ * The equation of motion M (v+ - v-) = dt F + H r times the mean velocity is, to rounding and
+ * whatever r is [Kelvin & Tait 1867, art. 308: an impulse works by the mean of the velocities
+ * before and after it]:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation
+ *
+ *     gravity      dt sum m g . (v+ + v-)/2
+ *     loads        dt sum f (s+ + s-)/2, of the freedoms [state/freedom.h] and of forces from outside
+ *                  [state/outside.h]
+ *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
+ *                  bodies, the cell) are in the velocity of the contact, their mean over the
+ *                  step; and what the flow of the cell does to bodies
+ *     dissipation  - sum r . (u+ + u-)/2
+ *
+ * and where pairs are tied [contact/contact_law.h] what their energy takes is no dissipation:
+ *
+ *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
+ *
+ * Bodies that are moved apart after the step [step/project.h] are lifted without a velocity, which gravity is not:
+ *
+ *     U+ - U- = projection - gravity,    U = - sum m g . x, with theta = 1/2
+ *
+ * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
+ * weight, dt sum m g, by forces from outside and by the impulse of boundaries, fixed bodies and the cell's flow. Where
+ * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
+ * another velocity; the energy of the peculiar velocities is the same. balance_step() leaves -T'- in peculiar_change, to
+ * which the end of the step adds T'+.
+ *
+ * An impact under Newton's law with friction may gain energy [Kane 1984]: a rod that strikes a floor at an angle and
+ * whose tip reverses its slip. gained is what impacts have gained, the pairs of which approached with restitution and
+ * whose friction did more work than restitution took; step/rebound.h bounds it.
+ *
+ * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
+ * where the step has begun with separating bodies; over an impact it is what the law takes.
+ */
+#ifndef NSD_BALANCE_H
+#define NSD_BALANCE_H
+
+#include "step/impulse.h"
+#include "state/report.h"
+
+/* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
+   given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
+int balance_step(struct balance *b, const struct packing *p, const struct contacts *s,
+                 const struct impulses *sum, const bool *of, struct failure *failure);
+
+/* What the impact of a pair of bodies has gained in addition to the energy that its approach could give up */
+struct gain {
+    double work,
+        scale; /* J: of its contacts, which are from this on; work > 0: gained. 0, 0: no impact */
+};
+/* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
+int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                  const struct impulses *sum, struct failure *failure);
+/* The first contact after i that is of another pair; the images of one body count as one. */
+int64_t balance_next_pair(const struct contacts *s, int64_t i);
+/* Less than this part of the scale is rounding, or what the solve leaves. */
+#define GAIN_LEAST 1e-10
+
+#endif

@@ -1,0 +1,419 @@
+/* step/step.c: a step from one state of a packing to the next [step/step.h]. */
+#include "step/step.h"
+
+#include "contact/depth.h"
+#include "state/energy.h"
+#include "state/wrap.h"
+#include "contact/crossing.h"
+#include "contact/detect.h"
+#include "contact/meeting.h"
+#include "contact/tunnelling.h"
+#include "contact/touching.h"
+#include "step/move.h"
+#include "step/project.h"
+#include "step/sum_step.h"
+#include "solve/device.h"
+#include "solve/prepare.h"
+#include "step/rebound.h"
+
+#include <stdlib.h>
+
+bool step_sweeps(const struct solver *global)
+{
+    return global == &solver_auto || global == &solver_nlgs || global == &solver_anderson;
+}
+
+/* Refuses what the solver asked for cannot solve. */
+static int check_solver(const struct problem *p, const struct solver *global, struct failure *failure)
+{
+    if (!p->kind.rolls || step_sweeps(global)) return 0;
+    return failure_set(
+        failure, EX_DATAERR,
+        "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",
+        global->name);
+}
+
+/* Why solve_problem() has failed: the device, or memory */
+static int solve_failed(const struct solve_opt *o, struct failure *failure)
+{
+    const struct failure *lost = o->device ? &o->device->lost : NULL;
+    if (lost && lost->status) return failure_set(failure, lost->status, "%s", lost->text);
+    return failure_set(failure, EX_SOFTWARE, "no memory to solve the contacts");
+}
+
+/* The contacts as they are, from the reactions that they have */
+static int solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                          const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct problem p;
+    const struct prepare_opt form = {
+        .alpha = o->alpha, .rho_factor = o->solve.method->rho, .order = o->order, .kept = kept
+    };
+    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, failure)) return failure->status;
+    if (check_solver(&p, o->solve.global, failure)) return problem_free(&p), failure->status;
+    int failed = solve_problem(&p, &o->solve, rep);
+    if (failed)
+        solve_failed(&o->solve, failure);
+    else if ((failed = problem_store(&p, s)))
+        failure_set(failure, EX_SOFTWARE, "no memory for the solution");
+    problem_free(&p);
+    return failed ? failure->status : 0;
+}
+
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct rebound_search *search = NULL;
+    bool again = true;
+    while (!rebound_reduce(&search, pack, s, &again, failure) && again) {
+        const struct report before = *rep;
+        if (solve_contacts(pack, s, kept, o, rep, failure)) break;
+        rep->bus_to += before.bus_to, rep->bus_from += before.bus_from;
+        rep->kernels += before.kernels;
+        rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
+        if (o->solve.history) continue; // which is of the last solve
+        rep->sweeps += before.sweeps, rep->newton += before.newton;
+        rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
+    }
+    rebound_free(search);
+    return failure->status;
+}
+
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    if (!o->warm) contacts_free_found(s);
+    if (solve_contacts(pack, s, kept, o, rep, failure)) return failure->status;
+    return step_bound_impacts(pack, s, kept, o, rep, failure);
+}
+
+/* What is reported of a step before its solve */
+static int step_begin(struct step_makers *m,
+                 int measure(struct step_makers *m, const struct packing *p,
+                             const struct contacts *s, struct report *rep, struct failure *failure),
+                 const struct packing *p, const struct contacts *s, struct report *rep,
+                 struct failure *failure)
+{
+    rep->step = p->step + 1, rep->t = packing_next_time(p);
+    return measure(m, p, s, rep, failure);
+}
+
+/* What the report's balances say of a step, and whether there are any */
+static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
+{
+    rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    rep->projected = rep->sheared = false;
+    return rep->balanced;
+}
+
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct failure *failure)
+{
+    struct impulses sum = { 0 };
+    if (step_begin(NULL, step_measure_whole, pack, s, rep, failure) ||
+        step_solve_contacts(pack, s, NULL, o, rep, failure))
+        return failure->status;
+    if (!impulses_init(&sum, pack, s, false, failure) && account_for(rep, pack, o))
+        step_balance_whole(NULL, pack, s, &sum, &rep->balance, failure);
+    impulses_free(&sum);
+    return failure->status;
+}
+
+int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
+                        struct failure *failure)
+{
+    struct problem p;
+    if (!o->warm)
+        for (int64_t i = 0; i < W->d * W->n; i++) W->r[i] = 0;
+    const struct prepare_opt form = { .alpha = o->alpha,
+                                      .rho_factor = o->solve.method->rho,
+                                      .order = o->order };
+    if (problem_prepare_delassus(&p, W, &form, failure)) return failure->status;
+    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = false;
+    int failed = solve_problem(&p, &o->solve, rep);
+    for (int64_t i = 0; i < p.slots; i++) {
+        double r[3], v[3];
+        if (p.contact[i] < 0) continue;
+        slot_get(&p, i, r, v);
+        for (int k = 0; k < W->d; k++) u[W->d * p.contact[i] + k] = v[k];
+    }
+    problem_free(&p);
+    return failed ? solve_failed(&o->solve, failure) : 0;
+}
+
+void step_forget(struct step_memory *m)
+{
+    neighbours_free(&m->near);
+    plan_free(m->plan);
+    *m = (struct step_memory){ 0 };
+}
+
+void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
+{
+    if (passed->n && (!rep->passed || passed->id < rep->passed_id))
+        rep->passed_id = passed->id, rep->passed_through = passed->through;
+    rep->passed += passed->n;
+    rep->watched = tunnelling_watches(p) || rep->passed;
+}
+
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
+                     struct report *rep, struct failure *failure)
+{
+    struct passed passed = { 0 };
+    struct fast_list fast = { 0 };
+    if (watch.fixed.length > 0) tunnelling_passed(&passed, p, NULL, surface, watch.fixed);
+    if (!fast_find(&fast, p, NULL, failure) &&
+        !tunnelling_count(&passed, p, NULL, &fast, watch.bodies, watch.beyond, failure))
+        step_report_passed(rep, p, &passed);
+    free(fast.of);
+    return failure->status;
+}
+
+struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o)
+{
+    return (struct substep_choice){ s->made + 1 < o->substeps, o->substeps - s->made,
+                                    substeps_rest(s) };
+}
+
+void step_substep_fit(struct substep_choice *c, const struct substeps *s)
+{
+    const double end = dmax(fabs(s->t), fabs(s->t + s->dt)), rest = substeps_rest(s),
+                 shortest = 2 * (nextafter(end, INFINITY) - end);
+    if (c->length >= rest) return;
+    c->meets = c->meets && c->length >= shortest;
+    c->length = dmax(c->length, shortest);
+    if (rest - c->length < shortest) c->length = rest;
+}
+
+int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
+                       const struct surface *surface, struct failure *failure)
+{
+    struct fast_list fast;
+    struct passed passed = { 0 };
+    substeps_whole(s, p);
+    packing_wrap(p, NULL);
+    if (fast_find(&fast, p, NULL, failure)) return failure->status;
+    time_of_impact_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, failure);
+    // a boundary that lies before the place where contacts are sought
+    for (bool passes = fast.n > 0 && !failure->status; passes && c->length > substeps_least(s);) {
+        p->dt = c->length;
+        tunnelling_passed(&passed, p, NULL, surface, window_before(p));
+        passes = passed.n > 0;
+        if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
+    }
+    free(fast.of);
+    return failure->status;
+}
+
+int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       struct report *rep, struct failure *failure)
+{
+    (void)m;
+    rep->err.max_overlap = contacts_max_overlap(s);
+    return depth_of(&rep->depth, p, s, NULL, failure);
+}
+
+void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                         struct report *rep)
+{
+    double off;
+    (void)m;
+    const int64_t i = contacts_unsolved(s, &off);
+    if (i < 0) return;
+    const struct contact *c = &s->c[i];
+    rep->unsolved[0] = c->a < 0 ? c->a : p->id[c->a], rep->unsolved[1] = p->id[c->b];
+}
+
+int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       const struct impulses *sum, struct balance *b, struct failure *failure)
+{
+    (void)m;
+    return balance_step(b, p, s, sum, NULL, failure);
+}
+
+int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
+                          struct projected *did, struct failure *failure)
+{
+    (void)m;
+    if (overlap_projects(p->overlap) && project_apart(p, s, did, failure)) return failure->status;
+    if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, NULL);
+    return 0;
+}
+
+void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did)
+{
+    struct balance *b = &rep->balance;
+    rep->projected = rep->balanced && overlap_projects(p->overlap);
+    rep->sheared = rep->balanced && energy_has_peculiar(p);
+    if (rep->projected) {
+        b->projection = did->work, b->potential += did->work;
+        for (int k = 0; k < 3; k++) b->spun[k] = did->spin[k];
+    }
+    if (rep->sheared) b->peculiar = did->peculiar, b->peculiar_change += did->peculiar;
+}
+
+static bool report_is_finite(const struct report *rep)
+{
+    const struct err *e = &rep->err;
+    const struct balance *b = &rep->balance;
+    double sum = e->paper.eps_glob + e->scaled.eps_glob + e->max_penetration +
+                 e->max_penetration_true + e->max_overlap + e->natural + e->natural_siconos +
+                 e->natural_q + e->velocity + e->velocity_error;
+    double balance =
+        b->kinetic + b->change + b->potential + b->gravity + b->drives + b->loads + b->dissipation;
+    for (int k = 0; k < 3; k++) balance += b->momentum[k] + b->impulse[k];
+    return isfinite(sum) && (!rep->balanced || isfinite(balance));
+}
+
+static void step_foresee(struct step_makers *m, const struct packing *p, const struct impulses *sum,
+                    struct report *rep)
+{
+    if (!isfinite(rep->err.paper.eps_glob)) return;
+    rep->endless = endless_after(p, sum);
+    if (!rep->endless.what && !report_is_finite(rep)) rep->endless.what = ENDLESS_REPORT;
+    if (m->agree) m->agree(m, rep);
+}
+
+/* The balances and the motion */
+static int step_move(struct step_makers *m, struct packing *p, const struct contacts *s,
+                const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct impulses sum = { 0 };
+    struct projected did = { 0 };
+    if (impulses_init(&sum, p, s, false, failure)) goto end;
+    if (m->add_impulses) m->add_impulses(m, &sum);
+    if (account_for(rep, p, o) && m->balance(m, p, s, &sum, &rep->balance, failure)) goto end;
+    step_foresee(m, p, &sum, rep);
+    if (report_made(rep) && !sum_step(p, s, &sum, failure) && !move_by(p, s, &sum, failure))
+        m->move_apart(m, p, s, rep->balanced ? &did : NULL, failure);
+    if (rep->balanced) step_report_moved(rep, p, &did);
+end:
+    impulses_free(&sum);
+    return failure->status;
+}
+
+static const struct window none = { 0, 0 };
+
+/* What is looked at before contacts act, and after the motion: of the path from where they were sought to where they
+   will be. Bodies that are made to meet pass only what they meet after they have met something else, in what is left
+   of the substep. */
+static struct windows watch_before(const struct step_makers *m, const struct packing *p)
+{
+    const bool inner = m->substeps->made > 0, first = !p->step;
+    struct windows w = { none, none, false };
+    if (inner || first) w.fixed = window_before(p);
+    if (!m->meets && (inner || first)) w.bodies = window_before(p);
+    return w;
+}
+
+static struct windows watch_after(const struct step_makers *m, const struct packing *p)
+{
+    const struct window rest = { step_after(p), step_after(p) };
+    struct windows w = { rest, rest, m->meets };
+    if (substeps_alone(m->substeps))
+        w.fixed = window_after(p);
+    else if (substeps_last(m->substeps))
+        w.fixed.length += (1 - p->theta) * m->substeps->dt;
+    if (!m->meets) w.bodies = w.fixed;
+    return w;
+}
+
+int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
+              const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    double cpu = report_seconds(CLOCK_CPU);
+    if (m->detect(m, p, s, o, failure)) return failure->status;
+    rep->detection = report_seconds(CLOCK_CPU) - cpu;
+    if (!m->helps && step_begin(m, m->measure, p, s, rep, failure)) return failure->status;
+    rep->passed = 0, rep->endless = (struct endless){ 0 };
+    if (!m->helps && (!p->step || m->substeps->made) &&
+        m->watch(m, p, watch_before(m, p), rep, failure))
+        return failure->status;
+    if (m->solve(m, p, s, o, rep, failure) || m->helps) return failure->status;
+    if (!rep->converged) m->find_unsolved(m, p, s, rep);
+    if (step_move(m, p, s, o, rep, failure)) return failure->status;
+    return m->watch(m, p, watch_after(m, p), rep, failure);
+}
+
+/* ---- a process alone ---- */
+
+struct alone {
+    struct step_makers makers; /* first: it is what the functions below are given */
+    struct step_memory *memory;
+};
+
+static int detect_alone(struct step_makers *m, struct packing *p, struct contacts *s,
+                        const struct step_opt *o, struct failure *failure)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    memory_set(&p->memory, o->warm);
+    packing_wrap(p, NULL);
+    if (touching_bond(p, failure)) return failure->status;
+    if (detect_contacts(s, p, o->gap, kept ? &kept->near : NULL, failure)) return failure->status;
+    return o->warm ? memory_give(&p->memory, s, packing_rolls(p), failure) : 0;
+}
+
+static int solve_alone(struct step_makers *m, const struct packing *p, struct contacts *s,
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, failure);
+}
+
+static int watch_alone(struct step_makers *m, const struct packing *p, struct windows watch,
+                       struct report *rep, struct failure *failure)
+{
+    struct step_memory *kept = ((struct alone *)m)->memory;
+    struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
+    if (!neighbours_surfaces(near, p, failure)) step_watch_whole(p, near->surface, watch, rep, failure);
+    neighbours_free(&once);
+    return failure->status;
+}
+
+static int choose_alone(struct alone *a, struct substeps *steps, struct packing *p,
+                        const struct step_opt *o, struct failure *failure)
+{
+    struct neighbours once = { 0 }, *near = a->memory ? &a->memory->near : &once;
+    struct substep_choice c = step_substep(steps, o);
+    if (c.meets && !neighbours_surfaces(near, p, failure))
+        step_substep_whole(&c, steps, p, near->surface, failure);
+    neighbours_free(&once);
+    step_substep_fit(&c, steps);
+    a->makers.meets = c.meets;
+    substeps_choose(steps, c.length);
+    return failure->status;
+}
+
+struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s)
+{
+    struct step_opt part = *o;
+    if (!substeps_alone(s)) part.solve.local.newton_abs *= s->length / s->dt;
+    return part;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
+                 const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct substeps steps;
+    struct alone a = { { .detect = detect_alone,
+                         .measure = step_measure_whole,
+                         .find_unsolved = step_unsolved_whole,
+                         .solve = solve_alone,
+                         .balance = step_balance_whole,
+                         .move_apart = step_move_apart_whole,
+                         .watch = watch_alone,
+                         .substeps = &steps },
+                       kept };
+    substeps_begin(&steps, p);
+    while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
+        const struct step_opt part = step_opt_part(o, &steps);
+        if (substeps_remember(&steps, p, failure)) break;
+        substeps_enter(&steps, p);
+        step_make(&a.makers, p, s, &part, rep, failure);
+        substeps_leave(&steps, p);
+        substeps_recall(&steps, p);
+        if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
+    }
+    substeps_free(&steps);
+    return failure->status;
+}

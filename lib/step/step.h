@@ -1,0 +1,145 @@
+/*
+ * step/step.h: one time step: detect, solve, move. The pipeline nsd-detect | nsd-solve | nsd-move
+ * makes the same three calls.
+ */
+#ifndef NSD_STEP_H
+#define NSD_STEP_H
+
+#include "contact/neighbours.h"
+#include "contact/tunnelling.h"
+#include "step/balance.h"
+#include "step/impulse.h"
+#include "step/project.h"
+#include "solve/plan.h"
+#include "solve/solver.h"
+#include "step/substeps.h"
+
+struct step_opt {
+    double gap;   /* m: a contact is a pair with at most this gap */
+    double alpha; /* > 0: rho = alpha m_red; else the method's default */
+    enum order order;
+    bool
+        warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
+    int64_t substeps; /* of a step, at most: 1: it is never divided */
+    bool bare;        /* nobody reads the report's balance of this step: it is left out */
+    struct solve_opt solve;
+};
+
+/* What a run keeps from step to step, empty at first: not to find it again. Results are the same without. */
+struct step_memory {
+    struct neighbours near;
+    struct plan *plan;
+};
+void step_forget(struct step_memory *m); /* all; m is empty again */
+
+/* Does this solver make sweeps alone of what bonds and moments hold together? Others want a W. */
+bool step_sweeps(const struct solver *global);
+
+/* All that follow return 0, or EX_SOFTWARE or EX_DATAERR with the reason in why. */
+
+/* Solves the contacts, whose bases and gaps are known; their found[] gets r, u and status. */
+int step_solve(const struct packing *pack, struct contacts *s, const struct step_opt *o,
+               struct report *rep, struct failure *failure);
+
+/* The same for a problem given by W: r (N s) in W->r, u[n d] (m/s). */
+int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
+                        struct failure *failure);
+
+/*
+ * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the
+ * solve diverged, or something would not be finite after the step, nothing moves: report_made()
+ */
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
+                 const struct step_opt *o, struct report *rep, struct failure *failure);
+
+/* What to look for that bodies go through in a step, or in a substep */
+struct windows {
+    struct window fixed,
+        bodies;  /* boundaries and fixed hulls; bodies that move; of length 0: nothing */
+    bool beyond; /* as of crossing_count() */
+};
+
+/*
+ * What a step asks of those who make it: one process, or the ranks of a run (mpi/rank_step.h). Each returns 0
+ * or a status, with the reason in why.
+ */
+struct step_makers {
+    /* This process has no packing of its own: it takes part in finding and solving contacts, and another one
+       reports and moves. */
+    bool helps;
+    /* The contacts, with their last reactions if warm */
+    int (*detect)(struct step_makers *m, struct packing *p, struct contacts *s,
+                  const struct step_opt *o, struct failure *failure);
+    /* rep->err.max_overlap and rep->depth */
+    int (*measure)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                   struct report *rep, struct failure *failure);
+    /* found[], and the report of the solve */
+    int (*solve)(struct step_makers *m, const struct packing *p, struct contacts *s,
+                 const struct step_opt *o, struct report *rep, struct failure *failure);
+    /* The sums of the reactions become those of all who push a body; NULL: they are. */
+    void (*add_impulses)(struct step_makers *m, struct impulses *sum);
+    /* The balances of the step */
+    int (*balance)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                   const struct impulses *sum, struct balance *b, struct failure *failure);
+    /* rep->endless becomes that of all who make the step; NULL: it is. */
+    void (*agree)(struct step_makers *m, struct report *rep);
+    /* rep->unsolved */
+    void (*find_unsolved)(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                          struct report *rep);
+    /* Bodies that overlap are moved apart, where the packing needs it; did, or NULL: what that has done, and the energy
+       then */
+    int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
+                      struct projected *did, struct failure *failure);
+    /* Which bodies go through something: once the step is made, and before the first one and before substeps */
+    int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
+                 struct report *rep, struct failure *failure);
+    const struct substeps *substeps; /* of which this is one */
+    bool
+        meets; /* it ends where bodies meet [contact/meeting.h]; else what they go through is counted */
+};
+/* The step, or the substep, by these makers */
+int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
+              const struct step_opt *o, struct report *rep, struct failure *failure);
+/* What one process does: a process that has a whole packing */
+int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       struct report *rep, struct failure *failure);
+void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                         struct report *rep);
+int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
+                       const struct impulses *sum, struct balance *b, struct failure *failure);
+int step_move_apart_whole(struct step_makers *m, struct packing *p, const struct contacts *s,
+                          struct projected *did, struct failure *failure);
+/* What the report's balance has after the motion */
+void step_report_moved(struct report *rep, const struct packing *p, const struct projected *did);
+
+/* Parts of it. */
+/* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
+   are solved again with less restitution [step/rebound.h]; and this alone, of contacts that are solved. */
+int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                        const struct step_opt *o, struct report *rep, struct failure *failure);
+int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct failure *failure);
+/* Adds bodies that have gone through something to the report, whose number of them is 0 before the step. */
+void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
+/* The same of a whole packing, which is looked through. surface: [walls] of those that are meshes */
+int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
+                     struct report *rep, struct failure *failure);
+
+/* The options of a substep */
+struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s);
+/* The choice of a substep, in a packing that has the step's dt: */
+struct substep_choice {
+    bool meets;    /* below the limit of substeps */
+    int64_t left;  /* substeps, with this one */
+    double length; /* s */
+};
+/* without fast bodies: all that is left; */
+struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o);
+/* with them: at most so long that a whole packing's bodies meet, and, halved where that helps, that they do not go
+   through boundaries before contacts are sought. p is in between given other dt. */
+int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
+                       const struct surface *surface, struct failure *failure);
+/* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */
+void step_substep_fit(struct substep_choice *c, const struct substeps *s);
+
+#endif

@@ -1,0 +1,12 @@
+/* step/sum_step.h: adds what bodies do to boundaries in a step to the packing's sums [state/wall_load.h]. */
+#ifndef NSD_SUM_STEP_H
+#define NSD_SUM_STEP_H
+
+#include "step/impulse.h"
+
+/* In the step that begins where the packing is, by the reactions of its contacts, whose sums are given, too. Nothing
+   where no sums are kept. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
+             struct failure *failure);
+
+#endif
