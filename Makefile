@@ -70,16 +70,17 @@ SAN_WIDTH_2 := -fno-sanitize=null,alignment,object-size,pointer-overflow
 SAN_WIDTH_4 := -fno-sanitize=all
 SAN_WIDTH_8 := -fno-sanitize=all
 
-# Tests build some tools again, by other compilers and sanitizers. WITHOUT: rooms that those do not call; IDLE:
+# Tests build some tools again, by other compilers and sanitizers. WITHOUT: modules that those do not call; IDLE:
 # widths that they do not run, but link: -O0 takes a second where -O1 takes ten.
 WITHOUT ?=
 IDLE    ?=
 
-LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/cli/main.c lib/ranks/%.c $(WITHOUT:%=lib/%/%.c) $(WIDE:%=lib/problem/%.c),$(wildcard lib/*/*.c))) \
-         $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/problem/$w-%.o))
-# What programs of others call, lib/api/nsd.h: without the rooms that it does not need. Every object is hidden but
-# for what that header declares; the archive has one object, in which the hidden names are local.
-PUBLIC := $(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB))
+LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/run/main.c lib/mpi/%.c lib/run/mpi_processes.c $(WITHOUT:%=lib/%.c) $(WIDE:%=lib/solve/%.c),$(wildcard lib/*/*.c))) \
+         $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/solve/$w-%.o))
+# What programs of others call, lib/run/nsd.h, is in these objects; the linker takes what else they need from internal.a.
+# Every object is hidden but for what that header declares; the archive has one object, in which the hidden names are local.
+COMMAND_LINE := $(addprefix run/,cli completion loop partner options processes tool_filter)
+PUBLIC := $(filter-out $(COMMAND_LINE:%=$B/lib/%.o),$(filter $B/lib/run/%,$(LIB)))
 HIDDEN := -fPIC -fvisibility=hidden
 SONAME := libnsd.so.1
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
@@ -95,7 +96,7 @@ MPI_LD := $(if $(MPI_PC),$(shell $(MPICC) --showme:link 2>/dev/null) -ltrilinos_
 PARALLEL ?= $(if $(MPI_PC),$(shell pkg-config --exists 'hdf5-openmpi = '$$(pkg-config --modversion $(HDF5)) 2>/dev/null && echo 1))
 MPI_H5 := $(if $(PARALLEL),$(shell pkg-config --cflags-only-I hdf5-openmpi))
 MPI_PL := $(if $(PARALLEL),$(subst hdf5/serial,hdf5/openmpi,$(PL)),$(PL))
-RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/ranks/*.c)))
+RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/mpi/*.c) lib/run/mpi_processes.c))
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
@@ -117,13 +118,13 @@ $(WRAPPED): NSD_LDLIBS := $(SHARED_LIBS)
 $B/internal.a: $(LIB)
 	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
 
-$B/nsd.o: $(PUBLIC)
+$B/nsd.o: $(PUBLIC) $B/internal.a
 	$(call Q,LD,$@)$(LD) -r -o $@ $^ && objcopy --localize-hidden $@
 
 $B/libnsd.a: $B/nsd.o
 	$(call Q,AR,$@)rm -f $@ && ar rcs $@ $^
 
-$B/$(SONAME): $(PUBLIC)
+$B/$(SONAME): $(PUBLIC) $B/internal.a
 	$(call Q,LD,$@)$(CC) -shared -Wl,-soname,$(SONAME) -Wl,-z,defs $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(SHARED_LIBS)
 	@ln -sf $(SONAME) $B/libnsd.so
 
@@ -132,13 +133,13 @@ $B/lib/%.o: lib/%.c Makefile
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(HIDDEN) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 # The page of nsd-web is part of the program.
-$B/lib/draw/page_parts.o: $(wildcard lib/draw/page/*)
+$B/lib/draw/page.o: $(wildcard lib/draw/page/*)
 
 # So are the kernels of a device, and the headers that they share with the CPU's.
-$B/lib/problem/opencl_text.o: $(wildcard lib/problem/opencl/*.cl) lib/base/lanes.h $(wildcard lib/law/local*.h) lib/problem/bundle.h
+$B/lib/solve/opencl_api.o: $(wildcard lib/solve/opencl/*.cl) lib/base/lanes.h $(wildcard lib/solve/local*.h) lib/solve/bundle.h
 
 define compile_wide
-$B/lib/problem/$1-%.o: lib/problem/$1.c Makefile
+$B/lib/solve/$1-%.o: lib/solve/$1.c Makefile
 	@mkdir -p $$(@D)
 	$$(call Q,CC,$$<)$$(CC) $$(CPPFLAGS) $$(NSD_CFLAGS) $$(HIDDEN) $$(CFLAGS:-O2=-O3) $(if $(SAN),$$(SAN_WIDTH_$$*)) -DLANES=$$* $$(WIDTH_$$*) $$(if $$(filter $$*,$$(IDLE)),-O0) -MMD -MP -c -o $$@ $$<
 endef
@@ -148,16 +149,16 @@ $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
-$B/%: $B/tools/%.o $B/lib/cli/main.o $B/internal.a
+$B/%: $B/tools/%.o $B/lib/run/main.o $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
 $B/tests/%: tests/%.c $B/internal.a Makefile
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) -Itests/support $(CFLAGS) -MMD -MP -o $@ $< $B/internal.a $(NSD_LDFLAGS) $(LDFLAGS) $(NSD_LDLIBS) $(TESTLIBS)
 
-# ranks/mpi_processes.c stands for cli/processes.c, which the archive then is not asked for.
+# run/mpi_processes.c stands for run/processes.c, which the archive then is not asked for.
 $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
-$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/cli/main.o $(RANKS) $B/internal.a
+$B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/run/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
 tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
@@ -260,7 +261,8 @@ FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
 # nsd's own readers and what solves: not the command line, nor what draws and exports
-FLIB    := $(patsubst $B/%,$F/%,$(filter-out $(foreach r,cli draw export,$B/lib/$r/%),$(LIB)))
+NOT_READ := $(COMMAND_LINE) $(addprefix convert/,fields_file format gsd lammps ondem sheet sheet_walls stl text vtk xyz)
+FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/draw/% $(NOT_READ:%=$B/lib/%.o),$(LIB)))
 
 $F/lib/%.o: lib/%.c
 	@mkdir -p $(@D)
@@ -269,7 +271,7 @@ $F/lib/%.o: lib/%.c
 # No bytes of a file come here but as checked numbers: without the sanitizers, which take minutes to build, and
 # without optimisation, which would take longer than all that the few contacts of a file need.
 define fuzz_wide
-$F/lib/problem/$1-%.o: lib/problem/$1.c Makefile
+$F/lib/solve/$1-%.o: lib/solve/$1.c Makefile
 	@mkdir -p $$(@D)
 	$$(FUZZCC) $$(CPPFLAGS) $$(NSD_CFLAGS) -O0 -DLANES=$$* $$(WIDTH_$$*) -MMD -MP -c -o $$@ $$<
 endef
@@ -339,10 +341,10 @@ CPPCHECK := cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,perfo
 
 lint-cppcheck:
 	$(CPPCHECK) lib tools
-	$(CPPCHECK) -D__AVX__ -DLANES=4 $(WIDE:%=lib/problem/%.c)
-	$(CPPCHECK) -D__AVX__ -DLANES=8 $(WIDE:%=lib/problem/%.c)
+	$(CPPCHECK) -D__AVX__ -DLANES=4 $(WIDE:%=lib/solve/%.c)
+	$(CPPCHECK) -D__AVX__ -DLANES=8 $(WIDE:%=lib/solve/%.c)
 
-TIDY := $(sort $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/ranks/%),$(wildcard lib/*/*.c tools/*.c)))))
+TIDY := $(sort $(patsubst %.c,lint-tidy-%,$(notdir $(filter-out $(if $(MPI_PC),,lib/mpi/% lib/run/mpi_processes.c),$(wildcard lib/*/*.c tools/*.c)))))
 
 # STATES: how many states of a function the analyzer looks at, if not its own 225000
 STATES ?=
@@ -427,7 +429,7 @@ install-lib: $B/$(SONAME)
 # What a program with the library is built by: its only header, the archive, the link for compilers
 install-dev: $B/libnsd.a
 	install -d $(DESTDIR)$(LIBDIR)/pkgconfig $(TO)/include $(TO)/share/man/man3
-	install -m 644 lib/api/nsd.h $(TO)/include
+	install -m 644 lib/run/nsd.h $(TO)/include
 	install -m 644 $B/libnsd.a $(DESTDIR)$(LIBDIR)
 	ln -sf $(SONAME) $(DESTDIR)$(LIBDIR)/libnsd.so
 	install -m 644 man/nsd.3 $(TO)/share/man/man3

@@ -1,6 +1,6 @@
 /* nsd-cat: joins, cuts and thins streams and trajectories, and turns one into the other. */
 #include "run/cli.h"
-#include "convert/vtk_parts.h"
+#include "convert/vtk.h"
 #include "file/reader.h"
 #include "file/writer.h"
 

@@ -1,5 +1,5 @@
 /* nsd-detect: finds the contacts of packings. */
-#include "state/wrap.h"
+#include "state/placement.h"
 #include "run/cli.h"
 #include "run/options.h"
 #include "run/tool_filter.h"

@@ -5,7 +5,6 @@
 #include "step/move.h"
 #include "solve/err.h"
 #include "solve/prepare.h"
-#include "solve/self_stress.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

@@ -4,8 +4,7 @@
 #include "run/cli.h"
 #include "run/tool_filter.h"
 #include "convert/format.h"
-#include "convert/pvd.h"
-#include "convert/some_bodies.h"
+#include "convert/vtk.h"
 #include "file/reader.h"
 
 #include <ctype.h>

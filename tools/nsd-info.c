@@ -1,6 +1,6 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
 #include "state/selection.h"
-#include "state/energy.h"
+#include "state/rotation.h"
 #include "state/face_of.h"
 #include "state/kinematics.h"
 #include "state/servo_box.h"

@@ -1,5 +1,5 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
-#include "state/energy.h"
+#include "state/rotation.h"
 #include "run/cli.h"
 #include "run/tool_filter.h"
 #include "step/move.h"

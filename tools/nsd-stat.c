@@ -2,11 +2,9 @@
 #include "base/output.h"
 #include "run/cli.h"
 #include "run/tool_filter.h"
-#include "convert/vti.h"
-#include "convert/fields_write.h"
+#include "convert/fields_file.h"
 #include "file/reader.h"
-#include "measure/asked.h"
-#include "measure/measured.h"
+#include "measure/measures.h"
 
 #include <errno.h>
 #include <inttypes.h>

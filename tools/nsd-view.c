@@ -7,7 +7,7 @@
 #include "draw/images.h"
 #include "draw/overlay.h"
 #include "draw/svg.h"
-#include "draw/values.h"
+#include "draw/paint.h"
 #include "file/reader.h"
 
 #include <ctype.h>

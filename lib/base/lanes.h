@@ -45,7 +45,7 @@ typedef int64_t vm __attribute__((vector_size(8 * LANES)));
 
 #define NONE ((vm){ 0 }) /* no lane */
 
-/* On a device they are macros, for pointers into each of its memories [problem/opencl/begin.cl]. */
+/* On a device they are macros, for pointers into each of its memories [solve/opencl/begin.cl]. */
 #ifndef vload
 ALWAYS_INLINE vd vload(const double *x)
 {

@@ -93,3 +93,33 @@ int option_set(const struct cli_option *o, void *to, const char *text, struct fa
         return option_set_number(o, to, text, failure);
     }
 }
+
+/* Reads a range of steps. */
+
+/* Reads a number, or nothing, up to a colon or the end, and moves *s there. */
+static bool parse_part(const char **s, int64_t *x)
+{
+    char *end;
+    errno = 0;
+    if (**s != ':' && **s) {
+        *x = strtoll(*s, &end, 10);
+        if (end == *s || errno || *x < 0) return false;
+        *s = end;
+    }
+    return **s == ':' || !**s;
+}
+
+bool range_parse(struct range *r, const char *s)
+{
+    *r = (struct range){ 0, INT64_MAX, 1 };
+    if (!*s || !parse_part(&s, &r->from)) return false;
+    if (!*s) { // one step alone
+        r->to = r->from;
+        return true;
+    }
+    s++;
+    if (!parse_part(&s, &r->to)) return false;
+    if (!*s) return r->from <= r->to;
+    s++;
+    return parse_part(&s, &r->by) && !*s && r->by > 0 && r->from <= r->to;
+}

@@ -54,4 +54,17 @@ void option_words(const struct cli_option *o, char *text, size_t size);
    with "--name: trouble". A CLI_TEXT is borrowed. */
 int option_set(const struct cli_option *o, void *to, const char *text, struct failure *failure);
 
+/* Ranges of steps, "A:B:K": every K-th step from A to B. Any may be left out. */
+
+struct range {
+    int64_t from, to, by; /* from, from + by ... up to and with to */
+};
+
+/* Parses "7", "100:", ":50", "0:1000:10", "::10" ...; false where text is no range. */
+bool range_parse(struct range *r, const char *text);
+static inline bool range_has(const struct range *r, int64_t step)
+{
+    return step >= r->from && step <= r->to && (step - r->from) % r->by == 0;
+}
+
 #endif

@@ -2,7 +2,7 @@
 #include "contact/bond_anchor.h"
 
 #include "state/kinematics.h"
-#include "state/top.h"
+#include "state/rotation.h"
 
 #include <stdlib.h>
 

@@ -14,7 +14,7 @@
 #ifndef NSD_ANCHOR_H
 #define NSD_ANCHOR_H
 
-#include "state/positions.h"
+#include "state/placement.h"
 
 /*
  * Puts the contacts of all anchored bonds that hold into s, which has been detected at these positions. Returns 0 or

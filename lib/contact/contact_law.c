@@ -10,6 +10,19 @@
 #include <float.h>
 #include <stdlib.h>
 
+void friction_choose(struct contacts *s, const struct packing *p)
+{
+    vec3 edge[3];
+    const double ahead = step_ahead(p);
+    if (!packing_sticks(p)) return;
+    cell_predict(&p->cell, ahead, edge);
+    for (int64_t i = 0; i < s->n; i++) {
+        struct contact *c = &s->c[i];
+        const int32_t k = packing_pair(p, c->a, c->b);
+        if (p->mu_s[k] > c->mu && sliding_of(p, c, ahead, edge) <= p->v_s[k]) c->mu = p->mu_s[k];
+    }
+}
+
 static const double TOUCH = 1e-6;      /* radii: pairs not further apart touch; it is rounding */
 static const double LEAST_BETA = 1e-3; /* bonds of less are broken */
 static const double MARGIN = 0.05;     /* radii: by which a step may miss the gap that it expects */

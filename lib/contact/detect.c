@@ -5,12 +5,11 @@
 #include "contact/bond_anchor.h"
 #include "contact/contact_law.h"
 #include "state/freedom.h"
-#include "contact/friction.h"
 #include "state/kinematics.h"
-#include "state/top.h"
+#include "state/rotation.h"
 #include "contact/detect_shapes.h"
 #include "contact/internal_edge.h"
-#include "contact/situation.h"
+#include "contact/seek.h"
 #include "contact/tunnelling.h"
 
 #include <stdlib.h>

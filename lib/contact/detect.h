@@ -11,7 +11,7 @@
 /*
  * out = a contact for every pair of bodies, and of a body and a wall, whose gap at the predicted
  * positions is at most `gap` (m) and of which one can move; where the law sees gaps
- * [state/overlap.h], also for those that may close theirs within the step. Balls meet in one place,
+ * [state/packing.h], also for those that may close theirs within the step. Balls meet in one place,
  * bodies of other shapes in several [contact/detect_shapes.h]. Where the cell repeats, b is any image of a body
  * that a meets.
  *

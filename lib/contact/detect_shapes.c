@@ -1,9 +1,8 @@
 #include "contact/detect_shapes.h"
 
-#include "shape/between.h"
+#include "shape/wall_edge.h"
 #include "shape/meet.h"
-#include "shape/rim.h"
-#include "shape/surface_tree.h"
+#include "shape/mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

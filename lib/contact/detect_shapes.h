@@ -5,15 +5,15 @@
  * A boundary is met by the corners of a core, each where the surface is next to it: that is all that
  * can meet a plane, or a cylinder, cone or sphere from inside. The outside of a sphere or an endless
  * cylinder is met as a ball or a capsule would be. The rims and ridges of rectangles, segments, meshes and
- * chains meet edges and faces, too [shape/rim.h]; those of discs, cylinders and cones do not.
+ * chains meet edges and faces, too [shape/wall_edge.h]; those of discs, cylinders and cones do not.
  */
 #ifndef NSD_DETECT_SHAPES_H
 #define NSD_DETECT_SHAPES_H
 
 #include "state/contact.h"
-#include "state/placed.h"
+#include "state/placement.h"
 #include "contact/neighbours.h"
-#include "contact/situation.h"
+#include "contact/seek.h"
 
 enum {
     RIM_END = 1 << 29 /* features of rims and their ends are not below it, those of corners are */

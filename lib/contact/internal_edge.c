@@ -3,8 +3,8 @@
 #include "contact/detect_shapes.h"
 #include "contact/tunnelling.h"
 #include "shape/gjk.h"
-#include "shape/rim.h"
-#include "shape/surface_tree.h"
+#include "shape/wall_edge.h"
+#include "shape/mesh.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -19,7 +19,7 @@
 #define NSD_SEAM_H
 
 #include "state/contact.h"
-#include "contact/situation.h"
+#include "contact/seek.h"
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
 int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);

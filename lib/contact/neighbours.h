@@ -6,7 +6,7 @@
 #define NSD_NEIGHBOURS_H
 
 #include "base/failure.h"
-#include "state/positions.h"
+#include "state/placement.h"
 #include "contact/seek.h"
 
 /* All zero to begin with. */

@@ -12,7 +12,26 @@
 #define NSD_SEEK_H
 
 #include "base/failure.h"
+#include "shape/mesh.h"
 #include "state/packing.h"
+#include "state/placement.h"
+
+/* Bodies and boundaries, prepared for a search of contacts. */
+
+struct situation {
+    const struct packing *p;
+    const vec3 *x, *edge;          /* [p->n] m; edges of the cell, NULL: it does not repeat */
+    double t;                      /* s: of the walls */
+    const struct placed *shaped;   /* NULL: all are balls */
+    const struct surface *surface; /* [p->walls] of those that are meshes */
+};
+
+/* The surface of wall w; NULL: it is no mesh */
+static inline const struct surface *situation_surface(const struct situation *o, int32_t w)
+{
+    return o->p->wall[w].shape == BOUNDARY_MESH ? &o->surface[w] : NULL;
+}
+
 
 struct pair {
     int32_t a, b;    /* bodies, a < b; at least one can move */

@@ -1,8 +1,8 @@
 #include "contact/tunnelling.h"
 
 #include "contact/detect_shapes.h"
-#include "shape/between.h"
-#include "shape/surface_tree.h"
+#include "shape/wall_edge.h"
+#include "shape/mesh.h"
 
 #include <stdlib.h>
 

@@ -5,7 +5,7 @@
  * Its way in the step, relative to a boundary, (v + g dt - v_wall) dt, is looked at in places no farther apart than
  * it is thick. The first of them at which it touches what it did not touch before makes contacts now, with all that
  * is nearer there than it is thick, and with the gaps along their normals that it has now: it gets as far as there in this step, or where the law sees no gaps
- * [state/overlap.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
+ * [state/packing.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
  * contacts however wide the gap is. The same is done where a body would meet hulls that are fixed.
  *
  * What still gets through is counted after the step; at the start of a run also what goes through something before
@@ -15,8 +15,8 @@
 #define NSD_SWIFT_H
 
 #include "state/contact.h"
-#include "state/placed.h"
-#include "contact/situation.h"
+#include "state/placement.h"
+#include "contact/seek.h"
 
 /* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
 enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };

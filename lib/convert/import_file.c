@@ -1,6 +1,6 @@
 #include "convert/import_file.h"
 
-#include "convert/import_format.h"
+#include "convert/imported.h"
 #include "convert/ondem_read.h"
 #include "base/bounded.h"
 

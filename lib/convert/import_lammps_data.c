@@ -3,7 +3,7 @@
  * head of numbers before their names, and sections. Read are the box, Atoms of style sphere (LIGGGHTS: granular)
  * and Velocities. Which edges are periodic is not in the file.
  */
-#include "convert/import_format.h"
+#include "convert/imported.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
  * names of its columns; others are read over. UNITS, which a file may have once, before its first frame, names the unit
  * system of all.
  */
-#include "convert/import_format.h"
+#include "convert/imported.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * convert/import_units.c: the unit systems of LAMMPS and LIGGGHTS [docs.lammps.org, units]. Those of grains are converted to
  * SI; those of atoms (real, metal, electron) are refused. lj has no units: its numbers are taken for SI.
  */
-#include "convert/import_format.h"
+#include "convert/imported.h"
 
 #include <stdio.h>
 

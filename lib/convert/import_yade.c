@@ -3,7 +3,7 @@
  * "#format x_y_z_r", "..._matId", "id_x_y_z_r_matId" or "x_y_z_r_attrs", the last with a comment "# x y z r NAME ..."
  * for its columns; then a line a ball. Members of clumps (textClumps) are no balls, and refused.
  */
-#include "convert/import_format.h"
+#include "convert/imported.h"
 
 #include <string.h>
 

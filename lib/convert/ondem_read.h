@@ -1,5 +1,5 @@
 /*
- * convert/ondem_read.h: packings in ON-DEM's exchange format [convert/ondem_write.h], by ours or another program: spheres,
+ * convert/ondem_read.h: packings in ON-DEM's exchange format [convert/ondem.h], by ours or another program: spheres,
  * boxes, clumps of spheres, and what /nsd describes: polyhedra, capsules; walls across an axis. What the scene that takes them
  * has itself is not read: contacts and the stiffnesses of materials.
  */

@@ -3,7 +3,7 @@
 #include "convert/import_file.h"
 #include "file/reader.h"
 #include "scene/mesh_file.h"
-#include "scene/scene_parts.h"
+#include "scene/surface_parts.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,7 +1,9 @@
 #include "convert/sheet.h"
 
+#include "draw/facets.h"
 #include "state/face_of.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -113,4 +115,231 @@ int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, stru
     c->whole = calloc((size_t)(sheet_rows(s) * c->width) + 1, sizeof *c->whole);
     if (!c->whole) failure_set(failure, EX_SOFTWARE, "no memory for an export");
     return c->whole;
+}
+
+/* The cell as the lines along its edges; none where nothing repeats. */
+
+int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct cell *c = &m->packing->cell;
+    struct box b;
+    s->shape = SHEET_LINE;
+    if (!cell_repeats(c)) return 0;
+    export_frame_box(&b, m->packing);
+    for (int k = 0; k < 3; k++)
+        for (int corner = 0; corner < 4; corner++) {
+            vec3 from = b.origin;
+            if (corner & 1) from = v3_add(from, b.edge[(k + 1) % 3]);
+            if (corner & 2) from = v3_add(from, b.edge[(k + 2) % 3]);
+            const vec3 line[2] = { from, v3_add(from, b.edge[k]) };
+            if (sheet_add(s, 2, line, failure)) return failure->status;
+        }
+    int32_t *edge = sheet_whole(s, "edge", "", failure), *repeats = sheet_whole(s, "repeats", "", failure);
+    double *rate = sheet_real(s, "rate", "xyz", failure);
+    if (failure->status) return failure->status;
+    for (int k = 0; k < 12; k++) {
+        const vec3 r = c->rate[k / 4];
+        edge[k] = k / 4, repeats[k] = c->repeats[k / 4];
+        rate[3 * k] = r.x, rate[3 * k + 1] = r.y, rate[3 * k + 2] = r.z;
+    }
+    return 0;
+}
+
+/*
+ * Contacts as lines from centre to centre, from a boundary's point of
+ * contact to the centre; with forces in N, in space, where they are solved.
+ */
+
+static int sheet_add_lines(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    for (int64_t i = 0; i < m->contacts->n; i++) {
+        const struct contact *c = &m->contacts->c[i];
+        vec3 b = v3_add(p->x[c->b], cell_shift(p->cell.edge, c->shift));
+        const vec3 end[2] = { c->a >= 0 ? p->x[c->a] : c->x, b };
+        if (sheet_add(s, 2, end, failure)) return failure->status;
+    }
+    return 0;
+}
+
+static void sheet_put(double *out, int64_t i, vec3 x)
+{
+    out[3 * i] = x.x, out[3 * i + 1] = x.y, out[3 * i + 2] = x.z;
+}
+
+static int sheet_add_forces(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const double dt = m->packing->dt;
+    int32_t *status = sheet_whole(s, "status", "", failure);
+    double *force = sheet_real(s, "force", "xyz", failure);
+    double *normal = sheet_real(s, "normal_force", "", failure);
+    double *tangential = sheet_real(s, "tangential_force", "", failure);
+    if (failure->status) return failure->status;
+    for (int64_t i = 0; i < m->contacts->n; i++) {
+        const struct found *f = &m->contacts->found[i];
+        status[i] = (int32_t)f->status; // NOLINT(bugprone-signed-char-misuse): 0, 1 or 2
+        sheet_put(force, i, v3_scale(1 / dt, contact_in_space(&m->contacts->c[i], f->r)));
+        normal[i] = f->r[0] / dt, tangential[i] = hypot(f->r[1], f->r[2]) / dt;
+    }
+    return 0;
+}
+
+int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    s->shape = SHEET_LINE;
+    if (!m->contacts) return 0;
+    if (sheet_add_lines(s, m, failure)) return failure->status;
+    int32_t *body = sheet_whole(s, "body", "ab", failure), *id = sheet_whole(s, "id", "ab", failure);
+    double *point = sheet_real(s, "point", "xyz", failure), *n = sheet_real(s, "normal", "xyz", failure);
+    double *gap = sheet_real(s, "gap", "", failure), *mu = sheet_real(s, "mu", "", failure);
+    if (failure->status) return failure->status;
+    for (int64_t i = 0; i < m->contacts->n; i++) {
+        const struct contact *c = &m->contacts->c[i];
+        body[2 * i] = c->a, body[2 * i + 1] = c->b;
+        id[2 * i] = c->a >= 0 ? p->id[c->a] : c->a, id[2 * i + 1] = p->id[c->b];
+        sheet_put(point, i, c->x), sheet_put(n, i, c->n);
+        gap[i] = c->gap, mu[i] = c->mu;
+    }
+    return m->contacts->found ? sheet_add_forces(s, m, failure) : 0;
+}
+
+/* Grains as points, with all that a document says of each. */
+
+/* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
+static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    const struct contacts *t = m->contacts;
+    int32_t *count = sheet_whole(s, "contacts", "", failure);
+    double *force = sheet_real(s, "contact_force", "xyz", failure);
+    if (failure->status) return failure->status;
+    for (int64_t i = 0; i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        vec3 f = v3_scale(1 / p->dt, contact_in_space(c, t->found[i].r));
+        for (int side = 0; side < 2; side++) {
+            int32_t body = side ? c->b : c->a;
+            if (body < 0) continue;
+            count[body] += t->found[i].r[0] > 0;
+            double sign = side ? 1 : -1, *to = force + 3 * (size_t)body;
+            to[0] += sign * f.x, to[1] += sign * f.y, to[2] += sign * f.z;
+        }
+    }
+    return 0;
+}
+
+int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    const size_t n = (size_t)p->n;
+    s->shape = SHEET_POINT, s->of_points = true;
+    for (int64_t i = 0; i < p->n; i++)
+        if (sheet_add(s, 1, &p->x[i], failure)) return failure->status;
+    int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure);
+    double *radius = sheet_real(s, "radius", "", failure), *mass = sheet_real(s, "mass", "", failure);
+    double *v = sheet_real(s, "velocity", "xyz", failure);
+    double *w = sheet_real(s, "angular_velocity", "xyz", failure);
+    double *q = sheet_real(s, "orientation", "wxyz", failure);
+    int32_t *shape = p->shape ? sheet_whole(s, "shape", "", failure) : NULL;
+    int32_t *group = p->group ? sheet_whole(s, "group", "", failure) : NULL;
+    int32_t *image = p->image ? sheet_whole(s, "image", "xyz", failure) : NULL;
+    if (failure->status) return failure->status;
+    if (n && image) memcpy(image, p->image, n * sizeof *p->image);
+    if (n && group) memcpy(group, p->group, n * sizeof *group);
+    if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
+    if (n) {
+        memcpy(id, p->id, n * sizeof *id), memcpy(kind, p->kind, n * sizeof *kind);
+        memcpy(radius, p->radius, n * sizeof *radius), memcpy(mass, p->mass, n * sizeof *mass);
+        memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
+        memcpy(q, p->q, n * sizeof *p->q);
+    }
+    return m->contacts && m->contacts->found ? sheet_add_contacts(s, m, failure) : 0;
+}
+
+/* The surfaces of grains that are no balls, as polygons: a cell for each. */
+
+/* Which grain each cell is of */
+struct sheet_cells {
+    struct sheet *s;
+    int64_t grain, room;
+    int32_t *of;
+    struct failure *failure;
+};
+
+static void sheet_add_cell(void *to, int corners, const vec3 *x)
+{
+    struct sheet_cells *c = to;
+    if (c->failure->status) return;
+    if (c->s->cells == c->room) {
+        int64_t room = 2 * c->room + 64;
+        int32_t *of = realloc(c->of, (size_t)room * sizeof *of);
+        if (!of) {
+            failure_set(c->failure, EX_SOFTWARE, "no memory for the surfaces of the grains");
+            return;
+        }
+        c->of = of, c->room = room;
+    }
+    c->of[c->s->cells] = (int32_t)c->grain;
+    sheet_add(c->s, corners, x, c->failure);
+}
+
+static void sheet_surfaces_put(double *out, int64_t k, vec3 x)
+{
+    out[3 * k] = x.x, out[3 * k + 1] = x.y, out[3 * k + 2] = x.z;
+}
+
+static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
+                        struct failure *failure)
+{
+    int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure),
+            *shape = sheet_whole(s, "shape", "", failure);
+    double *radius = sheet_real(s, "radius", "", failure), *mass = sheet_real(s, "mass", "", failure);
+    double *v = sheet_real(s, "velocity", "xyz", failure);
+    double *w = sheet_real(s, "angular_velocity", "xyz", failure);
+    if (failure->status) return;
+    for (int64_t k = 0; of && k < s->cells; k++) {
+        int32_t i = of[k];
+        id[k] = p->id[i], kind[k] = p->kind[i], shape[k] = p->shape[i];
+        radius[k] = p->radius[i], mass[k] = p->mass[i];
+        sheet_surfaces_put(v, k, p->v[i]), sheet_surfaces_put(w, k, p->w[i]);
+    }
+}
+
+/* Of solved contacts: how many push each cell's grain, and the sum of their forces on it (N) */
+static void sheet_surfaces_add_contacts(struct sheet *s, const int32_t *of, const struct export_frame *m,
+                         struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    const struct contacts *t = m->contacts;
+    int32_t *count = sheet_whole(s, "contacts", "", failure);
+    double *force = sheet_real(s, "contact_force", "xyz", failure);
+    vec3 *sum = calloc((size_t)p->n + 1, sizeof *sum);
+    int32_t *pushes = calloc((size_t)p->n + 1, sizeof *pushes);
+    if (!sum || !pushes) failure_set(failure, EX_SOFTWARE, "no memory for the forces on grains");
+    for (int64_t i = 0; !failure->status && i < t->n; i++) {
+        const struct contact *c = &t->c[i];
+        vec3 f = v3_scale(1 / p->dt, contact_in_space(c, t->found[i].r));
+        sum[c->b] = v3_add(sum[c->b], f), pushes[c->b] += t->found[i].r[0] > 0;
+        if (c->a >= 0) sum[c->a] = v3_sub(sum[c->a], f), pushes[c->a] += t->found[i].r[0] > 0;
+    }
+    for (int64_t k = 0; !failure->status && of && k < s->cells; k++)
+        count[k] = pushes[of[k]], sheet_surfaces_put(force, k, sum[of[k]]);
+    free(sum), free(pushes);
+}
+
+int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure *failure)
+{
+    const struct packing *p = m->packing;
+    struct sheet_cells c = { .s = s, .failure = failure };
+    struct facets f;
+    s->shape = SHEET_POLYGON;
+    if (facets_init(&f, m->detail, failure)) return failure->status;
+    for (c.grain = 0; c.grain < p->n && !failure->status; c.grain++)
+        if (packing_shape(p, c.grain) && export_frame_has(m, c.grain))
+            facets_of(&f, p, c.grain, sheet_add_cell, &c);
+    if (!failure->status) sheet_add_columns(s, c.of, p, failure);
+    if (!failure->status && m->contacts && m->contacts->found) sheet_surfaces_add_contacts(s, c.of, m, failure);
+    facets_free(&f);
+    free(c.of);
+    return failure->status;
 }

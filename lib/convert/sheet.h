@@ -6,7 +6,7 @@
 #define NSD_SHEET_H
 
 #include "base/failure.h"
-#include "convert/export_frame.h"
+#include "convert/format.h"
 
 enum { SHEET_COLUMNS = 24 };
 

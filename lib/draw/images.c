@@ -1,7 +1,7 @@
 /* draw/images.c: bodies on either side of the cell's border, and the border [draw/images.h]. */
 #include "draw/images.h"
 
-#include "state/wrap.h"
+#include "state/placement.h"
 
 #include <stdlib.h>
 #include <string.h>

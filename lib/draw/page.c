@@ -6,23 +6,50 @@
  *   fK, frame K    u16[n][4] position and |spin|; i16[n][4] velocity, 0; i8[n][4] orientation;
  *                  i32[c] a; i32[c] b; u16[c] normal force; u16[c] tangential; i8[c][4] normal, status
  *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] kind; i32[n] shape, where not all are balls
- *   sK, shapes     as draw/page_shapes.h has them; where not all are balls
+ *   sK, shapes     as draw/page_data.h has them; where not all are balls
  *   bK, walls      u32 triangles, u32 lines; f32 corners [9] each; f32 ends [6] each
  *
- * The JSON element "meta" [draw/page_meta.h] has for each frame what its numbers are relative to: x = lo + step k,
+ * The JSON element "meta" [draw/page_data.h] has for each frame what its numbers are relative to: x = lo + step k,
  * v = vmax k / 32767, |w| = wmax k / 65535, f = fmax k / 65535.
  */
 #include "draw/page.h"
 
 #include "draw/images.h"
 #include "draw/outline.h"
-#include "draw/page_chunk.h"
-#include "draw/page_parts.h"
-#include "draw/page_shapes.h"
+#include "draw/page_data.h"
 
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The texts of draw/page/, which are part of the program. */
+
+enum page_text { PAGE_HTML, PAGE_CSS, PAGE_JS, PAGE_THREE, PAGE_LICENCE };
+
+/* The text of a file */
+const char *page_part(enum page_text which);
+
+/* The assembler takes the files in as they are [draw/page.h]. */
+
+#define TAKE_IN(name, file)                                                                        \
+    __asm__(".section .rodata\n.hidden " name "\n.globl " name "\n" name                           \
+            ": .incbin \"lib/draw/page/" file "\"\n.byte 0\n.previous\n")
+
+TAKE_IN("nsd_page_html", "page.html");
+TAKE_IN("nsd_page_css", "page.css");
+TAKE_IN("nsd_page_js", "page.js");
+TAKE_IN("nsd_page_three", "three.module.min.js");
+TAKE_IN("nsd_page_licence", "LICENSE.three");
+
+extern const char nsd_page_html[], nsd_page_css[], nsd_page_js[], nsd_page_three[],
+    nsd_page_licence[];
+
+const char *page_part(enum page_text which)
+{
+    static const char *const part[] = { nsd_page_html, nsd_page_css, nsd_page_js, nsd_page_three,
+                                        nsd_page_licence };
+    return part[which];
+}
 
 static int page_no_memory(struct failure *failure)
 {

@@ -8,8 +8,8 @@
 #ifndef NSD_PAGE_H
 #define NSD_PAGE_H
 
+#include "draw/page_data.h"
 #include "state/contact.h"
-#include "draw/page_meta.h"
 
 /* Each returns 0, EX_SOFTWARE, EX_IOERR or EX_DATAERR (more than INT32_MAX grains or contacts). */
 int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct failure *failure);

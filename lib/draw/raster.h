@@ -5,7 +5,7 @@
 #ifndef NSD_RASTER_H
 #define NSD_RASTER_H
 
-#include "draw/band.h"
+#include "draw/shade.h"
 
 /* Draws all pixels of p, which has been initialised. Returns 0 or EX_SOFTWARE. */
 int raster_draw(const struct raster *s, struct picture *p, struct failure *failure);

@@ -2,7 +2,7 @@
 #include "draw/view.h"
 
 #include "state/selection.h"
-#include "draw/glass.h"
+#include "draw/wall_facets.h"
 #include "draw/images.h"
 #include "draw/raster.h"
 

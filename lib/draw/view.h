@@ -13,7 +13,7 @@
 #include "draw/camera.h"
 #include "draw/paint.h"
 #include "draw/picture.h"
-#include "draw/solid.h"
+#include "draw/wall_facets.h"
 #include "draw/walls.h"
 
 struct view {
@@ -26,7 +26,7 @@ struct view {
     bool strays;    /* bodies and walls far from all others count too in what the picture shows */
     bool follows;   /* a body stays where it is in the picture: */
     int32_t follow; /* its id */
-    bool glass;     /* boundaries are half-transparent, not lines alone [draw/glass.h] */
+    bool glass;     /* boundaries are half-transparent, not lines alone [draw/wall_facets.h] */
     const struct selection *only; /* bodies that are drawn, and what joins them; NULL: all */
     const struct solid_walls *solid; /* boundaries that are solid instead; NULL: none */
     float pale;                /* 0 to 1: how much bodies are mixed with the background */

@@ -6,7 +6,7 @@
 #define NSD_CELL_TABLES_H
 
 #include "file/source.h"
-#include "file/table_write.h"
+#include "file/tables.h"
 
 /* Which edges of a document's box are periodic */
 int cell_tables_open(struct source *source, bool repeats[3], struct failure *failure);

@@ -6,6 +6,8 @@
 #ifndef NSD_CHILD_H
 #define NSD_CHILD_H
 
+#include "file/h5.h"
+#include "file/object.h"
 #include "file/request.h"
 
 struct child;
@@ -21,5 +23,32 @@ bool child_lost(const struct child *child);
 /* Asks, and takes all pieces of the answer. EX_DATAERR also where the child broke down over it. */
 int child_ask(struct child *child, const struct request *request, struct taker *taker,
               struct failure *failure);
+
+/*
+ * The list of a document's objects, as the process that reads has sent it, and the values
+ * that came along with it: for these nothing has to be asked.
+ */
+
+struct list {
+    unsigned char *bytes; /* a sequence of objects */
+    struct listed *object;
+    int64_t *sorted; /* [count] objects, then attributes, by their paths */
+    int64_t count;
+};
+
+/* Takes the bytes over, to be freed by list_free even after a failure. EX_DATAERR: no such sequence. */
+int list_open(struct list *list, unsigned char *bytes, uint64_t size, struct failure *failure);
+void list_free(struct list *list);
+
+/* The object under this path; NULL: there is none. */
+const struct listed *list_find(const struct list *list, const char *path);
+/* An attribute that came with the list; NULL: it has to be asked for. */
+const struct listed *list_attribute(const struct list *list, const char *path, const char *name);
+/*
+ * Numbers first .. first+n-1 of it, converted into out; false where they are not there or do not fit,
+ * which has to be told.
+ */
+bool listed_numbers(const struct listed *listed, uint64_t first, uint64_t n, enum column_type type,
+                    void *out);
 
 #endif

@@ -1,14 +1,11 @@
 #include "file/frame_read.h"
 
-#include "file/boundary_tables.h"
+#include "file/wall_tables.h"
 #include "file/cell_tables.h"
 #include "file/distributed.h"
-#include "file/flow_tables.h"
-#include "file/name_tables.h"
-#include "file/outside_tables.h"
-#include "file/pair_law_tables.h"
-#include "file/pull_tables.h"
 #include "file/roster.h"
+#include "file/external_force_tables.h"
+#include "file/pair_law_tables.h"
 #include "file/shape_tables.h"
 #include "file/wall_load_tables.h"
 

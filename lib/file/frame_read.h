@@ -7,7 +7,6 @@
 
 #include "file/contact_rows.h"
 #include "file/frame.h"
-#include "file/memory_rows.h"
 #include "file/report_rows.h"
 
 /* An open document, and what it holds of each moment */

@@ -5,7 +5,7 @@
 #ifndef NSD_FRAME_WRITE_H
 #define NSD_FRAME_WRITE_H
 
-#include "file/table_write.h"
+#include "file/tables.h"
 
 int frame_write_static(struct table_write *tables, const struct frame *frame, struct failure *failure);
 int frame_write_moment(struct table_write *tables, const struct frame *frame, struct failure *failure);

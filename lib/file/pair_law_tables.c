@@ -1,7 +1,7 @@
 #include "file/pair_law_tables.h"
 
 #include "file/h5.h"
-#include "file/table_read.h"
+#include "file/tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #define NSD_PAIR_LAW_TABLES_H
 
 #include "file/source.h"
-#include "file/table_write.h"
+#include "file/tables.h"
 
 /* The laws, and the bonds of frame k; nothing where there is no such group. packing_check() looks at
    the numbers. */

@@ -5,7 +5,7 @@
 #ifndef NSD_READER_H
 #define NSD_READER_H
 
-#include "base/range.h"
+#include "base/option.h"
 #include "file/source.h"
 #include "file/frame.h"
 

@@ -5,7 +5,7 @@
 #ifndef NSD_REQUEST_H
 #define NSD_REQUEST_H
 
-#include "file/budget.h"
+#include "file/served.h"
 #include "file/h5.h"
 #include "file/object.h"
 

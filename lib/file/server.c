@@ -1,7 +1,7 @@
 #include "file/server.h"
 
 #include "base/embedded.h"
-#include "base/limits.h"
+#include "base/bounded.h"
 #include "file/serve.h"
 #include "file/stream.h"
 

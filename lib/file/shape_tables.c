@@ -1,7 +1,7 @@
 #include "file/shape_tables.h"
 
 #include "file/h5.h"
-#include "file/table_read.h"
+#include "file/tables.h"
 
 #include <stdlib.h>
 #include <string.h>

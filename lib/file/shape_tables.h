@@ -6,7 +6,7 @@
 #define NSD_SHAPE_TABLES_H
 
 #include "file/source.h"
-#include "file/table_write.h"
+#include "file/tables.h"
 
 /* The table, checked; the bodies' rows are among the tables of bodies. */
 int shape_tables_read(struct source *source, struct packing *p, struct failure *failure);

@@ -1,7 +1,6 @@
 #include "file/source.h"
 
 #include "file/child.h"
-#include "file/listed.h"
 #include "file/serve.h"
 
 #include <stdio.h>

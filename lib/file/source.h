@@ -40,7 +40,7 @@ struct source_document {
 
 /* Work on what is in the document that takes as long as so many bytes of it would. EX_DATAERR: too much */
 int source_draw(struct source *source, uint64_t work, struct failure *failure);
-/* Another frame of it is begun [file/budget.h]. */
+/* Another frame of it is begun [file/served.h]. */
 int source_frame(struct source *source, struct failure *failure);
 
 /* How the pieces of a document go on; 0, or why not. */

@@ -6,7 +6,7 @@
 #define NSD_SUM_TABLES_H
 
 #include "file/source.h"
-#include "file/table_write.h"
+#include "file/tables.h"
 
 /* Those of frame k, into a packing that has its boundaries. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int sum_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);

@@ -327,7 +327,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct failure 
  * ---- a trajectory ----
  *
  * At every moment a reader finds the finished frames, so also after the writer was killed:
- * - numbers go straight to the disk (file/table_write.c); a flush writes their shapes and places, and
+ * - numbers go straight to the disk (file/tables.c); a flush writes their shapes and places, and
  *   a frame's step is flushed after everything else;
  * - places are kept in the chunk index of HDF5 1.10, in which no entry ever moves (the older B-tree
  *   is split now and then);

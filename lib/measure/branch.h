@@ -9,7 +9,10 @@
 #define NSD_BRANCH_H
 
 #include "contact/contact_law.h"
+#include "measure/snapshot.h"
 #include "state/kinematics.h"
+
+#include <stdint.h>
 
 /* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
    the whole distance to it. */
@@ -68,5 +71,17 @@ static inline bool branch_counts(const struct contacts *s, int64_t i)
     if (s->law && contact_law_holds(&s->law[i])) return true;
     return s->found ? s->found[i].r[0] != 0 : s->c[i].gap <= 0;
 }
+
+/* How many contacts each body has, and which bodies bear nothing. */
+
+/* [n] contacts that count [measure/branch.h] of each body; NULL when memory is short. To be freed. */
+int32_t *counts_of(const struct snapshot *s);
+/*
+ * Takes contacts off count[n] until every body that moves has none or at least `least`: what is left
+ * bears. Returns 0, or -1 when memory is short.
+ */
+int counts_without_rattlers(int32_t *count, const struct snapshot *s, int least);
+/* A body that moves, to which measures keep, and whose centre is in the region? */
+bool counts_body(const struct snapshot *s, int64_t i);
 
 #endif

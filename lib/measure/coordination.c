@@ -1,6 +1,5 @@
 /* measure/coordination.c: how many contacts bodies have. */
 #include "measure/branch.h"
-#include "measure/counts.h"
 #include "measure/measures.h"
 
 #include <math.h>

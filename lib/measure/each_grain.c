@@ -1,7 +1,6 @@
 /* measure/each_grain.c: numbers of each body: its stress, its contacts, its speed. */
 #include "measure/ball_part.h"
 #include "measure/branch.h"
-#include "measure/counts.h"
 #include "measure/measures.h"
 
 #include <math.h>

@@ -1,10 +1,44 @@
 /* measure/energies.c: energies, and what a step takes of them. */
+
 #include "contact/contact_law.h"
-#include "state/top.h"
 #include "measure/measures.h"
-#include "measure/step_start.h"
+#include "measure/snapshot.h"
+#include "state/rotation.h"
+#include "step/contact_motion.h"
+#include "step/move.h"
 
 #include <math.h>
+
+/*
+ * The beginning of the step that a frame's contacts belong to, and the sums of their reactions.
+ * A document has either end of the step; the reactions lead from one to the other.
+ */
+
+struct step_start {
+    const struct packing *p; /* where the step begins */
+    struct impulses sum;
+    struct packing back; /* the frame moved back, if it is the step's end */
+};
+
+/* Of solved contacts. Returns 0 or EX_SOFTWARE; to be freed either way. */
+int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure);
+void step_start_free(struct step_start *m);
+
+int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure)
+{
+    *m = (struct step_start){ .p = s->p };
+    if (s->moved) {
+        m->p = &m->back;
+        if (packing_copy(&m->back, s->p, failure) || move_back(&m->back, s->s, failure)) return failure->status;
+    }
+    return impulses_init(&m->sum, m->p, s->s, false, failure);
+}
+
+void step_start_free(struct step_start *m)
+{
+    impulses_free(&m->sum);
+    packing_free(&m->back);
+}
 
 static const struct quantity quantities[] = {
     { "kinetic", "J", 1, "kinetic energy of translation" },

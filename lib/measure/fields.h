@@ -13,7 +13,7 @@
 #ifndef NSD_FIELDS_H
 #define NSD_FIELDS_H
 
-#include "measure/quantity.h"
+#include "measure/table.h"
 #include "measure/snapshot.h"
 
 enum field {

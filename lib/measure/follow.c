@@ -1,7 +1,6 @@
 #include "measure/follow.h"
 
 #include "measure/branch.h"
-#include "measure/counts.h"
 
 #include <math.h>
 #include <stdlib.h>

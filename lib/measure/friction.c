@@ -1,11 +1,53 @@
 /* measure/friction.c: forces of contacts, their distributions, and how much of friction is used. */
-#include "solve/local.h"
-#include "measure/branch.h"
-#include "measure/histogram.h"
-#include "measure/measures.h"
 
+#include "measure/branch.h"
+#include "measure/measures.h"
+#include "measure/table.h"
+#include "solve/local.h"
+
+#include <gsl/gsl_histogram.h>
 #include <math.h>
 #include <stdlib.h>
+
+/* How numbers are distributed, by GSL's histograms. */
+
+/* The quantities of a distribution of numbers called "from" and "to" with this unit */
+#define HISTOGRAM_QUANTITIES(unit, what)                                                           \
+    { "from", unit, 1, "lower end of the bin, " what }, { "to", unit, 1, "upper end of the bin" }, \
+        { "contacts", "1", 1, "number of contacts in the bin" },                                   \
+    {                                                                                              \
+        "density", "1", 1, "probability density: its integral is 1"                                \
+    }
+
+/* A row for each of `bins` bins of the same width from 0 to `most`, which is in the last.
+   Returns 0 or EX_SOFTWARE. */
+int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
+                   struct failure *failure);
+
+int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
+                   struct failure *failure)
+{
+    // GSL's own allocation ends the program when memory is short
+    gsl_histogram h = { (size_t)bins, calloc((size_t)bins + 1, sizeof(double)),
+                        calloc((size_t)bins + 1, sizeof(double)) };
+    if (!h.range || !h.bin) {
+        free(h.range), free(h.bin);
+        return failure_set(failure, EX_SOFTWARE, "no memory for a histogram");
+    }
+    gsl_histogram_set_ranges_uniform(&h, 0, most);
+    // the largest number belongs to the last bin, whose end GSL does not count to it
+    h.range[bins] = nextafter(most, INFINITY);
+    for (int64_t i = 0; i < n; i++) gsl_histogram_increment(&h, x[i]);
+    for (int64_t k = 0; k < bins; k++) {
+        double from = h.range[k], to = k + 1 == bins ? most : h.range[k + 1];
+        double *at = table_row(t, failure);
+        if (!at) break;
+        put(&at, from), put(&at, to), put(&at, h.bin[k]);
+        put(&at, h.bin[k] / (double)n / (to - from));
+    }
+    free(h.range), free(h.bin);
+    return failure->status;
+}
 
 /* Does contact i push or pull, in the region? */
 static bool friction_pushes(const struct snapshot *s, int64_t i)

@@ -1,7 +1,7 @@
 #include "measure/inside.h"
 
 #include "measure/ball_part.h"
-#include "measure/reach.h"
+#include "measure/region.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -58,4 +58,49 @@ const struct measure *measure_named(const char *name, size_t n);
 int measure_run(struct table *t, const struct measure *m, const struct snapshot *s,
                 struct failure *failure);
 
+/*
+ * Options in addition to the names of measures, from texts: options of nsd-stat, settings of a program.
+ */
+
+/* What nobody has asked for otherwise: 20 layers, which have a few grains where the height has a hundred; 50 bins,
+   with enough contacts in each where there are a thousand */
+#define ASKED_DEFAULT                                                                              \
+    {                                                                                              \
+        .axis = -1, .layers = 20, .bins = 50, .radius = INFINITY                                   \
+    }
+/* box X0,X1,Y0,Y1[,Z0,Z1]; layers AXIS:N; point X,Y,Z; plane NX,NY,NZ; radius M; bins N; distance M; only NAME,...; wear K;
+   tracer KIND, or large; sample M.
+   Returns 0, or EX_USAGE with "--name: trouble", where nothing has changed. */
+int asked_set(struct asked *asked, const char *name, const char *text, struct failure *failure);
+/* Is there one of that name? */
+bool asked_has(const char *name);
+
+/* Measures of a snapshot, by their names, as JSON. */
+
+enum { MOST_MEASURES = 32 }; /* at once */
+
+/* chosen[MOST_MEASURES + 1] = those of the names "A,B,..." or "all", each once, ended by NULL. Returns 0, or EX_USAGE with
+   "--measures: ...". */
+int measured_choose(const struct measure **chosen, const char *names, struct failure *failure);
+/* Does any of them look at earlier frames? */
+bool measured_remember(const struct measure *const *chosen);
+/* first, before = what they look back to from the next frame on; first only where the snapshot has none. Returns 0 or
+   EX_SOFTWARE. */
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct frame_memory *first,
+                  struct frame_memory *before, struct failure *failure);
+/* t[MOST_MEASURES] = the chosen ones, none where snapshot_init() has failed with this `why`; to be freed by measured_free in any case. Returns 0, EX_SOFTWARE, or EX_DATAERR where
+   one of them cannot keep to what --only names. */
+int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,
+                 struct failure *failure);
+void measured_free(struct table *t);
+/* {"step":...,"time":...,"bodies":...,"contacts":...,"unconverged":...,"NAME":{...},...,"why":{...}}, without an end of line */
+void measured_json(FILE *out, const struct snapshot *s, const struct measure *const *chosen,
+                   const struct table *t);
+
+/* The units of the numbers of measures by their names, for who shows them. */
+
+/* Of "measure.quantity", perhaps with ".more" behind it; in the plane, dim 2, per metre of depth. "": it has none, or there is
+   no such number. */
+const char *measure_unit(const char *name, int dim);
+
 #endif

@@ -7,10 +7,9 @@
  * the variance of the samples' shares, that of what is fully apart, and the expected one of N bodies at random in K
  * samples [Lacey 1954; Danckwerts 1952].
  */
-#include "measure/counts.h"
+#include "measure/branch.h"
 #include "measure/measures.h"
 #include "measure/near.h"
-#include "measure/scatter.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,6 @@
  */
 #include "measure/measures.h"
 #include "measure/near.h"
-#include "measure/scatter.h"
 
 #include <math.h>
 #include <stdlib.h>

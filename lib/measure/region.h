@@ -10,8 +10,14 @@
 #define NSD_REGION_H
 
 #include "base/failure.h"
+#include "measure/near.h"
 #include "state/packing.h"
-#include "measure/period.h"
+
+/* How far planes let bodies reach. */
+
+/* Narrows [lo, hi] (m) to what walls upright to the axis leave of it, where they are now. */
+void reach_of_planes(const struct packing *p, int axis, double *lo, double *hi);
+
 
 struct region {
     int dim;

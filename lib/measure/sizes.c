@@ -1,6 +1,6 @@
 /* measure/sizes.c: where large and small bodies are. */
 #include "measure/ball_part.h"
-#include "measure/counts.h"
+#include "measure/branch.h"
 #include "measure/measures.h"
 
 #include <math.h>

@@ -5,12 +5,75 @@
 #ifndef NSD_SNAPSHOT_H
 #define NSD_SNAPSHOT_H
 
-#include "state/selection.h"
-#include "state/contact.h"
-#include "state/packing.h"
-#include "measure/kept.h"
 #include "measure/region.h"
 #include "measure/table.h"
+#include "measure/tensor.h"
+#include "state/contact.h"
+#include "state/packing.h"
+#include "state/selection.h"
+
+/*
+ * How the room of the grains is deformed from frame to frame: dx = F dX, by the edges
+ * of the periodic cell and, along other axes, by how far walls are apart that are upright to the axis,
+ * or the bodies reach where there are none.
+ *
+ * The edges of a cell are a basis of a lattice, and a run may change it [state/placement.h]. From one frame to
+ * the next E' = F E N, N whole numbers of determinant 1 or -1: those that leave F nearest to what the
+ * edges' rates say.
+ */
+
+/* All zero to begin with. */
+struct deformed {
+    bool known;      /* of a frame */
+    bool lost;       /* the frames were too far apart to follow the cell's edges */
+    double t;        /* s */
+    struct tensor F; /* since the first frame */
+    vec3 span[3];    /* m: edges, or the extents along the axes */
+    vec3 rate[3];    /* m/s: of the edges; 0 of extents */
+};
+
+/* To the frame that the packing is: the first one has F = 1. */
+void deformed_follow(struct deformed *d, const struct packing *p);
+
+/* What is remembered of a frame, for measures of what happens between frames. */
+
+struct frame_memory {
+    int64_t step;
+    double t;             /* s */
+    struct deformed form; /* since the first frame that was kept here */
+    int64_t n;
+    struct frame_memory_body {
+        int32_t id;
+        double mass; /* kg */
+        vec3 x;      /* m: unwrapped, where the cell repeats: the way since it was built */
+        double
+            entered; /* s: when it came into the region [measure/follow.h]; NaN: it is not there */
+        bool whole;  /* it was seen to come, else it was there in the first frame */
+        bool chosen; /* measures keep to it [measure/follow.h] */
+    } * body;        /* [n] sorted by id */
+    int64_t pairs;
+    struct frame_memory_pair {
+        int32_t a, b;      /* ids, a < b; of boundary w a = -1-w */
+        double began;      /* s */
+        bool whole;        /* as above */
+    } * pair;              /* [pairs] that touch, sorted; NULL: not looked at */
+    struct wall_sums sums; /* over steps, of boundaries */
+};
+
+/* k = the packing now, in place of what was kept; all zero to begin with. Returns 0 or EX_SOFTWARE. */
+int frame_memory_set(struct frame_memory *k, const struct packing *p, struct failure *failure);
+void frame_memory_free(struct frame_memory *k);
+/* The body with this id; NULL: it was not there. */
+const struct frame_memory_body *frame_memory_find(const struct frame_memory *k, int32_t id);
+/* For qsort: of kept pairs; and the pair of the same bodies, NULL: it did not touch, or k is NULL. */
+int frame_memory_pair_order(const void *a, const void *b);
+const struct frame_memory_pair *frame_memory_pair_find(const struct frame_memory *k, const struct frame_memory_pair *pair);
+
+/* m: where body i is, with the edges added that were taken off it */
+vec3 frame_memory_place(const struct packing *p, int64_t i);
+/* m: from the kept place to the present one, the shortest among images where the cell repeats */
+vec3 frame_memory_way(const struct packing *p, vec3 from, vec3 to);
+
 
 /* What the user asks for in addition to the measures' names; the same for all frames */
 struct asked {

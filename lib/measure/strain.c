@@ -1,5 +1,5 @@
 /* measure/strain.c: the logarithmic strain since the first frame. */
-#include "measure/deformed.h"
+#include "measure/snapshot.h"
 #include "measure/measures.h"
 
 #include <math.h>

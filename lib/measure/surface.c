@@ -4,7 +4,6 @@
  * cone around the axis of their mean, both by least squares.
  */
 #include "measure/branch.h"
-#include "measure/counts.h"
 #include "measure/measures.h"
 
 #include <math.h>

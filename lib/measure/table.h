@@ -5,14 +5,31 @@
 #ifndef NSD_TABLE_H
 #define NSD_TABLE_H
 
-#include "base/vec.h"
 #include "base/failure.h"
-#include "state/names.h"
-#include "measure/quantity.h"
+#include "base/vec.h"
 #include "measure/tensor.h"
+#include "state/names.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
+
+/* What a measure's numbers are called, and their units. */
+
+struct quantity {
+    const char *name; /* NULL ends a list */
+    const char *
+        unit; /* in space; "1" without any; "name": the number is a row of the packing's names, which is printed */
+    int width;        /* numbers: 1, 3 a vector, 9 a tensor by rows */
+    const char *help; /* a few words */
+};
+
+static inline bool quantity_is_name(const struct quantity *q)
+{
+    return !strcmp(q->unit, "name");
+}
+
 
 struct table {
     const struct quantity *quantity; /* up to one without a name */

@@ -1,8 +1,8 @@
 /* mpi/blocks.c: every rank its own contacts, an exchange a sweep [mpi/blocks.h]. */
 #include "mpi/blocks.h"
 
-#include "state/energy.h"
-#include "mpi/answers.h"
+#include "state/rotation.h"
+#include "mpi/halo.h"
 
 #include "step/move.h"
 #include "step/project.h"

@@ -18,7 +18,7 @@
 #include "solve/exchange.h"
 #include "solve/problem.h"
 #include "mpi/subdomain.h"
-#include "mpi/wires.h"
+#include "mpi/halo.h"
 
 struct blocks {
     struct exchange exchange; /* first: what solvers are given leads back here */

@@ -1,7 +1,7 @@
 /* mpi/colours.c: the order of all contacts, walked by all ranks [mpi/colours.h]. */
 #include "mpi/colours.h"
 
-#include "mpi/answers.h"
+#include "mpi/halo.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -17,8 +17,7 @@
 #include "solve/exchange.h"
 #include "solve/problem.h"
 #include "mpi/contact_list.h"
-#include "mpi/tally.h"
-#include "mpi/wires.h"
+#include "mpi/halo.h"
 
 struct colours {
     struct exchange exchange; /* first: what solvers are given leads back here */

@@ -1,11 +1,11 @@
 /*
  * mpi/hypergraph.c: the cells of a grid, each of which is one rank's, by Zoltan's hypergraph partitioner (PHG)
- * [mpi/territory.h]. A cell weighs what its bodies do. It makes a hyperedge with the cells around it, which
+ * [mpi/decomposition.h]. A cell weighs what its bodies do. It makes a hyperedge with the cells around it, which
  * weighs as much as it has bodies: these are copied to all ranks that have one of the others, so what the
  * partitioner keeps small is the number of copies [Catalyurek & Aykanat 1999]. Cells without a body go with the
  * nearest that have one, and so do places outside of the grid.
  */
-#include "mpi/territory.h"
+#include "mpi/decomposition.h"
 
 #include "base/failure.h"
 

@@ -3,10 +3,9 @@
 #include "mpi/rank_step.h"
 
 #include "state/freedom.h"
-#include "state/wrap.h"
-#include "contact/crossing.h"
+#include "state/placement.h"
+#include "contact/time_of_impact.h"
 #include "contact/detect.h"
-#include "contact/meeting.h"
 #include "contact/tunnelling.h"
 #include "contact/touching.h"
 #include "solve/prepare.h"

@@ -8,7 +8,7 @@
 
 #include "state/contact.h"
 #include "state/packing.h"
-#include "mpi/territory.h"
+#include "mpi/decomposition.h"
 
 /* Bodies that are here and at another rank too, in the order of rows */
 struct border {

@@ -1,6 +1,6 @@
 /*
  * run/control.h: what a program does to a packing between steps. Forces last until they are changed, or act in one step;
- * both are summed into the packing's forces from outside [state/outside.h] as a step begins. The rest changes the
+ * both are summed into the packing's forces from outside [state/external_force.h] as a step begins. The rest changes the
  * packing at once.
  *
  * All that fail return EX_DATAERR, EX_USAGE or EX_SOFTWARE, and leave everything as it was.

@@ -1,6 +1,6 @@
 #include "run/loop.h"
 
-#include "run/answer.h"
+#include "run/reply.h"
 #include "run/document.h"
 #include "base/text.h"
 #include "state/selection.h"
@@ -8,8 +8,7 @@
 #include "file/stream.h"
 #include "file/reader.h"
 #include "file/report_json.h"
-#include "measure/asked.h"
-#include "measure/measured.h"
+#include "measure/measures.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /*
  * run/loop.h: a program in the loop of nsd-step: before steps it is told what there is, and answers what shall act. Its answers
- * go into the packing's words [state/outside.h], and with its frames into documents, from which --replay has them again.
+ * go into the packing's words [state/external_force.h], and with its frames into documents, from which --replay has them again.
  */
 #ifndef NSD_LOOP_H
 #define NSD_LOOP_H

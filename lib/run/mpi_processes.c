@@ -2,7 +2,7 @@
 #include "run/processes.h"
 
 #include "run/options.h"
-#include "mpi/files.h"
+#include "mpi/rows.h"
 #include "mpi/rank_step.h"
 
 #include <signal.h>

@@ -1,6 +1,6 @@
 /* run/objects.c: documents as groups and datasets, checked as the tools check them [file/source.h]. */
 #include "run/run.h"
-#include "file/listed.h"
+#include "file/child.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -26,7 +26,7 @@ struct distributed *processes_take_bodies(bool contacts);
 /* What has happened to the leader's packing since the step before */
 struct changes {
     bool bodies; /* it has others */
-    bool acts;   /* a program acts on it [state/outside.h], or has */
+    bool acts;   /* a program acts on it [state/external_force.h], or has */
 };
 /* The leader: step_advance() of a frame by all */
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,

@@ -3,7 +3,7 @@
 #include "base/text.h"
 #include "file/report_json.h"
 #include "measure/branch.h"
-#include "measure/measured.h"
+#include "measure/measures.h"
 #include "solve/err.h"
 
 #include <math.h>

@@ -8,7 +8,7 @@
 #include "run/process.h"
 #include "run/rollback.h"
 #include "file/writer.h"
-#include "measure/asked.h"
+#include "measure/measures.h"
 #include "scene/inlet.h"
 #include "step/step_options.h"
 

@@ -1,6 +1,6 @@
 /* run/save.c: a run as documents. */
 #include "run/run.h"
-#include "file/boundary_tables.h"
+#include "file/wall_tables.h"
 #include "file/reader.h"
 
 #include <jansson.h>

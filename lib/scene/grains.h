@@ -5,8 +5,16 @@
 #ifndef NSD_GRAINS_H
 #define NSD_GRAINS_H
 
-#include "state/packing.h"
 #include "scene/scene.h"
+#include "state/packing.h"
+
+#include <gsl/gsl_rng.h>
+
+/* How grains that have a shape are turned: as it is described, or at random. */
+
+/* From the shape's own axes to space; rng is used where orientations are random, each as likely. */
+quat orientation_draw(const struct scene *s, const struct scene_form *form, gsl_rng *rng);
+
 
 struct grain {
     vec3 x;                           /* m */
@@ -33,7 +41,7 @@ struct grain grain_at(vec3 x, double r);
 int grains_add(struct grains *list, const struct grain *grain, struct failure *failure);
 void grains_free(struct grains *list);
 
-/* scene/scene_table.c: those of a table [scene/scene.h]; dir as of scene_build. Returns 0,
+/* scene/grains.c: those of a table [scene/scene.h]; dir as of scene_build. Returns 0,
    EX_DATAERR with file:line, EX_NOINPUT or EX_SOFTWARE. */
 int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
                     struct failure *failure);

@@ -10,7 +10,21 @@
 #ifndef NSD_HULL_H
 #define NSD_HULL_H
 
+#include "base/failure.h"
+#include "base/vec.h"
 #include "shape/shape.h"
+
+#include <stdint.h>
+
+/* Points that noise has made several of one. */
+
+/* The largest distance of n points from the first one, m */
+double thin_extent(const vec3 *x, int64_t n);
+/* to[i] = the point that stands for point i, and is within `apart` (m) of it; itself for those that stay, of which
+   no two are as near. Of each cell of a grid as wide the first point stays, unless one of a cell before is near.
+   Time n log n. Returns 0 or EX_SOFTWARE. */
+int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct failure *failure);
+
 
 /* Of the extent: what is closer to a plane is in it, as are the corners of files in single precision, whose last
    bit is 6e-8 of the largest; what is closer together is one point, for a shape's faces are flat to 1e-6. */

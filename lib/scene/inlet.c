@@ -1,8 +1,8 @@
 #include "scene/inlet.h"
 
 #include "contact/detect.h"
-#include "base/counter.h"
-#include "scene/orientation.h"
+#include "base/random.h"
+#include "scene/grains.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -230,7 +230,7 @@ static void crowd_free(struct crowd *c)
 }
 
 /* Is x, or an image of it, this near to 0? The nearest image is at most one edge from the one that is nearest in
-   edges, for these do not lean by more than one another's length [state/wrap.h]. */
+   edges, for these do not lean by more than one another's length [state/placement.h]. */
 static bool inlet_is_near(const struct cell *c, const vec3 inverse[3], vec3 x, double most)
 {
     int reach[3] = { 0, 0, 0 };

@@ -1,7 +1,7 @@
 /* scene/json_node.c: nodes, their places in the text, and the checks of keys and values. */
 #include "scene/json_node.h"
 
-#include "base/mark.h"
+#include "base/json.h"
 
 #include <stdarg.h>
 #include <stdio.h>

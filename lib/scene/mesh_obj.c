@@ -11,10 +11,9 @@
  * (call) are not: without them the surface has holes. The format has no end: of a file that is cut off between
  * two lines nothing tells.
  */
-#include "scene/mesh_format.h"
+#include "scene/mesh_file.h"
 
 #include "scene/ears.h"
-#include "scene/mesh_words.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -13,11 +13,9 @@
  * and then the elements, by text one a line. Taken are x, y and z of vertex and vertex_indices (vertex_index)
  * of face. Elements are gone through twice, for faces may be in front of vertices.
  */
-#include "scene/mesh_format.h"
+#include "scene/mesh_file.h"
 
 #include "scene/ears.h"
-#include "scene/mesh_bytes.h"
-#include "scene/mesh_words.h"
 
 #include <string.h>
 

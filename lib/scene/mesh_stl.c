@@ -11,10 +11,8 @@
  * Normals are not believed: what they say is in the order of the corners. A binary file may begin with "solid",
  * too: its number of triangles has a zero byte, which no text has.
  */
-#include "scene/mesh_format.h"
+#include "scene/mesh_file.h"
 
-#include "scene/mesh_bytes.h"
-#include "scene/mesh_words.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "scene/obstacles.h"
 
-#include "shape/surface_tree.h"
+#include "shape/mesh.h"
 #include "scene/line_crossings.h"
-#include "scene/mesh_shape.h"
+#include "scene/surface_parts.h"
 
 #include <stdlib.h>
 

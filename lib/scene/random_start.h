@@ -17,6 +17,19 @@
 
 #include <gsl/gsl_rng.h>
 
+/*
+ * A lattice whose cells fit each its grain: sorted by size, large ones first, the
+ * grains fill rows, the rows shelves, and the shelves the box from below; a row is as wide and a
+ * shelf as high as its first grain needs. However different the grains, their cells fill most of
+ * the box, where equal cells would fit the largest only.
+ */
+
+/* The group's count grains, in the order drawn. Returns 0, EX_DATAERR where the box is too small, or
+   EX_SOFTWARE. */
+int shelves_fill(struct grains *out, const struct scene_bodies *group, int dim, gsl_rng *rng,
+                 struct failure *failure);
+
+
 /* The group's grains, in the order drawn; in its box, or, not NULL, in this cell; not in the walls of a packing, or NULL
    [scene/obstacles.h]. Returns 0, EX_DATAERR where they do not go in, or EX_SOFTWARE. */
 int random_start(struct grains *out, const struct scene_bodies *group, int dim,

@@ -257,7 +257,7 @@ struct scene_mesh {
     int32_t left_out; /* triangles of the file that are not in the mesh */
 };
 
-/* Faces of a mesh that become a wall of their own [scene/scene_parts.h] */
+/* Faces of a mesh that become a wall of their own [scene/surface_parts.h] */
 struct scene_part {
     int32_t wall;        /* that they are of */
     int64_t first, last; /* among its elements */

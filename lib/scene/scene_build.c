@@ -1,18 +1,15 @@
 /* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
-#include "base/limits.h"
+#include "base/bounded.h"
 #include "base/random.h"
 
 #include "state/servo_box.h"
-#include "state/wrap.h"
+#include "state/placement.h"
 #include "contact/detect.h"
-#include "base/counter.h"
 #include "scene/grains.h"
-#include "scene/orientation.h"
 #include "scene/random_start.h"
 #include "scene/scene_carry.h"
-#include "scene/shelves.h"
 #include "scene/time_step.h"
 
 #include <gsl/gsl_rng.h>

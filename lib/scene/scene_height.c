@@ -1,6 +1,6 @@
 #include "scene/scene_height.h"
 
-#include "base/counter.h"
+#include "base/random.h"
 
 /* Solid fractions that a random start reaches in a wide box [scene/random_start.h] */
 static const double DENSE_DISCS = 0.82, DENSE_BALLS = 0.6;

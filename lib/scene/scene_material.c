@@ -1,4 +1,5 @@
 /* scene/scene_material.c: materials: kinds, and the law of each pair of them, from their JSON. */
+
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -116,4 +117,141 @@ int scene_read_pairs(jnode a, struct scene *s, struct scene_law law)
     for (size_t i = 0; i < n && !bad; i++) bad = read_pair(json_node_item(&a, i), s, given);
     free(given);
     return bad;
+}
+
+/* What a pair of kinds does beyond friction and restitution, from its JSON: each
+   law is an object of its own, which takes the place of the one for all pairs. */
+
+static int read_cohesion(jnode o, struct pair_law *l)
+{
+    if (!o.json) return 0;
+    l->cohesion = l->range = 0;
+    return json_node_only(o, "force range") || json_node_need(&o, "force") ||
+           json_node_number(json_node_key(&o, "force"), J_NOT_NEGATIVE, &l->cohesion) ||
+           json_node_number(json_node_key(&o, "range"), J_NOT_NEGATIVE, &l->range);
+}
+
+static int read_capillary(jnode o, struct pair_law *l)
+{
+    if (!o.json) return 0;
+    l->volume = l->tension = l->wetting = 0;
+    jnode angle = json_node_key(&o, "wetting");
+    if (json_node_only(o, "volume tension wetting") || json_node_need(&o, "volume tension") ||
+        json_node_number(json_node_key(&o, "volume"), J_NOT_NEGATIVE, &l->volume) ||
+        json_node_number(json_node_key(&o, "tension"), J_NOT_NEGATIVE, &l->tension) ||
+        json_node_number(angle, J_NOT_NEGATIVE, &l->wetting))
+        return 1;
+    if (l->wetting < M_PI / 2) return 0;
+    return json_node_fault(angle,
+                           "must be less than pi/2: a liquid that does not wet has no bridge");
+}
+
+static int read_rolling(jnode o, struct pair_law *l)
+{
+    if (!o.json) return 0;
+    l->mu_r = l->mu_p = 0;
+    return json_node_only(o, "mu_r mu_p") ||
+           json_node_number(json_node_key(&o, "mu_r"), J_NOT_NEGATIVE, &l->mu_r) ||
+           json_node_number(json_node_key(&o, "mu_p"), J_NOT_NEGATIVE, &l->mu_p);
+}
+
+/* t: of the scene, s */
+static int read_adhesion(jnode o, double t, struct pair_law *l)
+{
+    bool forever = false;
+    if (!o.json) return 0;
+    l->eta = l->area = 0, l->beta = 1, l->made = t;
+    if (json_node_only(o, "c_n c_t w eta area beta made forever") || json_node_need(&o, "c_n w") ||
+        json_node_number(json_node_key(&o, "c_n"), J_POSITIVE, &l->cn))
+        return 1;
+    l->ct = l->cn;
+    if (json_node_number(json_node_key(&o, "c_t"), J_NOT_NEGATIVE, &l->ct) ||
+        json_node_number(json_node_key(&o, "w"), J_NOT_NEGATIVE, &l->w) ||
+        json_node_number(json_node_key(&o, "eta"), J_NOT_NEGATIVE, &l->eta) ||
+        json_node_number(json_node_key(&o, "area"), J_NOT_NEGATIVE, &l->area) ||
+        json_node_number(json_node_key(&o, "beta"), J_UNIT, &l->beta) ||
+        json_node_number(json_node_key(&o, "made"), J_ANY, &l->made) ||
+        json_node_bool(json_node_key(&o, "forever"), &forever))
+        return 1;
+    l->forever = forever;
+    if (forever && json_node_key(&o, "made").json)
+        return json_node_fault(o, "bonds are made at a time or for ever: not both");
+    return 0;
+}
+
+static int read_impact(jnode o, struct pair_law *l)
+{
+    const char *name = NULL;
+    if (!o.json) return 0;
+    if (json_node_text(o, &name)) return 1;
+    l->impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
+    if (l->impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
+    return json_node_fault(o, "needs \"newton\" or \"bounded\"");
+}
+
+int scene_read_laws(const jnode *o, double t, struct pair_law *l)
+{
+    return read_cohesion(json_node_key(o, "cohesion"), l) ||
+           read_capillary(json_node_key(o, "capillary"), l) ||
+           read_rolling(json_node_key(o, "rolling"), l) ||
+           read_adhesion(json_node_key(o, "adhesion"), t, l) ||
+           read_impact(json_node_key(o, "impact"), l);
+}
+
+/* Names of walls, of parts of their surfaces and of groups of bodies, from their JSON. */
+
+int scene_read_name(jnode n, const struct scene *s, const char **out)
+{
+    *out = NULL;
+    if (!n.json) return 0;
+    if (json_node_text(n, out)) return 1;
+    const char *trouble = name_trouble(*out, strlen(*out));
+    if (trouble) return json_node_fault(n, "a name %s", trouble);
+    for (int32_t k = 0; k < s->kinds; k++)
+        if (!strcmp(s->kind[k].name, *out))
+            return json_node_fault(n, "\"%s\" is a kind: walls and groups have other names", *out);
+    return 0;
+}
+
+int scene_read_group(jnode n, struct scene *s, int32_t *group)
+{
+    const char *name;
+    int32_t which = -1;
+    if (scene_read_name(n, s, &name)) return 1;
+    if (name && names_add(&s->names, name, &which, n.in->failure)) return 1;
+    *group = which + 1;
+    return 0;
+}
+
+static int scene_material_read_part(jnode o, struct scene *s)
+{
+    const char *name;
+    int64_t first = 0, last = 0;
+    size_t n;
+    jnode faces = json_node_key(&o, "faces"), text = json_node_key(&o, "name");
+    if (json_node_only(o, "name faces") || json_node_need(&o, "name faces") ||
+        scene_read_name(text, s, &name) || json_node_array(faces, &n))
+        return 1;
+    if (n != 2) return json_node_fault(faces, "needs [first, last]");
+    if (json_node_integer(json_node_item(&faces, 0), 0, INT32_MAX - 1, &first) ||
+        json_node_integer(json_node_item(&faces, 1), 0, INT32_MAX - 1, &last))
+        return 1;
+    if (first > last) return json_node_fault(faces, "its first face is behind its last");
+    struct failure *failure = o.in->failure;
+    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1), failure);
+}
+
+int scene_read_parts(jnode a, struct scene *s, bool *groups)
+{
+    size_t n;
+    if (groups && json_is_string(a.json) && !strcmp(json_string_value(a.json), "groups")) {
+        *groups = true;
+        return 0;
+    }
+    if (groups && a.json && !json_is_array(a.json))
+        return json_node_fault(a, "needs \"groups\" or a list [{name, faces}, ...]");
+    if (json_node_array(a, &n)) return 1;
+    for (size_t i = 0; i < n; i++)
+        if (scene_material_read_part(json_node_item(&a, i), s)) return 1;
+    return 0;
 }

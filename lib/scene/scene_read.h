@@ -16,12 +16,12 @@ void *scene_alloc(jnode node, size_t count, size_t size);
 /* scene/scene_material.c: mu, e_n, e_t; "kinds" and "pairs", with density and law for those that
    give none; the NAME of a kind */
 int scene_read_law(const jnode *object, struct scene_law *law);
-/* scene/scene_laws.c: the laws beyond these; t: the time of the scene, s */
+/* scene/scene_material.c: the laws beyond these; t: the time of the scene, s */
 int scene_read_laws(const jnode *object, double t, struct pair_law *law);
 int scene_read_kinds(jnode kinds, struct scene *s, double density);
 int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
 int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
-/* scene/scene_names.c: a "name", *name = NULL where there is none; "parts" of the wall that comes next, and of a mesh
+/* scene/scene_material.c: a "name", *name = NULL where there is none; "parts" of the wall that comes next, and of a mesh
    whether they are the groups of its file (groups NULL: there is no file) */
 int scene_read_name(jnode name, const struct scene *s, const char **out);
 /* The "name" of a group, added to the scene's: 1 + its row; 0: there is none */
@@ -45,7 +45,7 @@ int scene_read_forces(jnode a, struct scene *s);
    there. Of l, way and axis are known. */
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 int scene_read_box(jnode object, int dim, struct scene_box *box);
-/* scene/scene_room.c: "room", the load of walls that have been read */
+/* scene/scene_walls.c: "room", the load of walls that have been read */
 int scene_read_room(jnode room, struct scene *s);
 
 /* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
@@ -55,7 +55,7 @@ int scene_read_form(jnode object, const struct scene *s, struct scene_form *form
 int scene_read_sizes(jnode object, const struct scene *s, const struct scene_form *form,
                      struct scene_size *z);
 
-/* scene/scene_radii.c: a SIZE; one that is not there leaves *z as it is */
+/* scene/scene_bodies.c: a SIZE; one that is not there leaves *z as it is */
 int scene_read_size(jnode size, int dim, struct scene_size *z);
 
 /* scene/scene_flow.c: "pour" and "remove" */

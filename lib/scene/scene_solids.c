@@ -2,7 +2,7 @@
 #include "shape/solid.h"
 #include "scene/clump_fit.h"
 #include "scene/hull.h"
-#include "scene/mesh_shape.h"
+#include "scene/surface_parts.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include "base/number.h"
 #include "state/servo_box.h"
 #include "contact/detect.h"
-#include "shape/between.h"
+#include "shape/wall_edge.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -16,7 +16,7 @@
  * shear at a constant rate it is 0. (Yade does so for homoDeform 3.)
  *
  * Which of a body's images is the body is arbitrary, and so is which edges span the lattice:
- * state/wrap.h chooses both again at the beginning of a step.
+ * state/placement.h chooses both again at the beginning of a step.
  */
 #ifndef NSD_CELL_H
 #define NSD_CELL_H

@@ -6,7 +6,7 @@
 #ifndef NSD_GJK_H
 #define NSD_GJK_H
 
-#include "shape/core.h"
+#include "shape/shape.h"
 
 struct nearest {
     double distance; /* m; 0: they overlap, or touch */

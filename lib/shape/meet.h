@@ -17,7 +17,7 @@
 #ifndef NSD_MEET_H
 #define NSD_MEET_H
 
-#include "shape/core.h"
+#include "shape/shape.h"
 
 enum { PLACES_MOST = 4 };
 

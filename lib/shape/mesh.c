@@ -2,8 +2,6 @@
    from a point [shape/mesh.h]. */
 #include "shape/mesh.h"
 
-#include "shape/surface_tree.h"
-
 #include <stdlib.h>
 #include <string.h>
 

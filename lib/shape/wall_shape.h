@@ -9,7 +9,6 @@
 
 #include "base/vec.h"
 #include "shape/drive.h"
-#include "shape/load.h"
 
 #include <stdbool.h>
 #include <stddef.h>

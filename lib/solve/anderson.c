@@ -24,7 +24,7 @@
 #include "solve/device.h"
 #include "solve/exchange.h"
 #include "solve/nlgs.h"
-#include "solve/prices.h"
+#include "solve/solver.h"
 
 #include <gsl/gsl_linalg.h>
 #include <stdlib.h>

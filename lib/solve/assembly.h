@@ -13,12 +13,12 @@
  * are the velocities of the movable bodies that have a contact, in the problem's order: (vx, vy,
  * vz, wx, wy, wz), or (vx, vy, wz) in the plane; after them the speed of each freedom that moves a
  * contact [solve/coupling.h], whose row of H are its J, and whose v_free is s + dt f/m. Where
- * contacts have levers, y = I^1/2 w stands in the place of w, with the inertia 1 [solve/levers.h].
+ * contacts have levers, y = I^1/2 w stands in the place of w, with the inertia 1 [solve/bundle.h].
  */
 #ifndef NSD_ASSEMBLY_H
 #define NSD_ASSEMBLY_H
 
-#include "base/sparse.h"
+#include "base/matrix.h"
 #include "solve/problem.h"
 
 struct assembly {

@@ -22,7 +22,6 @@
  */
 #include "solve/apply.h"
 #include "solve/backend.h"
-#include "solve/prices.h"
 #include "solve/solver.h"
 
 #include <stdlib.h>

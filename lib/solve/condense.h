@@ -13,7 +13,7 @@
 #ifndef NSD_CONDENSE_H
 #define NSD_CONDENSE_H
 
-#include "base/sparse.h"
+#include "base/matrix.h"
 
 struct global {
     int64_t nv, nl;        /* unknowns v, multipliers lambda */

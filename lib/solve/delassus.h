@@ -19,7 +19,7 @@
 #ifndef NSD_DELASSUS_H
 #define NSD_DELASSUS_H
 
-#include "base/sparse.h"
+#include "base/matrix.h"
 #include "base/failure.h"
 
 #include <stdbool.h>

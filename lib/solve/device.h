@@ -111,4 +111,13 @@ void device_measure(struct problem *p, const struct mixing *m, int64_t per_chunk
 void device_react(struct problem *p, const struct mixing *m, double leap,
                   const double gamma[MIXING_DEPTH]);
 
+/*
+ * Whether a device has the bits of the CPU: a small problem of known numbers is swept, judged
+ * and mixed on both. A driver that contracts, or rounds otherwise, fails here and not in a result.
+ */
+
+/* EX_UNAVAILABLE where they differ, for problems of this kind and this method; once for each */
+int device_check(struct device *d, const struct problem_kind *kind, enum method_id method,
+                 struct failure *failure);
+
 #endif

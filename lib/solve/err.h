@@ -16,6 +16,7 @@
 #define NSD_ERR_H
 
 #include "solve/judge.h"
+#include "solve/problem.h"
 #include "state/report.h"
 
 /* Computes the terms asked for, of all contacts but without max_overlap; the rest is 0. believes: u
@@ -35,5 +36,23 @@ enum err_terms err_terms_of(enum criterion c);
 /* Has the problem no solution? Reactions grow without end, and bodies approach all the same; by the natural map, which is
    relative to the reactions, it only seems good. */
 bool err_no_solution(const struct report *r);
+
+/*
+ * How nearly reactions hold one another,
+ *
+ *     |rho_a W r| / |r|,    rho_a = 1/lambda_max(W_aa),
+ *
+ * without units. Reactions r_0 in their cones with W r_0 = 0 move nothing: a self-stress. Where a
+ * problem has one, its reactions are not unique, and those of a solve may grow without end; r/|r| then
+ * tends to one. So where this number falls with eps, r/|r| is itself the certificate that contacts are
+ * wedged. In ordinary piles it is 1e-2, and stays.
+ */
+
+/* Of the reactions in the problem's slots, without what bonds and rolling friction add; 0 where all are
+   0. Returns 0, or -1 when memory is short. */
+int self_stress(const struct problem *p, double *ratio);
+/* work = r . W r / sum of lambda_a r_a^2: reactions without end have only their rounding, others the inverse of a mass
+   ratio, or more. most: N s, of |r_a|. The same returns. */
+int self_stress_work(const struct problem *p, double *work, double *most);
 
 #endif

@@ -17,8 +17,8 @@
 #ifndef NSD_EXTRA_H
 #define NSD_EXTRA_H
 
+#include "solve/bundle.h"
 #include "solve/rolling.h"
-#include "solve/levers.h"
 
 /* Lane k of each belongs to lane k of the bundle. */
 struct extra {
@@ -35,7 +35,7 @@ struct extra {
 };
 
 /*
- * The same where lever arms are any vectors [solve/levers.h]: what is single numbers for balls is
+ * The same where lever arms are any vectors [solve/bundle.h]: what is single numbers for balls is
  * matrices.
  *
  * With W_cc full the bond of a contact makes

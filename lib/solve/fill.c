@@ -3,7 +3,7 @@
 
 #include "state/kinematics.h"
 #include "state/offset.h"
-#include "state/top.h"
+#include "state/rotation.h"
 #include "solve/problem.h"
 
 /* The body at a place, so many times lighter */

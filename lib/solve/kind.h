@@ -67,11 +67,11 @@ struct problem_kind {
     unsigned arrays; /* HAS_... */
     bool given_by_W; /* there are no bodies, only W */
     bool full;       /* W~_cc is more than diag(w_n, w_t, w_t) */
-    bool levers;     /* lever arms are any vectors [solve/levers.h] */
+    bool levers;     /* lever arms are any vectors [solve/bundle.h] */
     bool near;       /* bundles have a struct beside after them */
     bool extra;      /* contacts have bonds or moments [solve/extra.h] */
     bool rolls;      /* some contact has rolling friction */
-    double ns;       /* of a sweep, per contact [bench/results]; of W, see solve/prices.c besides */
+    double ns;       /* of a sweep, per contact [bench/results]; of W, see solve/solver.c besides */
     fill_text *fill; /* sets the numbers of a slot; NULL: problem_of_W.c does */
 };
 

@@ -2,7 +2,7 @@
 #define METHOD_CODE
 #include "solve/method.h"
 
-#include "base/eigen.h"
+#include "base/matrix.h"
 
 #define METHOD(name, help, rho, believes)                                                          \
     const struct method local_##name = { METHOD_##name, #name, help, rho, believes };

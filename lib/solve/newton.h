@@ -19,7 +19,7 @@
 struct newton {
     struct scaled a;       /* the problem */
     struct system *system; /* factorises it; NULL before newton_factors() */
-    double price;          /* ns: of a step [solve/prices.h] */
+    double price;          /* ns: of a step [solve/solver.h] */
     double rho;            /* of the projection, in units in which W's diagonal is 1 */
     double alpha;          /* a, in multiples of the mean diagonal of W */
     int omega;             /* which over-relaxation its sweeps use */

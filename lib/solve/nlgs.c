@@ -8,7 +8,7 @@
 #include "solve/backend.h"
 #include "solve/device.h"
 #include "solve/exchange.h"
-#include "solve/prices.h"
+#include "solve/solver.h"
 
 #include <math.h>
 #include <pthread.h>

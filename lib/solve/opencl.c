@@ -5,7 +5,6 @@
 #include "solve/local_exact.h"
 #include "solve/device.h"
 #include "solve/opencl_api.h"
-#include "solve/opencl_text.h"
 
 #include <assert.h>
 #include <math.h>

@@ -83,4 +83,9 @@ const struct opencl_api *opencl_api(struct failure *failure);
 /* "CL_OUT_OF_RESOURCES (-5)" of an error; for messages, until the next call */
 const char *opencl_error(int32_t error);
 
+/* The text of a device's kernels: those of the CPU where C and OpenCL C agree, in their order. */
+
+/* The text, without the includes, which are in it already; NULL when memory is short. To be freed. */
+char *opencl_text(void);
+
 #endif

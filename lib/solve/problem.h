@@ -10,7 +10,7 @@
  *     u~ = D^-1 (u + E u^-),  W~ = D^-1 W,  D = 1 + E,  E = diag(e_n, e_t, e_t).
  *
  * For balls and discs the lever arms lie along n, hence W~_cc = diag(w_n, w_t, w_t). Where any body of
- * a contact has another shape, all bundles have levers [solve/levers.h], W_cc is full, and, so that it
+ * a contact has another shape, all bundles have levers [solve/bundle.h], W_cc is full, and, so that it
  * is symmetric, u in the slots is D u~, as it is where W is given.
  *
  * Slot i is lane i % 8 of bundle i / 8. Each contact has a copy of its own of a body that does not
@@ -26,7 +26,6 @@
 #include "solve/delassus.h"
 #include "solve/extra.h"
 #include "solve/kind.h"
-#include "solve/levers.h"
 #include "solve/schedule.h"
 
 enum {

@@ -2,7 +2,7 @@
 #include "base/team.h"
 #include "state/kinematics.h"
 #include "state/offset.h"
-#include "state/top.h"
+#include "state/rotation.h"
 #include "solve/mass_splitting.h"
 #include "solve/exchange.h"
 #include "solve/fill.h"

@@ -23,7 +23,7 @@
 #ifndef NSD_ROLLING_H
 #define NSD_ROLLING_H
 
-#include "solve/rolling_contact.h"
+#include "solve/rolling_parts.h"
 
 /* Solves the contact by the local method. */
 void rolling_solve(enum method_id method, struct rolling *q, const struct local_opt *opt);

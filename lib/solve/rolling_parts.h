@@ -2,9 +2,30 @@
 #ifndef NSD_ROLLING_PARTS_H
 #define NSD_ROLLING_PARTS_H
 
-#include "solve/rolling_contact.h"
+#include "solve/method.h"
 
 #include <math.h>
+
+/* One contact with rolling and pivoting friction, in the units of solve/rolling.h. */
+
+enum {
+    ROLLING = 6,
+    ROLLING_PARTS = 3
+}; /* numbers of x: n | t1 t2 | p | r1 r2; parts with a limit */
+
+struct rolling {
+    double wn, wt, wp, wr, k;    /* kg^-1: between balls */
+    bool full;                   /* else W is, in their place */
+    double W[ROLLING * ROLLING]; /* kg^-1, symmetric */
+    double lambda;               /* kg^-1: its largest eigenvalue */
+    double mu[ROLLING_PARTS];    /* mu, mu_p, mu_r, the latter two over the length */
+    double rho;                  /* kg */
+    double b[ROLLING];           /* m/s */
+    double x[ROLLING];           /* N s; in: of the last sweep, out: of this one */
+    int steps;                   /* out: of Newton */
+    bool safeguarded, gave_up;
+};
+
 
 /* The parts of x that have a limit: where each begins, and how many numbers it has */
 static const int first_of[ROLLING_PARTS] = { 1, 3, 4 }, size_of[ROLLING_PARTS] = { 2, 1, 2 };

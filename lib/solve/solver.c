@@ -5,15 +5,73 @@
 #include "solve/apply.h"
 #include "solve/backend.h"
 #include "solve/device.h"
-#include "solve/device_check.h"
+#include "solve/err.h"
 #include "solve/exchange.h"
-#include "solve/self_stress.h"
-#include "solve/prices.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* One point and its value [solve/solver.h]. */
+
+int best_init(struct best *b, int64_t size)
+{
+    *b = (struct best){ INFINITY, size, malloc(((size_t)size + 1) * sizeof *b->x), -1 };
+    return b->x ? 0 : -1;
+}
+
+void best_free(struct best *b)
+{
+    free(b->x);
+    *b = (struct best){ .value = INFINITY };
+}
+
+double *best_offer(struct best *b, double value)
+{
+    if (!b->x || !(value < b->value)) return NULL;
+    b->value = value;
+    return b->x;
+}
+
+void best_forget(struct best *b)
+{
+    b->value = INFINITY;
+}
+
+/* The prices that were measured, and the formulas over them [solve/solver.h]. */
+
+#define SWEEP_BLOCK    2.0 /* ns per sweep, beyond kind.ns, for each block of W beside the diagonal, */
+#define SWEEP_COMMON   2.0   /* and for each column of J */
+#define ENTRY          14.0  /* ns an entry of the pattern, to assemble it and to multiply by it */
+#define ASSEMBLY_ENTRY 15.0  /* ns an entry of W, to make its blocks and scale them */
+#define ANALYSIS_ENTRY 150.0 /* ns an entry, for the two orders that base/matrix.c tries */
+
+/* A Newton step over its factorisation at 1 ns a multiplication: substitutions and refinement take
+   half as much again. With 1 or with 2 here, more of 54 problems ended unsolved. */
+#define STEP 1.5
+
+double price_sweep(const struct problem *p)
+{
+    double n = (double)p->n;
+    if (!p->W) return p->kind.ns * n;
+    return (p->kind.ns + SWEEP_COMMON * p->W->common) * n + SWEEP_BLOCK * (double)p->W->first[p->n];
+}
+
+double price_newton_step(double multiplications, double entries)
+{
+    return STEP * (multiplications + ENTRY * entries);
+}
+
+double price_assembly(double entries)
+{
+    return ASSEMBLY_ENTRY * entries;
+}
+
+double price_analysis(double entries)
+{
+    return ANALYSIS_ENTRY * entries;
+}
 
 /*
  * With CRITERION_VELOCITY a solve aims at AIM g dt at first, where that is less than eps, and is content with eps

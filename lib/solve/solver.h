@@ -10,9 +10,48 @@
 #ifndef NSD_SOLVER_H
 #define NSD_SOLVER_H
 
-#include "solve/method.h"
 #include "solve/err.h"
-#include "solve/best.h"
+#include "solve/method.h"
+#include "solve/problem.h"
+
+#include <stdint.h>
+
+/* The best of all points judged, for methods that do not improve at every step. */
+
+struct best {
+    double value; /* of the point kept, smaller is better; INFINITY: none is kept */
+    int64_t size; /* numbers of a point */
+    double *x;    /* [size] the point kept */
+    int place;    /* of it on a device [solve/device.h] */
+};
+
+/* Allocates room for a point. Returns 0, or -1 when memory is short: then nothing is ever kept. */
+int best_init(struct best *b, int64_t size);
+void best_free(struct best *b);
+
+/* Where to write a point of this value, if it is better than the one kept; else NULL */
+double *best_offer(struct best *b, double value);
+/* Forgets the point kept; the next one offered with a finite value is kept. */
+void best_forget(struct best *b);
+
+/*
+ * What the parts of a solve cost, for the strategies that choose between them.
+ *
+ * Prices are ns of an ordinary core, but they are counted and not timed, so that the same problem
+ * is solved in the same way everywhere. Their sum over a solve is its report's `work`.
+ */
+
+/* A sweep over all contacts */
+double price_sweep(const struct problem *p);
+
+/* A Newton step with its one factorisation: `multiplications` of the factorisation (known from its
+   fill), `entries` of the matrix's pattern */
+double price_newton_step(double multiplications, double entries);
+/* Finding the fill of a pattern with this many entries, before its first factorisation */
+double price_analysis(double entries);
+/* Making W's blocks, with this many entries, from the bodies or from another W */
+double price_assembly(double entries);
+
 
 struct solver;
 

@@ -3,7 +3,7 @@
 
 #include "solve/ipm.h"
 #include "solve/nlgs.h"
-#include "solve/prices.h"
+#include "solve/solver.h"
 
 #include <stdlib.h>
 #include <string.h>

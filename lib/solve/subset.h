@@ -21,7 +21,7 @@
  * iterate gets their new reactions and is judged; its criterion may well be larger than before,
  * since the others have not adapted yet. The subset is not tried, and the iterate stays as it was,
  * where it would have more than a fifth of all contacts (`anyhow`: half, and fewer count as large),
- * or where the fill of its factors makes a solution cost more than `budget` ns [solve/prices.h].
+ * or where the fill of its factors makes a solution cost more than `budget` ns [solve/solver.h].
  *
  * Returns the number of contacts solved; 0 for none, -1 when memory is short.
  */

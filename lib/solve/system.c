@@ -1,9 +1,9 @@
 /* solve/system.c: the reduction of faces, the factors, and refinement [solve/system.h]. */
 #include "solve/system.h"
 
-#include "base/lu.h"
+#include "base/matrix.h"
 #include "solve/faces.h"
-#include "solve/prices.h"
+#include "solve/solver.h"
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>

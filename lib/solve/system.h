@@ -30,7 +30,7 @@ struct system;
 struct system *system_new(const struct scaled *a, double bytes, bool *too_large);
 void system_free(struct system *s);
 
-/* ns of a Newton step with it [solve/prices.h] */
+/* ns of a Newton step with it [solve/solver.h] */
 double system_price(const struct system *s);
 /* ns of system_new(), at most; and of a Newton step with the new system, at least */
 double system_price_new(const struct scaled *a);

@@ -1,6 +1,6 @@
 /*
  * solve/walk.h: how the threads of a sweep share its bundles: group after group, each thread a
- * share of every group, or, where there are two halves, a half each [solve/two_thread_split.h].
+ * share of every group, or, where there are two halves, a half each [solve/schedule.h].
  * For the files that are compiled once for each vector width.
  */
 #ifndef NSD_WALK_H

@@ -1,7 +1,7 @@
 #include "state/attraction.h"
 
 #include "state/kinematics.h"
-#include "state/top.h"
+#include "state/rotation.h"
 
 #include <stdlib.h>
 #include <string.h>

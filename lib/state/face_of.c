@@ -1,6 +1,6 @@
 #include "state/face_of.h"
 
-#include "shape/surface_tree.h"
+#include "shape/mesh.h"
 
 int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes, struct failure *failure)
 {

@@ -9,7 +9,7 @@
  *
  *     s+ = s + (dt f + J^T r)/m.
  *
- * They are gathered again for each step, from the loads of the packing [shape/load.h] and the
+ * They are gathered again for each step, from the loads of the packing [shape/drive.h] and the
  * masses and the stress of its cell [shape/cell.h]: on component i of edge k acts - (stress
  * A_k)_i, where A_k, the face that the other two edges span, has its normal to the side of the
  * edge.

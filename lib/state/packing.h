@@ -7,28 +7,113 @@
 #ifndef NSD_PACKING_H
 #define NSD_PACKING_H
 
-#include "base/vec.h"
 #include "base/failure.h"
-#include "state/body_columns.h"
-#include "state/bond.h"
-#include "state/contact.h"
-#include "state/memory.h"
-#include "state/names.h"
-#include "state/outside.h"
-#include "state/overlap.h"
-#include "state/pair_columns.h"
-#include "state/pair_law.h"
-#include "state/passage.h"
-#include "state/pull.h"
-#include "state/wall_load.h"
-#include "shape/wall_shape.h"
+#include "base/vec.h"
 #include "shape/cell.h"
 #include "shape/drive.h"
 #include "shape/mesh.h"
 #include "shape/shape.h"
+#include "shape/wall_shape.h"
+#include "state/body_columns.h"
+#include "state/bond.h"
+#include "state/contact.h"
+#include "state/external_force.h"
+#include "state/memory.h"
+#include "state/names.h"
+#include "state/pair_columns.h"
+#include "state/pair_law.h"
+#include "state/wall_load.h"
 
 #include <stdbool.h>
 #include <stdint.h>
+
+/*
+ * What a step does about overlaps, besides keeping bodies from approaching.
+ *
+ *     keep         nothing: u_n >= 0, as the paper
+ *     gap          u_n + max(0, g)/dt >= 0: bodies that are apart may close the gap g, not more
+ *                  [Jean 1999, the quasi-shock law of LMGC90]
+ *     push         u_n + g/dt >= 0: an overlap is left with a velocity
+ *     project      bodies are moved apart after the step, without a velocity [step/project.h]; the
+ *                  law sees the gaps of those that are near, as with gap
+ *     gap-project  gap and project
+ *
+ * Near is a pair whose gap is at most OVERLAP_NEAR of the smaller radius, and what loads may close of
+ * it in a step. What a projection opens is near: else the next step would not know the contact, and what
+ * it has carried would go into an overlap. gap, push and gap-project also see pairs that are farther
+ * apart and approach.
+ */
+
+enum overlap {
+    OVERLAP_UNSAID, /* by a document: keep */
+    OVERLAP_KEEP,
+    OVERLAP_GAP,
+    OVERLAP_PUSH,
+    OVERLAP_PROJECT,
+    OVERLAP_GAP_PROJECT,
+    OVERLAP_COUNT
+};
+
+/* As options and documents have them; that of OVERLAP_UNSAID is "" */
+extern const char *const overlap_name[OVERLAP_COUNT];
+
+/* Radii of the smaller: half of what a contact is moved apart in a step, where it overlaps by little. A
+   random packing has some 3 % more contacts so; with 1e-4 cells under a pressure still collapse that
+   moves a grain by 0.4 % of its radius in a step. */
+#define OVERLAP_NEAR 1e-3
+
+/* Whether the law sees gaps, also those of pairs that are not near and approach; overlaps too; and
+   whether bodies are moved apart */
+static inline bool overlap_sees_gaps(enum overlap o)
+{
+    return o > OVERLAP_KEEP;
+}
+static inline bool overlap_meets(enum overlap o)
+{
+    return overlap_sees_gaps(o) && o != OVERLAP_PROJECT;
+}
+static inline bool overlap_pushes(enum overlap o)
+{
+    return o == OVERLAP_PUSH;
+}
+static inline bool overlap_projects(enum overlap o)
+{
+    return o == OVERLAP_PROJECT || o == OVERLAP_GAP_PROJECT;
+}
+
+/*
+ * The account of inlets and outlets: how many each pour has brought and each
+ * removal has taken, and the events since the last frame. What pours and removes is
+ * scene/inlet.h.
+ */
+
+/* What one pour has brought, or one removal has taken, so far */
+struct flow_count {
+    int64_t bodies;
+    double mass; /* kg */
+};
+
+/* A body that has come or gone */
+struct event {
+    int64_t step; /* the step at whose beginning it happened */
+    double t;     /* s: the time of that beginning */
+    int32_t id;
+    int8_t came;   /* 1: poured; 0: removed */
+    int32_t which; /* the pour, or the removal: its place in the scene, from 0 */
+    double radius; /* m */
+    double mass;   /* kg */
+    vec3 x, v;     /* m, m/s: then */
+};
+
+struct events {
+    int64_t n, room;
+    struct event *e; /* [n] in order of time */
+};
+
+/* Returns 0 or EX_SOFTWARE. */
+int events_add(struct events *events, const struct event *event, struct failure *failure);
+void events_free(struct events *events);
+
 
 struct whole;
 
@@ -56,7 +141,7 @@ struct packing {
     struct wall *wall;     /* [walls] */
     struct drives drives;  /* of them */
     struct drives pushes;  /* of their loads: signals that are forces, N or N m */
-    struct drives pulls;   /* forces and torques on bodies [state/pull.h] */
+    struct drives pulls;   /* forces and torques on bodies [state/external_force.h] */
     double pulls_most;     /* m/s^2: no body gains more by them */
     struct mesh mesh;      /* of those that are meshes */
     struct names names;    /* of boundaries, of parts of them and of groups of bodies */
@@ -125,7 +210,7 @@ bool packing_sticks(const struct packing *p);
 bool packing_rolls(const struct packing *p);
 /* May an impact gain energy [step/balance.h]? It needs restitution and friction. */
 bool packing_may_gain(const struct packing *p);
-/* Is Newton's law to be bounded for the contact [step/rebound.h]? */
+/* Is Newton's law to be bounded for the contact [step/balance.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);
 
 /* Room for n bodies; those beyond the present ones are at rest at the origin, their id -1. Fewer: the

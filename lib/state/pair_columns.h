@@ -22,7 +22,7 @@
  * pair has another number; without it all are 0. Scenes have the first two as numbers, and "acts": false for an inert
  * pair.
  *
- *   mu_s, v_s  static friction, and the sliding speed up to which it is that [contact/friction.h]
+ *   mu_s, v_s  static friction, and the sliding speed up to which it is that [contact/contact_law.h]
  *   inert      1: the pair has no contacts; 0
  */
 #define STATIC_FRICTION_COLUMNS(X)                                                                 \

@@ -20,7 +20,7 @@
 
 #include <stdbool.h>
 
-/* Whether restitution is reduced where an impact would gain energy [step/rebound.h]: of grains that are no balls,
+/* Whether restitution is reduced where an impact would gain energy [step/balance.h]: of grains that are no balls,
    whose impacts gain by themselves; never; always */
 enum impact_law { IMPACT_DEFAULT, IMPACT_NEWTON, IMPACT_BOUNDED, IMPACT_LAWS };
 

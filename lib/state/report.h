@@ -70,7 +70,7 @@ struct balance {
     double
         projection; /* J: against gravity, by moving bodies apart after the step; where that is done */
     double spun[3]; /* N m s: of angular momentum, by that */
-    /* J, where the cell moves: of translation, by the velocities relative to its flow [state/energy.h], after the
+    /* J, where the cell moves: of translation, by the velocities relative to its flow [state/rotation.h], after the
        step; and its change in the step */
     double peculiar, peculiar_change;
     double momentum[3]; /* N s: of the bodies, after the step */
@@ -121,7 +121,7 @@ struct report {
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
     struct endless endless;            /* for which the step was not made */
-    double work;          /* ns, counted and not timed, of the whole solve [solve/prices.h] */
+    double work;          /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */
     const char *on_cpu;   /* why the device asked for did not solve it, a literal; or NULL */

@@ -9,7 +9,7 @@
  *
  *     gravity      dt sum m g . (v+ + v-)/2
  *     loads        dt sum f (s+ + s-)/2, of the freedoms [state/freedom.h] and of forces from outside
- *                  [state/outside.h]
+ *                  [state/external_force.h]
  *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
  *                  bodies, the cell) are in the velocity of the contact, their mean over the
  *                  step; and what the flow of the cell does to bodies
@@ -31,7 +31,7 @@
  *
  * An impact under Newton's law with friction may gain energy [Kane 1984]: a rod that strikes a floor at an angle and
  * whose tip reverses its slip. gained is what impacts have gained, the pairs of which approached with restitution and
- * whose friction did more work than restitution took; step/rebound.h bounds it.
+ * whose friction did more work than restitution took; step/balance.h bounds it.
  *
  * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
  * where the step has begun with separating bodies; over an impact it is what the law takes.
@@ -39,8 +39,8 @@
 #ifndef NSD_BALANCE_H
 #define NSD_BALANCE_H
 
-#include "step/impulse.h"
 #include "state/report.h"
+#include "step/impulse.h"
 
 /* Of the step that begins where the packing is, by the reactions of its contacts, whose sums are
    given, too. Bodies count where of[n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
@@ -59,5 +59,26 @@ int balance_gains(struct gain *gain, const struct packing *p, const struct conta
 int64_t balance_next_pair(const struct contacts *s, int64_t i);
 /* Less than this part of the scale is rounding, or what the solve leaves. */
 #define GAIN_LEAST 1e-10
+
+/*
+ * Impacts that gain no energy.
+ *
+ * Newton's law returns the normal velocity whatever friction does, and friction that reverses the slip of a lever
+ * does work: a rod may strike a floor with e_n = 1 and have 1.5 times its energy afterwards [Kane 1984]. Where the
+ * contacts of a pair would gain [balance_gains()], the pair's restitution is reduced to s (e_n, e_t), 0 <= s < 1,
+ *
+ *     -ENOUGH scale <= work(s) <= 0,
+ *
+ * by regula falsi over whole solves: everything that touches is solved with it. s = 0 gives no gain, for without
+ * restitution the kinetic energy of an impact cannot grow. The contacts keep their reduced e_n and e_t.
+ */
+
+struct rebound_search;
+
+/* Of solved contacts. *search: NULL at first; to be freed by rebound_free(). Reduces restitutions; *again: they are to
+   be solved once more, and this is to be called again. Returns 0 or EX_SOFTWARE. */
+int rebound_reduce(struct rebound_search **search, const struct packing *p, struct contacts *s,
+                   bool *again, struct failure *failure);
+void rebound_free(struct rebound_search *search); /* may be NULL */
 
 #endif

@@ -1,7 +1,7 @@
 /* step/contact_motion.c: velocities at contacts, over a step [step/contact_motion.h]. */
 #include "step/contact_motion.h"
 
-#include "state/top.h"
+#include "state/rotation.h"
 
 struct velocity {
     vec3 v, w; /* m/s, rad/s */

@@ -1,6 +1,6 @@
 /*
  * step/impulse.h: what the reactions of a step give to the bodies and to the freedoms beyond
- * theirs, P r and J^T r, summed in the contacts' order, and forces from outside [state/outside.h].
+ * theirs, P r and J^T r, summed in the contacts' order, and forces from outside [state/external_force.h].
  */
 #ifndef NSD_IMPULSE_H
 #define NSD_IMPULSE_H

@@ -4,7 +4,7 @@
 #include "base/team.h"
 #include "contact/contact_law.h"
 #include "state/servo_box.h"
-#include "state/top.h"
+#include "state/rotation.h"
 #include "step/project.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ static struct move_way move_way_of(const struct packing *p, bool back)
     return (struct move_way){ step_ahead(p), step_after(p), 1 };
 }
 
-/* A body that keeps its angular momentum, not its angular velocity [state/top.h] */
+/* A body that keeps its angular momentum, not its angular velocity [state/rotation.h] */
 static void rotation_move(struct packing *p, const struct move_way *y, int64_t i, vec3 moment)
 {
     vec3 L = rotation_momentum(p, i, p->q[i], p->w[i]);

@@ -2,11 +2,10 @@
 #include "step/step.h"
 
 #include "contact/depth.h"
-#include "state/energy.h"
-#include "state/wrap.h"
-#include "contact/crossing.h"
+#include "state/rotation.h"
+#include "state/placement.h"
+#include "contact/time_of_impact.h"
 #include "contact/detect.h"
-#include "contact/meeting.h"
 #include "contact/tunnelling.h"
 #include "contact/touching.h"
 #include "step/move.h"
@@ -14,7 +13,7 @@
 #include "step/sum_step.h"
 #include "solve/device.h"
 #include "solve/prepare.h"
-#include "step/rebound.h"
+#include "step/balance.h"
 
 #include <stdlib.h>
 

@@ -95,7 +95,7 @@ struct step_makers {
                  struct report *rep, struct failure *failure);
     const struct substeps *substeps; /* of which this is one */
     bool
-        meets; /* it ends where bodies meet [contact/meeting.h]; else what they go through is counted */
+        meets; /* it ends where bodies meet [contact/time_of_impact.h]; else what they go through is counted */
 };
 /* The step, or the substep, by these makers */
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
@@ -114,7 +114,7 @@ void step_report_moved(struct report *rep, const struct packing *p, const struct
 
 /* Parts of it. */
 /* found[], and the report of the solve; kept: of struct prepare_opt, or NULL. Impacts that would gain energy
-   are solved again with less restitution [step/rebound.h]; and this alone, of contacts that are solved. */
+   are solved again with less restitution [step/balance.h]; and this alone, of contacts that are solved. */
 int step_solve_contacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                         const struct step_opt *o, struct report *rep, struct failure *failure);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,

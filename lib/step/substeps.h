@@ -1,5 +1,5 @@
 /*
- * step/substeps.h: a step that is made in substeps, since bodies meet within it [contact/meeting.h].
+ * step/substeps.h: a step that is made in substeps, since bodies meet within it [contact/time_of_impact.h].
  *
  * Substeps are steps of the same equations, each with a length of its own; they share the step's number, and their
  * lengths add up to its dt: the next step begins at the same time as if it had not been divided. Reactions of a

@@ -6,7 +6,7 @@
 #include "draw/images.h"
 #include "draw/page.h"
 #include "draw/svg.h"
-#include "draw/values.h"
+#include "draw/paint.h"
 
 static struct packing packing;
 static struct contacts contacts;

@@ -3,8 +3,7 @@
 #include "frames.h"
 
 #include "convert/format.h"
-#include "convert/vti.h"
-#include "convert/fields_write.h"
+#include "convert/fields_file.h"
 #include "file/frame_read.h"
 #include "measure/measures.h"
 

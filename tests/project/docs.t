@@ -115,7 +115,7 @@ keys() # that the code knows: what it asks of an object of a scene
 undescribed() # keys that the page does not have
 {
     local key
-    { keys; grep -oE 'X\((mu|e_[nt])\b' lib/bodies/pair_columns.h | sed 's/X(//'; } | sort -u | while read -r key; do
+    { keys; grep -oE 'X\((mu|e_[nt])\b' lib/state/pair_columns.h | sed 's/X(//'; } | sort -u | while read -r key; do
         grep -qE "^\.(It )?(Va|It Va) (.* , |.* )?$key( |$)|(^|[^a-z_])$key([^a-z_]|$)" man/nsd-scene.5 || echo "$key"
     done
 }

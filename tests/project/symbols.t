@@ -4,7 +4,7 @@
 . tests/support/tap.sh
 
 build=$(dirname "$(command -v nsd-gen)")
-declared() { grep -oE '\bnsd_[a-z_]+\(' lib/api/nsd.h | grep -v '^nsd_error()' | tr -d '(' | sort -u; }
+declared() { grep -oE '\bnsd_[a-z_]+\(' lib/run/nsd.h | grep -v '^nsd_error()' | tr -d '(' | sort -u; }
 cat >"$tmp/list" <<'EOT'
 nsd_add
 nsd_append

@@ -19,7 +19,7 @@ case_of() # CASE: its line alone
 
 san=()
 grep -q __asan_init "$(command -v nsd-gen)" && san=("-fsanitize=address,undefined")
-cc "${san[@]}" -Ilib/api -o "$tmp/fluid" docs/examples/fluid.c "$library" -lm -Wl,-rpath,"$(dirname "$library")"
+cc "${san[@]}" -Ilib/run -o "$tmp/fluid" docs/examples/fluid.c "$library" -lm -Wl,-rpath,"$(dirname "$library")"
 "$tmp/fluid" >"$tmp/lines"
 ok "fluid.c: balls sink at the velocity of Schiller and Naumann, to 1 %" within 0.01 velocity
 

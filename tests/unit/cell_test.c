@@ -1,5 +1,5 @@
 /* What must hold where the cell repeats: detection among images, and motion that knows no border. */
-#include "state/wrap.h"
+#include "state/placement.h"
 #include "contact/detect.h"
 #include "step/move.h"
 #include "solve/assembly.h"

@@ -1,6 +1,6 @@
 /* What must hold of loads: closed solutions, the same problem by all solvers, W by brute force, and the
    balances of energy and momentum. */
-#include "state/wrap.h"
+#include "state/placement.h"
 #include "contact/detect.h"
 #include "step/move.h"
 #include "solve/assembly.h"

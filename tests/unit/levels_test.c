@@ -1,7 +1,6 @@
 /* tests/unit/levels_test.c: contacts by levels are visited as they are in their order, and by threads at once. */
 #include "base/team.h"
 #include "contact/detect.h"
-#include "step/levels.h"
 #include "step/project.h"
 #include "tap.h"
 

@@ -2,7 +2,7 @@
  * The five local methods on random one-contact problems, judged by the law itself and not by their
  * own formulas.
  */
-#include "base/eigen.h"
+#include "base/matrix.h"
 #define METHOD_CODE
 #include "solve/method.h"
 #include "tap.h"

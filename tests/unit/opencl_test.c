@@ -2,7 +2,6 @@
 #include "tap.h"
 
 #include "solve/opencl_api.h"
-#include "solve/opencl_text.h"
 
 #include <stdlib.h>
 #include <string.h>

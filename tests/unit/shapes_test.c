@@ -1,6 +1,5 @@
 /* shapes_test.c: volumes and moments of shapes, how they turn, where they meet, what contacts give. */
-#include "state/energy.h"
-#include "state/top.h"
+#include "state/rotation.h"
 #include "contact/detect.h"
 #include "shape/gjk.h"
 #include "shape/meet.h"

@@ -2,7 +2,7 @@
  * What the tool believes of the process that reads for it: a list of objects however it is cut or
  * changed, numbers of every type, and the end of that process, whichever it dies of.
  */
-#include "file/listed.h"
+#include "file/child.h"
 #include "file/source.h"
 #include "tap.h"
 

@@ -1,6 +1,6 @@
 /*
- * problem/opencl/begin.cl: what lets OpenCL C 1.2 read base/lanes.h, law/local*.h and solve/bundle.h, which come
- * next in the text that the driver compiles, then opencl/kernels.cl [solve/opencl_text.h].
+ * solve/opencl/begin.cl: what lets OpenCL C 1.2 read base/lanes.h, law/local*.h and solve/bundle.h, which come
+ * next in the text that the driver compiles, then opencl/kernels.cl [solve/opencl_api.h].
  *
  * A work-item is one slot: LANES is 1. Contraction is off, and + - * / and sqrt of doubles are rounded correctly
  * [OpenCL C 1.2, table 7.2], so each slot gets the bits that it gets on the CPU.

@@ -1,5 +1,5 @@
 /*
- * problem/opencl/kernels.cl: the kernels of a device. Each is the loop body of sweep.c, judge.c, mixing.c or walk.h
+ * solve/opencl/kernels.cl: the kernels of a device. Each is the loop body of sweep.c, judge.c, mixing.c or walk.h
  * for one slot, in the same order of operations. Macros of the build: METHOD, the local method; EXACT, that it is
  * exact; FULL, W_cc is full;
  * GIVEN, there is only W.

@@ -5,7 +5,7 @@
 #include "fuzz.h"
 #include "shape/solid.h"
 #include "scene/mesh_file.h"
-#include "scene/mesh_shape.h"
+#include "scene/surface_parts.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,0 +1,374 @@
+#include "file/wall_tables.h"
+
+#include "file/h5.h"
+#include "file/tables.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BOUNDARY "/particles/boundary"
+
+/* ---- from a document ---- */
+
+/* The loads as they are in frame k, in `group` */
+static int read_loads(struct source *r, const char *group, int64_t k, struct packing *p,
+                      struct failure *failure)
+{
+    if (!source_has(r, group)) return 0;
+    char spread[60], rate[60];
+    snprintf(spread, sizeof spread, "%s/spread", group);
+    snprintf(rate, sizeof rate, "%s/rate", group);
+    if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), failure) ||
+        (source_has(r, spread) &&
+         table_read_columns(r, group, "", 0, RECORDS(layout_spread, p->walls, p->wall), failure)) ||
+        (source_has(r, rate) &&
+         table_read_columns(r, group, "", 0, RECORDS(layout_rate, p->walls, p->wall), failure)))
+        return failure->status;
+    double *row = calloc((size_t)p->walls + 1, sizeof *row);
+    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
+    for (const struct column *c = layout_yield; !failure->status && c->name; c++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, failure))
+            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
+    }
+    free(row);
+    return failure->status;
+}
+
+/* The number of rows of a dataset of so many dimensions */
+static int wall_tables_count_rows(struct source *r, const char *path, int rank, int32_t *n, struct failure *failure)
+{
+    uint64_t shape[4];
+    if (source_shape(r, path, shape) != rank || shape[0] > 1 << 24)
+        return failure_set(failure, EX_DATAERR, "%s: not of %d dimensions", path, rank);
+    *n = (int32_t)shape[0];
+    return 0;
+}
+
+/* Signals in time of walls, of which each counts its own from the first one */
+struct signals {
+    const char *group;   /* where they are stored */
+    size_t drives;       /* where they are in struct packing, */
+    size_t first, count; /* and in struct wall the first and the number of its own */
+};
+
+static const struct signals signals_drive = { BOUNDARY "/drive", offsetof(struct packing, drives),
+                                              offsetof(struct wall, first_drive),
+                                              offsetof(struct wall, drives) },
+                            signals_push = { BOUNDARY "/push", offsetof(struct packing, pushes),
+                                             offsetof(struct wall, first_push),
+                                             offsetof(struct wall, pushes) };
+
+static int read_signals(struct source *r, const struct signals *of, struct packing *p,
+                        struct failure *failure)
+{
+    const char *group = of->group;
+    struct drives *d = (struct drives *)(void *)((char *)p + of->drives);
+    char boundary[60], rows[60];
+    int32_t n = 0, m = 0;
+    snprintf(boundary, sizeof boundary, "%s/boundary", group);
+    snprintf(rows, sizeof rows, "%s/row", group);
+    if (!source_has(r, group)) return 0;
+    if (wall_tables_count_rows(r, boundary, 1, &n, failure) || wall_tables_count_rows(r, rows, 2, &m, failure) ||
+        drives_alloc(d, n, m, failure) ||
+        table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), failure) ||
+        source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, failure))
+        return failure->status;
+    for (int32_t k = 0; k < n; k++) {
+        int32_t w = d->drive[k].boundary;
+        if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
+            return failure_set(failure, EX_DATAERR, "%s: not in the order of the boundaries", boundary);
+        int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
+        if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + of->first) = k;
+    }
+    return 0;
+}
+
+static int read_drives(struct source *r, struct packing *p, struct failure *failure)
+{
+    return read_signals(r, &signals_drive, p, failure) || read_signals(r, &signals_push, p, failure)
+               ? failure->status
+               : 0;
+}
+
+static int wall_tables_read_mesh(struct source *r, struct packing *p, struct failure *failure)
+{
+    const char *vertex = BOUNDARY "/mesh/vertex", *element = BOUNDARY "/mesh/element";
+    int32_t n = 0, m = 0;
+    if (!source_has(r, BOUNDARY "/mesh")) return 0;
+    if (wall_tables_count_rows(r, vertex, 2, &n, failure) || wall_tables_count_rows(r, element, 2, &m, failure) ||
+        mesh_alloc(&p->mesh, n, m, failure) ||
+        source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, failure) ||
+        source_rows(r, element, (struct slab){ COLUMN_I32, 0, m, 3 }, p->mesh.element, failure))
+        return failure->status;
+    return 0;
+}
+
+/* Planes, as version 1 had them */
+static int read_planes(struct source *r, int64_t k, struct packing *p, struct failure *failure)
+{
+    int32_t n = 0;
+    if (!source_has(r, "/walls/plane")) return 0;
+    if (wall_tables_count_rows(r, "/walls/plane/point", 2, &n, failure) || packing_alloc_walls(p, n, failure) ||
+        table_read_columns(r, "/walls/plane", "", 0, RECORDS(layout_plane, n, p->wall), failure))
+        return failure->status;
+    return read_loads(r, "/walls/load", k, p, failure);
+}
+
+int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
+{
+    const char *body = BOUNDARY "/body";
+    int32_t n = 0;
+    if (!source_has(r, body)) return read_planes(r, k, p, failure);
+    if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, failure) || packing_alloc_walls(p, n, failure) ||
+        table_read_columns(r, body, "", 0, RECORDS(layout_plane, n, p->wall), failure) ||
+        (source_has(r, BOUNDARY "/body/shape") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), failure)) ||
+        (source_has(r, BOUNDARY "/body/weld") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), failure)) ||
+        (source_has(r, BOUNDARY "/body/wear") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_wear, n, p->wall), failure)) ||
+        (source_has(r, BOUNDARY "/body/belt") &&
+         table_read_columns(r, body, "", 0, RECORDS(layout_belt, n, p->wall), failure)) ||
+        read_loads(r, BOUNDARY "/load", k, p, failure) || read_drives(r, p, failure) ||
+        wall_tables_read_mesh(r, p, failure))
+        return failure->status;
+    return 0;
+}
+
+/* ---- to a document ---- */
+
+/* Planes that are there for ever need no table of shapes. */
+static bool any_shapes(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
+    return false;
+}
+
+static bool any_welds(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].weld > 0) return true;
+    return false;
+}
+
+static bool any_wear(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].wear > 0) return true;
+    return false;
+}
+
+static bool any_belts(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (v3_norm(p->wall[w].belt) > 0) return true;
+    return false;
+}
+
+static bool any_loads(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way) return true;
+    return false;
+}
+
+static bool any_spread(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.spread) return true;
+    return false;
+}
+
+static bool any_rates(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.rate != 0) return true;
+    return false;
+}
+
+bool boundary_tables_move(const struct packing *p)
+{
+    for (int32_t w = 0; w < p->walls; w++)
+        if (v3_norm(p->wall[w].v) > 0 || p->wall[w].load.way) return true;
+    return p->drives.n > 0;
+}
+
+/* Or may it, in frames to come? */
+static bool any_may_move(const struct packing *p)
+{
+    return p->outside.steered || boundary_tables_move(p);
+}
+
+/* [walls]; NULL: no memory */
+static struct boundary_motion *motions(const struct packing *p, struct failure *failure)
+{
+    struct boundary_motion *m = calloc((size_t)p->walls + 1, sizeof *m);
+    if (!m) failure_set(failure, EX_SOFTWARE, "no memory for the motion of the boundaries");
+    for (int32_t w = 0; m && w < p->walls; w++) {
+        const struct wall *wall = &p->wall[w];
+        vec3 x = wall_at(p, wall, p->t);
+        m[w] = (struct boundary_motion){ x, wall_pose(p, wall, p->t).q, wall_velocity(p, wall, x),
+                                         wall_spin(p, wall) };
+    }
+    return m;
+}
+
+static int write_signals(struct table_write *s, const char *group, const struct drives *d,
+                         const char *units, struct failure *failure)
+{
+    const hsize_t shape[2] = { (hsize_t)d->rows, 2 };
+    char rows[60];
+    snprintf(rows, sizeof rows, "%s/row", group);
+    if (!d->n) return 0;
+    if (table_write_columns(s, group, "", RECORDS(layout_drive, d->n, d->drive), 0, failure))
+        return failure->status;
+    return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, failure);
+}
+
+static int write_drives(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    if (write_signals(s, BOUNDARY "/drive", &p->drives, "s; m, rad", failure)) return failure->status;
+    return write_signals(s, BOUNDARY "/push", &p->pushes, "s; N, N m", failure);
+}
+
+static int write_mesh(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    const hsize_t vertices[2] = { (hsize_t)p->mesh.vertices, 3 },
+                  elements[2] = { (hsize_t)p->mesh.elements, 3 };
+    if (!p->mesh.elements) return 0;
+    if (h5_write(s->file, BOUNDARY "/mesh/vertex",
+                 h5_array(H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex), "m", failure))
+        return failure->status;
+    return h5_write(s->file, BOUNDARY "/mesh/element",
+                    h5_array(H5T_NATIVE_INT32, 2, elements, p->mesh.element), NULL, failure);
+}
+
+int boundary_tables_write_static(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    bool growing = s->growing;
+    struct boundary_motion *m = NULL;
+    const char *body = BOUNDARY "/body";
+    s->growing = false;
+    if (!table_write_columns(s, body, "", RECORDS(layout_plane, p->walls, p->wall), 0, failure) &&
+        !(any_shapes(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, failure)) &&
+        !(any_welds(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, failure)) &&
+        !(any_wear(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_wear, p->walls, p->wall), 0, failure)) &&
+        !(any_belts(p) &&
+          table_write_columns(s, body, "", RECORDS(layout_belt, p->walls, p->wall), 0, failure)) &&
+        !write_drives(s, p, failure) && !write_mesh(s, p, failure) && any_loads(p) &&
+        !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
+                             failure) &&
+        !(any_spread(p) &&
+          table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_spread, p->walls, p->wall), 0,
+                              failure)) &&
+        any_rates(p))
+        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_rate, p->walls, p->wall), 0,
+                            failure);
+    s->at_rest = !any_may_move(p);
+    if (!failure->status && s->at_rest && (m = motions(p, failure)))
+        table_write_columns(s, BOUNDARY, "", RECORDS(layout_boundary_motion, p->walls, m), 0, failure);
+    free(m);
+    s->growing = growing;
+    return failure->status;
+}
+
+/* One row of a table of [frames][walls] */
+static int write_row(struct table_write *s, const char *group, struct records o,
+                     const struct packing *p, struct failure *failure)
+{
+    for (const struct column *c = o.columns; !failure->status && c->name; c++) {
+        char path[80];
+        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
+        double *row = malloc(((size_t)o.n * (size_t)c->width + 1) * sizeof *row);
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
+        column_gather(c, o.n, o.structs, o.stride, row);
+        table_write_rows(s,
+                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
+                                           CHUNK_FRAMES, row, c->units },
+                         failure);
+        free(row);
+    }
+    return failure->status ? failure->status : table_write_clocks(s, group, o.columns, p->step, p->t, failure);
+}
+
+int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    if (!any_may_move(p) || (s->at_rest && !boundary_tables_move(p))) return 0;
+    if (s->at_rest)
+        return failure_set(
+            failure, EX_DATAERR,
+            "boundaries move, and in the first frame none could: begin another trajectory");
+    struct boundary_motion *m = motions(p, failure);
+    if (m && !write_row(s, BOUNDARY, RECORDS(layout_boundary_motion, p->walls, m), p, failure) &&
+        any_loads(p))
+        write_row(s, BOUNDARY "/load", RECORDS(layout_yield, p->walls, p->wall), p, failure);
+    free(m);
+    return failure->status;
+}
+
+#define NAMES_HOME "/nsd/names"
+static const char text_path[] = NAMES_HOME "/text";
+
+int name_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    const struct names *names = &p->names;
+    bool growing = s->growing;
+    size_t length = 1;
+    if (!names->n) return 0;
+    for (int32_t k = 0; k < names->n; k++) length += strlen(names->text[k]) + 1;
+    char *text = calloc(length, 1), *at = text;
+    if (!text) return failure_set(failure, EX_SOFTWARE, "no memory for the names");
+    for (int32_t k = 0; k < names->n; k++) {
+        size_t n = strlen(names->text[k]);
+        memcpy(at, names->text[k], n), at[n] = '\n', at += n + 1;
+    }
+    s->growing = false;
+    if (!h5_write_text(s->file, text_path, text, failure) && names->rows)
+        table_write_columns(s, NAMES_HOME, "", RECORDS(layout_names, names->rows, names->row), 0, failure);
+    s->growing = growing;
+    free(text);
+    return failure->status;
+}
+
+static int read_rows(struct source *r, struct packing *p, struct failure *failure)
+{
+    const char *path = NAMES_HOME "/boundary";
+    uint64_t shape[4];
+    if (!source_has(r, path)) return 0;
+    if (source_shape(r, path, shape) != 1 || shape[0] > NAMED_MOST)
+        return failure_set(failure, EX_DATAERR, "%s: not of one dimension, or of more than %d rows", path,
+                       NAMED_MOST);
+    p->names.row = calloc((size_t)shape[0] + 1, sizeof *p->names.row);
+    if (!p->names.row) return failure_set(failure, EX_SOFTWARE, "no memory for the names");
+    p->names.rows = (int32_t)shape[0];
+    return table_read_columns(r, NAMES_HOME, "", 0, RECORDS(layout_names, p->names.rows, p->names.row),
+                              failure);
+}
+
+int name_tables_read(struct source *r, struct packing *p, struct failure *failure)
+{
+    if (!source_has(r, text_path)) return 0;
+    char *text = source_text(r, text_path, NULL, failure);
+    for (char *at = text, *end; at && *at && !failure->status; at = end + 1) {
+        int32_t had = p->names.n, which;
+        if (!(end = strchr(at, '\n'))) {
+            failure_set(failure, EX_DATAERR, "%s: the last name does not end", text_path);
+            break;
+        }
+        *end = 0;
+        if (names_add(&p->names, at, &which, failure))
+            failure_set(failure, EX_DATAERR, "%s: a name that is no name", text_path);
+        else if (p->names.n == had)
+            failure_set(failure, EX_DATAERR, "%s: \"%s\" occurs twice", text_path, at);
+    }
+    free(text);
+    return failure->status ? failure->status : read_rows(r, p, failure);
+}

@@ -1,0 +1,39 @@
+/*
+ * run/reply.h: what a program answers that nsd-step asks before a step [nsd-step(1)], a line of JSON:
+ *
+ *   { "forces":  { ID: [x, y, z], ... } or [[x, y, z], ...],     N, of bodies by their ids, or of all in their order
+ *     "torques": likewise,                                       N m
+ *     "velocities", "angular_velocities": likewise,              m/s, rad/s
+ *     "boundaries": { NUMBER: { "velocity": [x, y, z], "force": N }, ... },
+ *     "gravity": [x, y, z], "friction": [[KIND, KIND, mu], ...], "stop": true }
+ *
+ * or the word stop. Forces act until the next answer, all else until it is changed. A document that is answered becomes
+ * such an object.
+ */
+#ifndef NSD_REPLY_H
+#define NSD_REPLY_H
+
+#include "run/control.h"
+
+#include <jansson.h>
+
+struct frame;
+
+/* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
+json_t *reply_parse(const char *line, size_t length, struct failure *failure);
+/* Has it the keys of an answer, with values of their types? Whether the bodies, boundaries and kinds exist that it names is
+   seen when it is applied. Returns 0 or EX_DATAERR. */
+int reply_check(const json_t *answer, struct failure *failure);
+/* Applies it as the packing's next step is to begin. *stop: the run is to end before the step, and nothing else is applied.
+   Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
+int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
+                 struct failure *failure);
+
+/*
+ * The answer that makes of p what the frame is: its velocities, angular velocities, gravity, friction and velocities of
+ * boundaries where they differ, and its forces that last. To be freed; NULL: the frame differs in something else, or is of
+ * another moment (EX_DATAERR), or no memory
+ */
+json_t *reply_of_frame(const struct frame *frame, const struct packing *p, struct failure *failure);
+
+#endif
