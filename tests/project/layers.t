@@ -1,36 +1,49 @@
 #!/usr/bin/env bash
-# The house stands as lib/README.md draws it: every file is in a room, is named there, and includes only
-# files of its own floor or of floors below, without a circle.
+# The folders of lib/ depend on each other as the table of lib/README.md says: a file includes files of its own folder and of
+# those that the table allows, without a circle; each header begins with its own name and what it is for.
 # shellcheck source=tests/support/tap.sh
 . tests/support/tap.sh
 
-# "## 5 problem" opens a floor; "- `sweep.h .c`" or "- `sweep.h`" names a module of it.
-mapfile -t rooms < <(awk '/^## [0-9]+ / { print $3 }' lib/README.md)
+# "| base | what lives there | shape contact |" is a row; what an allowed folder may include is allowed, too.
+table() { awk -F'|' '/^\| [a-z]+ \|.*\|/ && !/folder/ { gsub(/ /, "", $2); print $2, $4 }' lib/README.md; }
+mapfile -t folders < <(table | awk '{ print $1 }')
 modules() { find lib -name '*.[ch]' | sed 's/\.[ch]$//' | sort -u; }
-no_room() { find lib -name '*.[ch]' | awk -F/ -v rooms=" ${rooms[*]} " 'NF != 3 || !index(rooms, " " $2 " ")'; }
-unnamed() # modules that the README does not name in their room
-{
-    awk '/^## [0-9]+ / { room = $3 } /^- `/ { n = split($0, w, "`"); for (i = 2; i < n; i += 2) { split(w[i], name, "."); print "lib/" room "/" name[1] } }' lib/README.md | sort -u |
-        comm -3 - <(modules)
-}
-# "FILE ROOM/NAME.h": every include of ours, found once
-awk 'match($0, /^ *# *include "[^"]*"$/) { sub(/^[^"]*"/, ""); sub(/"$/, ""); print FILENAME, $0 }' lib/*/*.[ch] >"$tmp/includes"
+includes() { sed -n 's/^ *# *include "\(.*\)"$/\1/p' "$@"; } # of files, "folder/name.h" per line
 
-foreign() # includes of ours that are no file of a room
+no_folder() { find lib -name '*.[ch]' | awk -F/ -v folders=" ${folders[*]} " 'NF != 3 || !index(folders, " " $2 " ")'; }
+nameless() # headers that do not begin with their name
+{
+    local f
+    for f in lib/*/*.h; do
+        head -n 2 "$f" | grep -q -e "${f#lib/}: " -e "^ \* $(basename "$f"): " || echo "$f"
+    done
+}
+foreign() # includes of ours that are no file of a folder
 {
     local f i
-    while read -r f i; do [ -f "lib/$i" ] || echo "$f: $i"; done <"$tmp/includes"
+    for f in lib/*/*.[ch]; do
+        for i in $(includes "$f"); do [ -f "lib/$i" ] || echo "$f: $i"; done
+    done
 }
-upwards()
+forbidden() # includes that the table does not allow
 {
-    awk 'FNR == NR { if (/^## [0-9]+ /) floor[$3] = $2; next }
-        { split($1, at, "/"); split($2, of, "/"); if (!(of[1] in floor) || floor[of[1]] > floor[at[2]]) print $1 ": " $2 }' \
-        lib/README.md "$tmp/includes"
+    local f
+    for f in lib/*/*.[ch]; do
+        includes "$f" | sed "s,^,$f ,"
+    done | awk '
+        function allow(a, b, n, w, i) { if ((a, b) in may) return; may[a, b] = 1; n = split(row[b], w, " "); for (i = 1; i <= n; i++) allow(a, w[i]) }
+        NR == FNR { a = $1; $1 = ""; row[a] = $0; next }
+        FNR == 1 { for (a in row) allow(a, a) }
+        { split($1, f, "/"); split($2, i, "/"); if (!((f[2], i[1]) in may)) print $1 ": " $2 }' <(table) -
 }
-circles() # in room $1, by modules: x.h and x.c are one
+circles() # in folder $1, by modules: x.h and x.c are one
 {
-    awk -v room="$1" '{ split($1, at, "/"); split($2, of, "/"); sub(/[.][ch]$/, "", $1); sub(/[.]h$/, "", $2) }
-        at[2] == room && of[1] == room && $1 != "lib/" $2 { print $1, "lib/" $2 }' "$tmp/includes" | { tsort >/dev/null; } 2>&1
+    local m i
+    for m in $(modules | grep "^lib/$1/"); do
+        for i in $(includes "$m".[ch] | grep "^$1/"); do
+            [ "lib/${i%.h}" = "$m" ] || echo "$m lib/${i%.h}"
+        done
+    done | { tsort >/dev/null; } 2>&1
 }
 
 nothing() # COMMAND ...: prints nothing
@@ -39,12 +52,12 @@ nothing() # COMMAND ...: prints nothing
     [ ! -s "$tmp/said" ] || { cat "$tmp/said"; return 1; }
 }
 
-ok "there are floors" [ "${#rooms[@]}" -ge 9 ]
-ok "every file is in a room" nothing no_room
-ok "lib/README.md names every module, and no other" nothing unnamed
-ok "every include of ours names a file by its room" nothing foreign
-ok "no include looks up" nothing upwards
-for room in "${rooms[@]}"; do
-    ok "no circle in $room/" nothing circles "$room"
+is "the table has thirteen folders" "${#folders[@]}" 13
+ok "every file is in one of them" nothing no_folder
+ok "every header begins with its name and what it is for" nothing nameless
+ok "every include of ours names a file by its folder" nothing foreign
+ok "no include is one that the table does not allow" nothing forbidden
+for folder in "${folders[@]}"; do
+    ok "no circle in $folder/" nothing circles "$folder"
 done
 done_testing
