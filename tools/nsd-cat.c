@@ -1,8 +1,8 @@
 /* nsd-cat: joins, cuts and thins streams and trajectories, and turns one into the other. */
-#include "run/cli.h"
 #include "convert/vtk.h"
 #include "file/reader.h"
 #include "file/writer.h"
+#include "run/cli.h"
 
 static bool last, stream;
 static const char *steps, *output;
@@ -54,8 +54,9 @@ int tool_main(int argc, char **argv)
     reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_COPY;
-    while (!(last ? reader_last(in, &f, &more, &failure) : reader_find(in, &range, &more, &failure)) &&
-           more) {
+    while (
+        !(last ? reader_last(in, &f, &more, &failure) : reader_find(in, &range, &more, &failure)) &&
+        more) {
         bool whole = !last && reader_whole(in);
         if (!last && !whole && reader_take(in, &f, &failure)) break;
         if (!out && (writer_open(&out, output, kind, &failure) ||

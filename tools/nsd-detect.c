@@ -1,11 +1,11 @@
 /* nsd-detect: finds the contacts of packings. */
-#include "state/placement.h"
+#include "contact/detect.h"
+#include "contact/touching.h"
 #include "run/cli.h"
 #include "run/options.h"
 #include "run/tool_filter.h"
-#include "contact/detect.h"
-#include "contact/touching.h"
 #include "scene/inlet.h"
+#include "state/placement.h"
 
 #include <stdlib.h>
 
@@ -57,7 +57,8 @@ static void flow(struct packing *p)
     bool changed;
     p->events.n = 0;
     external_force_forget(&p->outside);
-    if (flow_read(&scene, p, &failure) || flow_step(&scene, p, NULL, &changed, &failure)) die_why(&failure);
+    if (flow_read(&scene, p, &failure) || flow_step(&scene, p, NULL, &changed, &failure))
+        die_why(&failure);
     flow_free(&scene);
 }
 

@@ -1,10 +1,10 @@
 /* nsd-err: says how good a solution is, recomputed from the problem and the reactions. */
-#include "run/cli.h"
 #include "file/reader.h"
 #include "file/report_json.h"
-#include "step/move.h"
+#include "run/cli.h"
 #include "solve/err.h"
 #include "solve/prepare.h"
+#include "step/move.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

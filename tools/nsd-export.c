@@ -1,11 +1,11 @@
 /* nsd-export: frames as files of other programs: ParaView, OVITO, ASE, tables, triangles. */
 #include "base/output.h"
-#include "state/selection.h"
-#include "run/cli.h"
-#include "run/tool_filter.h"
 #include "convert/format.h"
 #include "convert/vtk.h"
 #include "file/reader.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "state/selection.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -79,7 +79,8 @@ static void sheaf_open(struct sheaf *s, const char *name)
 static void sheaf_close(struct sheaf *s)
 {
     struct failure failure = { 0 };
-    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &failure)) die_why(&failure);
+    if (s->moments && s->format->end && s->format->end(s->out, s->kept, &failure))
+        die_why(&failure);
     if (s->out == stdout)
         finish_stdout();
     else if (output_stream_close(&s->file, s->out, &failure))

@@ -1,15 +1,15 @@
 /* nsd-gen: builds a packing, the paper's N balls or what a scene says. */
 #include "base/json.h"
-#include "state/servo_box.h"
-#include "run/cli.h"
 #include "convert/import_file.h"
 #include "convert/scene_file.h"
 #include "file/writer.h"
+#include "run/cli.h"
 #include "scene/scene_build.h"
 #include "scene/scene_carry.h"
 #include "scene/scene_height.h"
 #include "scene/size_table.h"
 #include "scene/time_step.h"
+#include "state/servo_box.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -133,8 +133,8 @@ static void say_left_out(const struct scene_mesh *m)
 {
     struct failure failure = { 0 };
     failure_set(&failure, EX_DATAERR,
-            "%s: left out: %d triangles that have no area, or the corners of another", m->file,
-            m->left_out);
+                "%s: left out: %d triangles that have no area, or the corners of another", m->file,
+                m->left_out);
     if (m->left_out) warn("%s", failure.text);
 }
 

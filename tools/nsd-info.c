@@ -1,13 +1,13 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
-#include "state/selection.h"
-#include "state/rotation.h"
-#include "state/face_of.h"
-#include "state/kinematics.h"
-#include "state/servo_box.h"
-#include "run/cli.h"
 #include "file/reader.h"
 #include "file/report_json.h"
 #include "measure/stress.h"
+#include "run/cli.h"
+#include "state/face_of.h"
+#include "state/kinematics.h"
+#include "state/rotation.h"
+#include "state/selection.h"
+#include "state/servo_box.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@
 static bool last, particles, contacts, walls, history, events, scene;
 static const char *steps, *only;
 static struct selection chosen; /* of the frame at hand, by --only */
-static bool shown;           /* whether any frame had what was asked for: contacts, a history */
+static bool shown;              /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'p', "particles", &particles, .help = "print one line per body" },
@@ -455,7 +455,8 @@ static void set_room(json_t *room, const struct packing *p)
 {
     json_t *travel = json_array();
     for (int32_t w = 0; w < p->walls; w++)
-        if (servo_box_has(&p->wall[w])) json_array_append_new(travel, json_real(p->wall[w].load.travel));
+        if (servo_box_has(&p->wall[w]))
+            json_array_append_new(travel, json_real(p->wall[w].load.travel));
     if (room) json_object_set_new(room, "growth", json_real(servo_box_growth(p)));
     if (room) json_object_set(room, "travel", travel);
     json_decref(travel);

@@ -1,10 +1,10 @@
 /* nsd-move: makes the second half of a step: moves the bodies by the reactions. */
-#include "state/rotation.h"
 #include "run/cli.h"
 #include "run/tool_filter.h"
+#include "state/rotation.h"
 #include "step/move.h"
-#include "step/sum_step.h"
 #include "step/step.h"
+#include "step/sum_step.h"
 
 static const struct cli_option *const tables[] = { NULL };
 

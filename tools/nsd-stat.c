@@ -1,10 +1,10 @@
 /* nsd-stat: numbers of frames: fraction, stress, forces, profiles, distributions; and fields. */
 #include "base/output.h"
-#include "run/cli.h"
-#include "run/tool_filter.h"
 #include "convert/fields_file.h"
 #include "file/reader.h"
 #include "measure/measures.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -277,7 +277,8 @@ static void show(const struct frame *f, const char *where, int64_t k, struct fai
     measured_free(t);
     if (fflush(stdout)) finish_stdout(); // a line is seen when its frame is there
     if (fields_to) add_fields(&s, failure);
-    if (measured_remember(chosen) && !failure->status) measured_keep(chosen, &s, &first, &before, failure);
+    if (measured_remember(chosen) && !failure->status)
+        measured_keep(chosen, &s, &first, &before, failure);
     snapshot_free(&s);
 }
 
@@ -291,9 +292,10 @@ static void run(struct reader *in)
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --steps exclude each other");
     if (tsv) head_tsv();
-    if (last && !reader_last(in, &f, &more, &failure) && more) show(&f, reader_where(in), k++, &failure);
-    while (!last && !failure.status && !reader_next(in, steps ? &range : NULL, &f, &more, &failure) &&
-           more) {
+    if (last && !reader_last(in, &f, &more, &failure) && more)
+        show(&f, reader_where(in), k++, &failure);
+    while (!last && !failure.status &&
+           !reader_next(in, steps ? &range : NULL, &f, &more, &failure) && more) {
         show(&f, reader_where(in), k++, &failure);
         progress("%lld frames", (long long)k);
     }

@@ -1,14 +1,14 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
+#include "file/background_writer.h"
+#include "file/reader.h"
+#include "file/writer.h"
 #include "run/cli.h"
 #include "run/loop.h"
 #include "run/options.h"
 #include "run/processes.h"
 #include "run/tool_filter.h"
-#include "file/background_writer.h"
-#include "file/reader.h"
-#include "file/writer.h"
-#include "step/adapt.h"
 #include "scene/inlet.h"
+#include "step/adapt.h"
 
 #include <float.h>
 #include <malloc.h>
@@ -306,7 +306,7 @@ struct run {
     bool other_bodies;       /* than in the step before */
     bool fails;              /* the run ends with the step that was made */
     char end[200];           /* why the next step was not made, or "" */
-    struct control acts;        /* what a program in the loop has answered */
+    struct control acts;     /* what a program in the loop has answered */
     struct failure ended; /* why that program has ended the run; status 0: it said so, or has not */
     bool told_to_stop;
     struct step_opt o;
@@ -367,7 +367,8 @@ static void save_state(struct run *r)
     struct frame f = with_forces(r);
     f.detected = f.detected || options.warm; // a warm step begins with these
     bool background = r->background;
-    if (background_close(r->background, &failure)) die_why(&failure); // libhdf5 has one user at a time
+    if (background_close(r->background, &failure))
+        die_why(&failure); // libhdf5 has one user at a time
     r->background = NULL;
     if (writer_open(&out, r->save_path, WRITER_COPY, &failure) || writer_frame(out, &f, &failure) ||
         writer_close(out, &failure))
@@ -388,7 +389,8 @@ static void save_end(struct run *r)
 static void flow(struct run *r)
 {
     struct failure failure = { 0 };
-    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &failure)) die_why(&failure);
+    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &failure))
+        die_why(&failure);
 }
 
 /* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings
@@ -664,7 +666,8 @@ static void copy_all(struct reader *in, struct writer *out, struct frame *f)
                 "%s: %s is not known, and depends on time: use -o FILE to continue without it",
                 reader_where(in), lost);
         if (!frames++ && frame_note(&next, cli_history(), &failure)) break;
-        if (writer_frame(out, &next, &failure)) die(failure.status, "%s: %s", reader_where(in), failure.text);
+        if (writer_frame(out, &next, &failure))
+            die(failure.status, "%s: %s", reader_where(in), failure.text);
         frame_free(f);
         *f = next, next = (struct frame){ 0 };
         progress("%lld frames copied", (long long)frames);
@@ -747,7 +750,8 @@ int tool_main(int argc, char **argv)
             die_usage(
                 "--sums: %s keeps none, and a trajectory has them from its first frame: -o FILE",
                 argv[0]);
-        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t, &failure))
+        if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t,
+                       &failure))
             die_why(&failure);
     }
     count_steps(&r.f.packing);

@@ -1,14 +1,14 @@
 /* nsd-view: draws the bodies, one picture, a series or a film. */
 #include "base/team.h"
-#include "state/selection.h"
-#include "run/cli.h"
-#include "run/tool_filter.h"
 #include "draw/film.h"
 #include "draw/images.h"
 #include "draw/overlay.h"
-#include "draw/svg.h"
 #include "draw/paint.h"
+#include "draw/svg.h"
 #include "file/reader.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "state/selection.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -286,7 +286,8 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
         die_usage("--surface-range: '%s' is not LO,HI, the first below the second", surface_range);
     solid_free(&solid);
     const struct solid_opt opt = { solid_names, (enum solid_by)surface, x[0], x[1], &v->paint };
-    if (solid_init(&solid, &f->packing, &opt, &failure)) die(failure.status, "%s: %s", where, failure.text);
+    if (solid_init(&solid, &f->packing, &opt, &failure))
+        die(failure.status, "%s: %s", where, failure.text);
     v->solid = over.solid = &solid;
 }
 

@@ -1,11 +1,11 @@
 /* nsd-web: a trajectory as one page that plays it in a browser. */
 #include "base/output.h"
-#include "state/rotation.h"
-#include "run/cli.h"
-#include "run/tool_filter.h"
 #include "draw/page.h"
 #include "file/reader.h"
 #include "measure/measures.h"
+#include "run/cli.h"
+#include "run/tool_filter.h"
+#include "state/rotation.h"
 
 #include <jansson.h>
 #include <math.h>

@@ -70,10 +70,11 @@ void limits_no_core(void)
 int limits_reason(int signal, const char *name, struct failure *failure)
 {
     if (signal == SIGXCPU)
-        return failure_set(failure, EX_DATAERR, "%.250s: takes too long to read: damaged, or made to",
-                       name);
+        return failure_set(failure, EX_DATAERR,
+                           "%.250s: takes too long to read: damaged, or made to", name);
     if (signal == SIGKILL)
-        return failure_set(failure, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)", name);
+        return failure_set(failure, EX_SOFTWARE, "%.250s: reading it was killed (no memory?)",
+                           name);
     return 0;
 }
 
@@ -93,7 +94,9 @@ int bounded_put(struct bounded *to, const void *bytes, size_t size, struct failu
     for (size_t done = 0; done < size;) {
         ssize_t n = write(to->fd, (const char *)bytes + done, size - done);
         if (n < 0 && errno == EINTR) continue;
-        if (n < 0) return failure_set(failure, EX_SOFTWARE, "no memory for the input: %s", strerror(errno));
+        if (n < 0)
+            return failure_set(failure, EX_SOFTWARE, "no memory for the input: %s",
+                               strerror(errno));
         done += (size_t)n;
     }
     return 0;
@@ -107,21 +110,25 @@ static void bound(uint64_t size)
 }
 
 /* The process has ended: with an answer, a reason, or broken down */
-static int bounded_judge(int status, const char *name, const struct failure *said, struct failure *failure)
+static int bounded_judge(int status, const char *name, const struct failure *said,
+                         struct failure *failure)
 {
     if (WIFEXITED(status) && !WEXITSTATUS(status)) return 0;
-    if (WIFEXITED(status) && said->status) return failure_set(failure, said->status, "%s", said->text);
+    if (WIFEXITED(status) && said->status)
+        return failure_set(failure, said->status, "%s", said->text);
     int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
     if (limits_reason(signal, name, failure)) return failure->status;
-    return failure_set(failure, EX_DATAERR, "%.250s: reading it breaks down (%s): damaged, or made to",
-                   name, signal ? strsignal(signal) : "it ended");
+    return failure_set(failure, EX_DATAERR,
+                       "%.250s: reading it breaks down (%s): damaged, or made to", name,
+                       signal ? strsignal(signal) : "it ended");
 }
 
 static int bounded_take(int fd, void **answer, size_t *n, struct failure *failure)
 {
     struct stat st;
     *answer = NULL, *n = 0;
-    if (fstat(fd, &st)) return failure_set(failure, EX_SOFTWARE, "the input is lost: %s", strerror(errno));
+    if (fstat(fd, &st))
+        return failure_set(failure, EX_SOFTWARE, "the input is lost: %s", strerror(errno));
     if (!st.st_size) return 0;
     void *map = mmap(NULL, (size_t)st.st_size, PROT_READ, MAP_PRIVATE, fd, 0);
     if (map == MAP_FAILED)
@@ -148,7 +155,8 @@ int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struc
     else {
         while (waitpid(pid, &status, 0) < 0 && errno == EINTR) continue;
         said->text[sizeof said->text - 1] = 0;
-        if (!bounded_judge(status, task->name, said, failure)) bounded_take(to.fd, answer, n, failure);
+        if (!bounded_judge(status, task->name, said, failure))
+            bounded_take(to.fd, answer, n, failure);
     }
     if (said != MAP_FAILED) munmap(said, sizeof *said);
     if (to.fd >= 0) close(to.fd);

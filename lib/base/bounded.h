@@ -36,7 +36,6 @@ void limits_no_core(void);
    EX_SOFTWARE; else 0. */
 int limits_reason(int signal, const char *name, struct failure *failure);
 
-
 struct bounded;
 
 /* The process's answer continues with these bytes. Returns 0, or EX_SOFTWARE where there is no room. */

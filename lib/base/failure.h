@@ -27,7 +27,7 @@ void failure_plain(char *text);
 /* What the static analyser, which sees one file at a time, has to know of it */
 #ifdef __clang_analyzer__
 void why_said(const char *format, ...);
-#define failure_set(failure, code, ...)                                                                    \
+#define failure_set(failure, code, ...)                                                            \
     ((failure)->status ? (failure)->status : (why_said(__VA_ARGS__), (failure)->status = (code)))
 #endif
 

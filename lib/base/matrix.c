@@ -108,50 +108,55 @@ void stored_free(struct stored *S)
 }
 
 /* p of a compressed matrix begins at 0, never decreases and has lines + 1 values. */
-static int check_pointers(const struct stored *S, const char *name, int32_t lines, struct failure *failure)
+static int check_pointers(const struct stored *S, const char *name, int32_t lines,
+                          struct failure *failure)
 {
     if (S->np != (uint64_t)lines + 1)
         return failure_set(failure, EX_DATAERR, "%s/p: %llu pointers, %lld are needed", name,
-                       (unsigned long long)S->np, lines + 1LL);
-    if (S->p[0] != 0) return failure_set(failure, EX_DATAERR, "%s/p: begins with %d, not 0", name, S->p[0]);
+                           (unsigned long long)S->np, lines + 1LL);
+    if (S->p[0] != 0)
+        return failure_set(failure, EX_DATAERR, "%s/p: begins with %d, not 0", name, S->p[0]);
     for (int32_t k = 0; k < lines; k++)
         if (S->p[k + 1] < S->p[k])
             return failure_set(failure, EX_DATAERR, "%s/p: falls from %d to %d at entry %lld", name,
-                           S->p[k], S->p[k + 1], k + 1LL);
+                               S->p[k], S->p[k + 1], k + 1LL);
     return 0;
 }
 
 /* i, x and, of triplets, p have at least count and at most nzmax values. */
-static int check_lengths(const struct stored *S, const char *name, int64_t count, struct failure *failure)
+static int check_lengths(const struct stored *S, const char *name, int64_t count,
+                         struct failure *failure)
 {
     if (S->nzmax < count)
         return failure_set(failure, EX_DATAERR, "%s/nzmax: is %d and there are %lld entries", name,
-                       S->nzmax, (long long)count);
+                           S->nzmax, (long long)count);
     const struct {
         const char *name;
         uint64_t length;
     } of[] = { { "i", S->ni }, { "x", S->nx }, { "p", S->nz < 0 ? S->ni : S->np } };
     for (int k = 0; k < 3; k++)
         if (of[k].length < (uint64_t)count || of[k].length > (uint64_t)S->nzmax)
-            return failure_set(failure, EX_DATAERR, "%s/%s: %llu values for %lld entries, nzmax %d", name,
-                           of[k].name, (unsigned long long)of[k].length, (long long)count,
-                           S->nzmax);
+            return failure_set(failure, EX_DATAERR, "%s/%s: %llu values for %lld entries, nzmax %d",
+                               name, of[k].name, (unsigned long long)of[k].length, (long long)count,
+                               S->nzmax);
     return 0;
 }
 
-static int check_entries(const struct sparse *A, bool by_rows, const char *name, struct failure *failure)
+static int check_entries(const struct sparse *A, bool by_rows, const char *name,
+                         struct failure *failure)
 {
     const char *row = by_rows ? "p" : "i", *col = by_rows ? "i" : "p";
     const char *letter = strrchr(name, '/') ? strrchr(name, '/') + 1 : name;
     for (int64_t k = 0; k < A->count; k++) {
         if (A->row[k] < 0 || A->row[k] >= A->m)
-            return failure_set(failure, EX_DATAERR, "%s/%s: entry %lld is %d, %s has %lld rows", name, row,
-                           (long long)k, A->row[k], letter, (long long)A->m);
+            return failure_set(failure, EX_DATAERR, "%s/%s: entry %lld is %d, %s has %lld rows",
+                               name, row, (long long)k, A->row[k], letter, (long long)A->m);
         if (A->col[k] < 0 || A->col[k] >= A->n)
-            return failure_set(failure, EX_DATAERR, "%s/%s: entry %lld is %d, %s has %lld columns", name,
-                           col, (long long)k, A->col[k], letter, (long long)A->n);
+            return failure_set(failure, EX_DATAERR, "%s/%s: entry %lld is %d, %s has %lld columns",
+                               name, col, (long long)k, A->col[k], letter, (long long)A->n);
         if (!isfinite(A->x[k]))
-            return failure_set(failure, EX_DATAERR, "%s/x: entry %lld is %g", name, (long long)k, A->x[k]);
+            return failure_set(failure, EX_DATAERR, "%s/x: entry %lld is %g", name, (long long)k,
+                               A->x[k]);
     }
     return 0;
 }
@@ -169,7 +174,8 @@ int sparse_unpack(struct sparse *A, struct stored *S, const char *name, struct f
 {
     bool by_rows = S->nz == -2;
     int32_t lines = by_rows ? S->m : S->n;
-    if (S->nz < -2) return failure_set(failure, EX_DATAERR, "%s/nz: %d is no form of storage", name, S->nz);
+    if (S->nz < -2)
+        return failure_set(failure, EX_DATAERR, "%s/nz: %d is no form of storage", name, S->nz);
     if (S->nz < 0 && check_pointers(S, name, lines, failure)) return failure->status;
     int64_t count = S->nz < 0 ? S->p[lines] : S->nz;
     if (check_lengths(S, name, count, failure)) return failure->status;

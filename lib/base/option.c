@@ -17,12 +17,14 @@ void option_words(const struct cli_option *o, char *text, size_t size)
         n += (size_t)snprintf(text + n, size - n, "%s%s", k ? "|" : "", o->choice(k).name);
 }
 
-static int option_wrong(const struct cli_option *o, struct failure *failure, const char *text, const char *trouble)
+static int option_wrong(const struct cli_option *o, struct failure *failure, const char *text,
+                        const char *trouble)
 {
     return failure_set(failure, EX_USAGE, "--%s: '%s' %s", o->name, text, trouble);
 }
 
-static int set_choice(const struct cli_option *o, int *to, const char *text, struct failure *failure)
+static int set_choice(const struct cli_option *o, int *to, const char *text,
+                      struct failure *failure)
 {
     char words[200];
     for (int k = 0; o->choice(k).name; k++)
@@ -31,7 +33,8 @@ static int set_choice(const struct cli_option *o, int *to, const char *text, str
     return failure_set(failure, EX_USAGE, "--%s: '%s' is none of %s", o->name, text, words);
 }
 
-static int option_set_number(const struct cli_option *o, void *to, const char *text, struct failure *failure)
+static int option_set_number(const struct cli_option *o, void *to, const char *text,
+                             struct failure *failure)
 {
     char *end;
     errno = 0;
@@ -41,11 +44,12 @@ static int option_set_number(const struct cli_option *o, void *to, const char *t
     bool open = o->kind == CLI_ABOVE || o->kind == CLI_BETWEEN;
     if (open ? !(x > o->min) : !(x >= o->min))
         return failure_set(failure, EX_USAGE, "--%s: %s must be %s %g", o->name, text,
-                       open ? "above" : "at least", o->min);
+                           open ? "above" : "at least", o->min);
     if (o->kind == CLI_BETWEEN ? !(x < o->max) : x > o->max)
         return failure_set(failure, EX_USAGE, "--%s: %s must be %s %g", o->name, text,
-                       o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
-    if (o->kind == CLI_INT && x != floor(x)) return option_wrong(o, failure, text, "is not a whole number");
+                           o->kind == CLI_BETWEEN ? "below" : "at most", o->max);
+    if (o->kind == CLI_INT && x != floor(x))
+        return option_wrong(o, failure, text, "is not a whole number");
     if (o->kind == CLI_INT)
         *(int64_t *)to = (int64_t)x;
     else
@@ -60,18 +64,21 @@ static int set_every(const struct cli_option *o, struct cli_every *e, const char
     double x = number_read(text, &end);
     bool seconds = !strcmp(end, "s");
     if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
-        return option_wrong(o, failure, text, "is neither a number of steps nor, as 0.01s, of seconds");
+        return option_wrong(o, failure, text,
+                            "is neither a number of steps nor, as 0.01s, of seconds");
     if (seconds ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
         return failure_set(failure, EX_USAGE, "--%s: %s must be %s", o->name, text,
-                       seconds ? "above 0" : "a whole number, at least 1");
+                           seconds ? "above 0" : "a whole number, at least 1");
     *e = (struct cli_every){ seconds ? 0 : (int64_t)x, seconds ? x : 0 };
     return 0;
 }
 
-static int option_set_flag(const struct cli_option *o, bool *to, const char *text, struct failure *failure)
+static int option_set_flag(const struct cli_option *o, bool *to, const char *text,
+                           struct failure *failure)
 {
     bool on = !text || !strcmp(text, "true");
-    if (!on && strcmp(text, "false") != 0) return option_wrong(o, failure, text, "is neither true nor false");
+    if (!on && strcmp(text, "false") != 0)
+        return option_wrong(o, failure, text, "is neither true nor false");
     *to = (o->kind == CLI_FLAG) == on;
     return 0;
 }

@@ -206,7 +206,8 @@ static int open_new(struct output *o, const char *path, struct failure *failure)
     if (there) o->old = open(o->target, O_RDWR | O_CLOEXEC);
     if (there && o->old < 0) return output_failed(o, failure, errno);
     if (there && output_lock(o->old, F_OFD_SETLK, o->name, failure)) return failure->status;
-    if (!there && !(o->target = output_follow(path))) return failure_set(failure, EX_SOFTWARE, "no memory");
+    if (!there && !(o->target = output_follow(path)))
+        return failure_set(failure, EX_SOFTWARE, "no memory");
     return open_beside(o, failure);
 }
 

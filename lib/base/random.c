@@ -51,8 +51,8 @@ static double get_double(void *state)
     return (double)(random_next(state) >> 11) * 0x1p-53;
 }
 
-static const gsl_rng_type type = { "counter", 0xffffffff, 0,         sizeof(struct state),
-                                   random_set,       get,        get_double };
+static const gsl_rng_type type = { "counter",  0xffffffff, 0,         sizeof(struct state),
+                                   random_set, get,        get_double };
 
 gsl_rng *counter_alloc(void)
 {

@@ -24,7 +24,7 @@ static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, 
 
 /* The contact of bond b; at->q has no half step of balls, whose turning is constant. */
 static struct contact bond_anchor_place(const struct packing *p, const struct bond *b,
-                            const struct positions *at)
+                                        const struct positions *at)
 {
     const vec3 *x = at->x;
     const quat *q = at->q;
@@ -64,8 +64,8 @@ static bool is_taken(const struct packing *p, const struct contact *c, const str
 }
 
 /* to = both, in order; those of s that are taken left out. False when memory is short. */
-static bool bond_anchor_merge(struct contacts *to, const struct packing *p, const struct contacts *s,
-                  const struct contact *placed, int64_t n)
+static bool bond_anchor_merge(struct contacts *to, const struct packing *p,
+                              const struct contacts *s, const struct contact *placed, int64_t n)
 {
     int64_t next = 0, from = 0;
     bool good = true;

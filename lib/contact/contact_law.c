@@ -87,8 +87,8 @@ bool contact_laws_bond(const struct packing *p, const struct pair_law *l)
 
 /* Is a pair to be bonded in this step if it touches? Not one that is, or whose bond has broken and that has not parted
    since. old: what lasts of the contact, or NULL; broken: bonds_broken() */
-static bool contact_law_is_due(const struct packing *p, const struct contact *c, const struct bond *old,
-                   bool broken)
+static bool contact_law_is_due(const struct packing *p, const struct contact *c,
+                               const struct bond *old, bool broken)
 {
     const struct pair_law *l = law_of(p, c);
     if (!contact_laws_bond(p, l) || (old && old->beta > 0)) return false;
@@ -98,7 +98,7 @@ static bool contact_law_is_due(const struct packing *p, const struct contact *c,
 
 /* Beta and the jump of a bond that there is, or that is made in this step */
 static void contact_law_set_bond(struct contact_law *t, const struct packing *p, struct contact *c,
-                     const struct bond *old, const struct attraction *of)
+                                 const struct bond *old, const struct attraction *of)
 {
     const struct pair_law *l = law_of(p, c);
     const bool due = contact_law_is_due(p, c, old, of->broken);
@@ -126,7 +126,8 @@ static double offset_apart(const struct packing *p, const struct contact *c)
 }
 
 /* Does one surface push the other? */
-static bool contact_law_pushes(const struct packing *p, const struct contact_law *t, const struct found *f)
+static bool contact_law_pushes(const struct packing *p, const struct contact_law *t,
+                               const struct found *f)
 {
     double push[3];
     contact_law_push(p->dt, t, f, push);
@@ -187,7 +188,8 @@ static struct attraction attraction_of(const struct packing *p, const struct con
     struct attraction t = { .tied = whole_pull(p, c, l, is_wet(p, c, l, old)) > 0 };
     if (shaped) t.broken = bonds_broken(&p->bonds, c->a, c->b, pair);
     if (!pair_law_adheres(l) || anchored) return t;
-    t.bonded = c->gap <= contact_laws_touch(p, c) && (shaped || contact_law_is_due(p, c, old, false));
+    t.bonded =
+        c->gap <= contact_laws_touch(p, c) && (shaped || contact_law_is_due(p, c, old, false));
     t.bonded = t.bonded || (!shaped && old && old->beta > 0);
     return t;
 }
@@ -316,10 +318,12 @@ static struct made made_by_push(const struct packing *p, const struct contacts *
     const struct contact_law *t = &s->law[i];
     const struct pair_law *l = law_of(p, c);
     const bool broken = contact_shaped(p, c) && bonds_broken(&p->bonds, c->a, c->b, pair);
-    if (!pair_law_attracts(l) || !contact_law_pushes(p, t, &s->found[i])) return (struct made){ false, false };
+    if (!pair_law_attracts(l) || !contact_law_pushes(p, t, &s->found[i]))
+        return (struct made){ false, false };
     return (struct made){ .wet = pair_law_wets(l) && !(t->state & CONTACT_LAW_WET),
-                          .bonded = l->beta > 0 && !(t->state & CONTACT_LAW_BONDED) &&
-                                    contact_law_is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
+                          .bonded =
+                              l->beta > 0 && !(t->state & CONTACT_LAW_BONDED) &&
+                              contact_law_is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
 }
 
 /* What lasts of contact i; false: nothing does. */
@@ -391,7 +395,8 @@ static void anchor(struct bond *b, struct contact_law_keeping *y, int64_t i, str
     double area = contact_law_area_of(y, i, made);
     if (!(area > 0)) return;
     int32_t least = 0;
-    if (contact_law_has_bond(c, &p->bonds, y->pair)) least = lesser(least, p->bonds.bond[y->pair].feature);
+    if (contact_law_has_bond(c, &p->bonds, y->pair))
+        least = lesser(least, p->bonds.bond[y->pair].feature);
     for (int64_t k = y->kept.n - 1; contact_law_has_bond(c, &y->kept, k); k--)
         least = lesser(least, y->kept.bond[k].feature);
     b->feature = least > INT32_MIN ? least - 1 : least;
@@ -423,7 +428,8 @@ static bool contact_law_keep(struct contact_law_keeping *y, int64_t i)
     const struct contact *c = &y->s->c[i];
     const struct contact_law *t = &y->s->law[i];
     struct bond b;
-    while (y->pair < y->p->bonds.n && contact_law_comes_before(&y->p->bonds.bond[y->pair], c)) y->pair++;
+    while (y->pair < y->p->bonds.n && contact_law_comes_before(&y->p->bonds.bond[y->pair], c))
+        y->pair++;
     struct made made = made_by_push(y->p, y->s, i, y->pair);
     bool lasts = t->state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED) || made.wet || made.bonded;
     if (!lasts || !bond_of(y->p, y->s, i, made, &b)) return true;

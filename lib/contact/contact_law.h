@@ -45,7 +45,6 @@
 /* The friction of contacts that have just been found */
 void friction_choose(struct contacts *s, const struct packing *p);
 
-
 /* m: pairs with at most this gap touch */
 double contact_laws_touch(const struct packing *p, const struct contact *c);
 /* m: no pair touches with a larger gap */

@@ -64,7 +64,8 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
         const struct contact *c = &s->c[i];
         if (!(c->gap < 0 && radii(p, c) > DEPTH_WEDGED)) continue;
         if (p->mass[c->b] > 0) side[n++] = (struct depth_side){ c->b, c->n };
-        if (c->a >= 0 && p->mass[c->a] > 0) side[n++] = (struct depth_side){ c->a, v3_scale(-1, c->n) };
+        if (c->a >= 0 && p->mass[c->a] > 0)
+            side[n++] = (struct depth_side){ c->a, v3_scale(-1, c->n) };
     }
     count_wedged(d, p, side, n, counts);
     free(side);

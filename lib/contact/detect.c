@@ -4,13 +4,13 @@
 #include "base/team.h"
 #include "contact/bond_anchor.h"
 #include "contact/contact_law.h"
-#include "state/freedom.h"
-#include "state/kinematics.h"
-#include "state/rotation.h"
 #include "contact/detect_shapes.h"
 #include "contact/internal_edge.h"
 #include "contact/seek.h"
 #include "contact/tunnelling.h"
+#include "state/freedom.h"
+#include "state/kinematics.h"
+#include "state/rotation.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -120,7 +120,7 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
 /* Body i and a wall of any other shape. A ball is brought to where the shape is described, and what it touches
    back from there. */
 static bool detect_add_body(struct contacts *out, const struct sought *o, const struct pose *pose,
-                     int64_t i)
+                            int64_t i)
 {
     const struct packing *p = o->all.p;
     const int32_t w = o->wall;
@@ -141,7 +141,8 @@ static bool detect_add_body(struct contacts *out, const struct sought *o, const 
     return true;
 }
 
-static bool detect_add_shape(struct contacts *out, const struct sought *o, int64_t first, int64_t end)
+static bool detect_add_shape(struct contacts *out, const struct sought *o, int64_t first,
+                             int64_t end)
 {
     const struct packing *p = o->all.p;
     const double most = tunnelling_beside(p, o->wall);
@@ -229,7 +230,7 @@ static int check_crowd(struct neighbours *near, const struct packing *p, int64_t
 }
 
 static int detect_all(struct contacts *out, const struct packing *p, const struct positions *at,
-                  double gap, struct neighbours *kept, struct failure *failure)
+                      double gap, struct neighbours *kept, struct failure *failure)
 {
     struct placed placed = { 0 }, *shaped = p->shape ? &placed : NULL;
     struct neighbours once = { 0 }, *near = kept ? kept : &once;
@@ -280,8 +281,8 @@ struct detect_sight {
 
 static struct detect_sight ray_of(const struct packing *p)
 {
-    return (struct detect_sight){ overlap_meets(p->overlap), freedoms_calm(p), p->dt * freedoms_speed(p),
-                           0.5 * packing_whole(p).small };
+    return (struct detect_sight){ overlap_meets(p->overlap), freedoms_calm(p),
+                                  p->dt * freedoms_speed(p), 0.5 * packing_whole(p).small };
 }
 
 /* m: how far apart two bodies may be that touch before the next step's contacts are sought: those that

@@ -5,8 +5,8 @@
 #ifndef NSD_DETECT_H
 #define NSD_DETECT_H
 
-#include "state/contact.h"
 #include "contact/neighbours.h"
+#include "state/contact.h"
 
 /*
  * out = a contact for every pair of bodies, and of a body and a wall, whose gap at the predicted

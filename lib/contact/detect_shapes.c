@@ -1,8 +1,8 @@
 #include "contact/detect_shapes.h"
 
-#include "shape/wall_edge.h"
 #include "shape/meet.h"
 #include "shape/mesh.h"
+#include "shape/wall_edge.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +14,7 @@ enum {
 };
 
 static bool detect_shapes_add(struct contacts *out, const struct placed *s, int32_t a, int32_t b,
-                const int8_t shift[3], const struct place *place)
+                              const int8_t shift[3], const struct place *place)
 {
     const struct packing *p = s->p;
     struct contact *c = contacts_add(out, a, b);
@@ -38,7 +38,8 @@ static struct core moved(struct core c, vec3 away, vec3 *room)
 }
 
 /* Do the balls around two bodies, and those of a clump, come near? */
-static bool detect_shapes_apart(const struct core *a, const struct core *b, double ra, double rb, double gap)
+static bool detect_shapes_apart(const struct core *a, const struct core *b, double ra, double rb,
+                                double gap)
 {
     vec3 d = v3_sub(b->centre, a->centre);
     double most = ra + rb + gap;
@@ -57,8 +58,8 @@ static bool meet_pair(struct contacts *out, const struct placed *s, const struct
             struct core ca = placed_core(s, a, i), cb = placed_core(s, b, j);
             struct place place[PLACES_MOST];
             if (image) cb = moved(cb, away, room);
-            if (detect_shapes_apart(&ca, &cb, as > 1 ? ca.round : p->radius[a], bs > 1 ? cb.round : p->radius[b],
-                      gap))
+            if (detect_shapes_apart(&ca, &cb, as > 1 ? ca.round : p->radius[a],
+                                    bs > 1 ? cb.round : p->radius[b], gap))
                 continue;
             int n = meet_cores(p->dim, &ca, &cb, gap, place);
             for (int k = 0; k < n; k++) {
@@ -107,7 +108,8 @@ static double reach_of(const struct facing *o)
 
 /* Is the place t of the end of a boundary below a corner, to its weld tolerance? The normal of t is then that of
    the face: two walls may end there in one flat surface. */
-static bool detect_shapes_over_face(const struct wall *wall, const struct surface *surface, struct touch *t)
+static bool detect_shapes_over_face(const struct wall *wall, const struct surface *surface,
+                                    struct touch *t)
 {
     vec3 n = wall->n, d = v3_scale(t->distance, t->n);
     double near = 2 * WELD_USUAL * boundary_reach(wall);
@@ -181,7 +183,8 @@ static int near_surface(const struct facing *face, vec3 v, double round,
     const struct packing *p = face->s->p;
     const struct wall *wall = face->wall;
     const struct surface *surface = face->surface;
-    vec3 c = detect_shapes_described(face, v), middle = detect_shapes_described(face, face->s->x[face->i]);
+    vec3 c = detect_shapes_described(face, v),
+         middle = detect_shapes_described(face, face->s->x[face->i]);
     double r = p->radius[face->i];
     int n = surface ? surface_touches(surface, c, round + face->gap + r, touch)
                     : boundary_nearest(wall, p->dim, c, r, touch);
@@ -195,7 +198,8 @@ static int near_surface(const struct facing *face, vec3 v, double round,
     for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
         struct touch *t = &touch[kept], *f = &found[k];
         bool end = boundary_ends_at(wall, p->dim, surface, c, f);
-        if (round == 0 && end && !(detect_shapes_over_face(wall, surface, f) && is_before(&o, f))) continue;
+        if (round == 0 && end && !(detect_shapes_over_face(wall, surface, f) && is_before(&o, f)))
+            continue;
         if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
             if (through) surface_groove(&grooves, surface, p->dim, f, c, middle);
             continue;
@@ -281,8 +285,8 @@ static bool leads_away(const struct rim *r, const struct pose *pose, vec3 n)
 }
 
 /* Is one of place[n] where f is? Of other rims, those beyond the first `corners`, with the same normal */
-static bool detect_shapes_is_there(const struct place *place, int corners, int n, const struct place *f,
-                     double near)
+static bool detect_shapes_is_there(const struct place *place, int corners, int n,
+                                   const struct place *f, double near)
 {
     for (int k = 0; k < n; k++) {
         vec3 d = v3_sub(place[k].x, f->x);
@@ -293,7 +297,8 @@ static bool detect_shapes_is_there(const struct place *place, int corners, int n
 }
 
 /* Does the surface go on flat beyond the place x of a rim? Its triangles do not share their corners there. */
-static bool detect_shapes_goes_on(const struct facing *o, const struct rim *r, vec3 x, double beyond)
+static bool detect_shapes_goes_on(const struct facing *o, const struct rim *r, vec3 x,
+                                  double beyond)
 {
     const struct surface *surface = o->surface;
     if (!surface) return false;

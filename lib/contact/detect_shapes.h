@@ -10,10 +10,10 @@
 #ifndef NSD_DETECT_SHAPES_H
 #define NSD_DETECT_SHAPES_H
 
-#include "state/contact.h"
-#include "state/placement.h"
 #include "contact/neighbours.h"
 #include "contact/seek.h"
+#include "state/contact.h"
+#include "state/placement.h"
 
 enum {
     RIM_END = 1 << 29 /* features of rims and their ends are not below it, those of corners are */

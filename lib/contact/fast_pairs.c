@@ -42,7 +42,8 @@ static bool fast_pairs_may_be(const struct packing *p)
     return any;
 }
 
-int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct failure *failure)
+int fast_find(struct fast_list *list, const struct packing *p, const bool *of,
+              struct failure *failure)
 {
     *list = (struct fast_list){ 0 };
     if (!fast_pairs_may_be(p)) return 0;
@@ -89,9 +90,11 @@ static bool fast_pairs_apart(const struct fast_pairs_box *a, const struct fast_p
 }
 
 /* Of all of them */
-static struct fast_pairs_box box_of_all(const struct packing *p, const bool *of, struct window window)
+static struct fast_pairs_box box_of_all(const struct packing *p, const bool *of,
+                                        struct window window)
 {
-    struct fast_pairs_box all = { v3(INFINITY, INFINITY, INFINITY), v3(-INFINITY, -INFINITY, -INFINITY) };
+    struct fast_pairs_box all = { v3(INFINITY, INFINITY, INFINITY),
+                                  v3(-INFINITY, -INFINITY, -INFINITY) };
     for (int64_t i = 0; i < p->n; i++) {
         if (of && !of[i]) continue;
         const struct fast b = { .radius = p->radius[i], .x = p->x[i], .v = p->v[i] };
@@ -130,8 +133,8 @@ static int fast_pairs_by_place(const void *a, const void *b)
 }
 
 /* With the images in the cells around that come into the box, sorted along an axis; NULL: no memory */
-static struct placed_path *with_images(const struct packing *p, const struct fast_pairs_box *here, int axis,
-                                       struct window window, const struct fast_list *list,
+static struct placed_path *with_images(const struct packing *p, const struct fast_pairs_box *here,
+                                       int axis, struct window window, const struct fast_list *list,
                                        int64_t *n)
 {
     int reach[3];
@@ -149,10 +152,12 @@ static struct placed_path *with_images(const struct packing *p, const struct fas
                     image.v = v3_add(image.v, cell_shift(p->cell.rate, shift));
                     const struct fast_pairs_box box = fast_pairs_box_of(&image, window);
                     if (fast_pairs_apart(&box, here)) continue;
-                    all[(*n)++] = (struct placed_path){
-                        &list->of[i],       image.x, image.v, box, fast_pairs_along(axis, box.lo),
-                        fast_pairs_along(axis, box.hi)
-                    };
+                    all[(*n)++] = (struct placed_path){ &list->of[i],
+                                                        image.x,
+                                                        image.v,
+                                                        box,
+                                                        fast_pairs_along(axis, box.lo),
+                                                        fast_pairs_along(axis, box.hi) };
                 }
     if (!all) return NULL;
     qsort(all, (size_t)*n, sizeof *all, fast_pairs_by_place);

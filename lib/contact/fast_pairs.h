@@ -8,8 +8,8 @@
 #ifndef NSD_FAST_H
 #define NSD_FAST_H
 
-#include "state/packing.h"
 #include "contact/tunnelling.h"
+#include "state/packing.h"
 
 /* A body, as a path is examined */
 struct fast {
@@ -28,7 +28,8 @@ struct fast_list {
 };
 
 /* Those of the packing for which of[p->n] is true; NULL: all. Returns 0 or EX_SOFTWARE. */
-int fast_find(struct fast_list *list, const struct packing *p, const bool *of, struct failure *failure);
+int fast_find(struct fast_list *list, const struct packing *p, const bool *of,
+              struct failure *failure);
 
 /* m: where the window begins */
 static inline vec3 fast_from(struct window window, const struct fast *b)

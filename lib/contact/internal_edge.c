@@ -3,8 +3,8 @@
 #include "contact/detect_shapes.h"
 #include "contact/tunnelling.h"
 #include "shape/gjk.h"
-#include "shape/wall_edge.h"
 #include "shape/mesh.h"
+#include "shape/wall_edge.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,11 +27,13 @@ struct internal_edge_side {
     vec3 away, n, x; /* m; the normal towards s; the place on the other */
 };
 
-static struct internal_edge_side side_of(const struct situation *o, const struct contact *c, int32_t s)
+static struct internal_edge_side side_of(const struct situation *o, const struct contact *c,
+                                         int32_t s)
 {
     vec3 shift = o->edge ? cell_shift(o->edge, c->shift) : v3(0, 0, 0);
     struct internal_edge_side f = { s, c->b, shift, v3_scale(-1, c->n), c->x };
-    if (s == c->b) f = (struct internal_edge_side){ s, c->a, v3_scale(-1, shift), c->n, v3_sub(c->x, shift) };
+    if (s == c->b)
+        f = (struct internal_edge_side){ s, c->a, v3_scale(-1, shift), c->n, v3_sub(c->x, shift) };
     if (f.other >= 0) f.x = v3_axpy(f.x, -0.5 * c->gap, f.n);
     return f;
 }
@@ -115,7 +117,8 @@ struct internal_edge_spot {
 };
 
 /* Of a mesh: an element at the spot across n or, where there is none, all elements there. */
-static bool mesh_rises(const struct surface *s, const struct internal_edge_spot *x, const struct height *h)
+static bool mesh_rises(const struct surface *s, const struct internal_edge_spot *x,
+                       const struct height *h)
 {
     const double near = x->near, depth = x->depth;
     struct surface_walk walk;
@@ -151,8 +154,8 @@ static vec3 internal_edge_described(const struct wall *w, const struct pose *pos
 }
 
 /* Does what s meets rise there above the height `level` (m) along m? */
-static bool rises(const struct situation *o, const struct internal_edge_side *f, vec3 m, double level,
-                  double near)
+static bool rises(const struct situation *o, const struct internal_edge_side *f, vec3 m,
+                  double level, double near)
 {
     double depth = level - v3_dot(m, f->x), ahead = dmax(AHEAD * o->p->radius[f->s], 10 * near);
     const struct height here = { m, level + 3 * near };
@@ -162,7 +165,8 @@ static bool rises(const struct situation *o, const struct internal_edge_side *f,
     vec3 c = internal_edge_described(w, &pose, f->x), n = quat_turn_back(pose.q, m), at, to;
     vec3 d = v3_axpy(c, depth + ahead, n);
     const struct height above = { n, v3_dot(n, c) + depth + 3 * near };
-    const struct internal_edge_spot spot = { c, quat_turn_back(pose.q, f->n), d, near, dmax(depth, 0) };
+    const struct internal_edge_spot spot = { c, quat_turn_back(pose.q, f->n), d, near,
+                                             dmax(depth, 0) };
     if (w->shape == BOUNDARY_MESH) return mesh_rises(&o->surface[-1 - f->other], &spot, &above);
     return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, &above);
 }
@@ -191,7 +195,8 @@ struct internal_edge_meeting {
 };
 
 /* No place of the meeting, of body s and with the normal of contact i, is above `level` along m. */
-static bool is_below(const struct internal_edge_meeting *w, const struct internal_edge_side *f, vec3 m, double level)
+static bool is_below(const struct internal_edge_meeting *w, const struct internal_edge_side *f,
+                     vec3 m, double level)
 {
     const struct contact *c = &w->all->c[w->i];
     for (int64_t k = w->first; k < w->end; k++) {
@@ -205,7 +210,8 @@ static bool is_below(const struct internal_edge_meeting *w, const struct interna
 }
 
 /* Would ranks that have B or s have E, too? Two bodies must be near each other for that. */
-static bool are_near(const struct situation *o, const struct internal_edge_side *f, const struct internal_edge_side *e)
+static bool are_near(const struct situation *o, const struct internal_edge_side *f,
+                     const struct internal_edge_side *e)
 {
     if (f->other < 0 || e->other < 0) return true;
     vec3 d = v3_sub(v3_add(o->x[f->other], f->away), v3_add(o->x[e->other], e->away));
@@ -214,8 +220,8 @@ static bool are_near(const struct situation *o, const struct internal_edge_side 
 
 /* Contacts c and e of body s with two walls have one normal: is c with a rim where the other wall goes on flat, or
    where e is, which comes first? */
-static bool goes_without(const struct internal_edge_meeting *w, const struct internal_edge_side *f, const struct contact *e,
-                         const struct internal_edge_side *g, double near)
+static bool goes_without(const struct internal_edge_meeting *w, const struct internal_edge_side *f,
+                         const struct contact *e, const struct internal_edge_side *g, double near)
 {
     const struct contact *c = &w->all->c[w->i];
     double height = v3_dot(g->n, v3_sub(f->x, g->x));
@@ -227,11 +233,13 @@ static bool goes_without(const struct internal_edge_meeting *w, const struct int
 }
 
 /* Does the plane of contact e keep s above the meeting, or is that inside a flat surface? */
-static bool passes_above(const struct internal_edge_meeting *w, const struct internal_edge_side *f, const struct contact *e)
+static bool passes_above(const struct internal_edge_meeting *w, const struct internal_edge_side *f,
+                         const struct contact *e)
 {
     const struct situation *o = w->o;
     const struct internal_edge_side g = side_of(o, e, f->s);
-    if (internal_edge_moves(o, f->other) || internal_edge_moves(o, g.other)) return false; // they are parts of no surface
+    if (internal_edge_moves(o, f->other) || internal_edge_moves(o, g.other))
+        return false; // they are parts of no surface
     bool parallel = v3_dot(f->n, g.n) > 1 - ALONG;
     bool walls = f->other < 0 && g.other < 0 && f->other != g.other;
     if ((parallel && !walls) || !are_near(o, f, &g)) return false;
@@ -244,7 +252,8 @@ static bool passes_above(const struct internal_edge_meeting *w, const struct int
 }
 
 /* Is contact i of body s at a seam? */
-static bool at_seam(const struct internal_edge_meeting *w, const struct internal_edge_lists *l, int32_t s)
+static bool at_seam(const struct internal_edge_meeting *w, const struct internal_edge_lists *l,
+                    int32_t s)
 {
     const struct internal_edge_side f = side_of(w->o, &w->all->c[w->i], s);
     if (!internal_edge_moves(w->o, s)) return false;
@@ -270,7 +279,8 @@ static bool internal_edge_may_be(const struct situation *o, const struct contact
     return boundary_ends_at(wall, o->p->dim, &o->surface[w], v3(0, 0, 0), &t);
 }
 
-static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct contacts *s, int64_t bodies)
+static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct contacts *s,
+                                     int64_t bodies)
 {
     l->first = calloc((size_t)bodies + 2, sizeof *l->first);
     l->of = malloc((2 * (size_t)s->n + 1) * sizeof *l->of);
@@ -287,8 +297,8 @@ static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct
     return true;
 }
 
-static bool is_dropped(const struct situation *o, const struct contacts *all, const struct internal_edge_lists *l,
-                       int64_t i)
+static bool is_dropped(const struct situation *o, const struct contacts *all,
+                       const struct internal_edge_lists *l, int64_t i)
 {
     const struct contact *c = &all->c[i];
     struct internal_edge_meeting w = { o, all, i, i, i + 1 };
@@ -306,7 +316,8 @@ int seams_drop(struct contacts *s, const struct situation *o, struct failure *fa
         if (s->c[i].a >= 0 && !o->shaped) break; // walls come first
         if (!internal_edge_may_be(o, &s->c[i])) continue;
         if (!drop)
-            good = (drop = calloc((size_t)s->n, sizeof *drop)) && internal_edge_lists_init(&lists, s, o->p->n);
+            good = (drop = calloc((size_t)s->n, sizeof *drop)) &&
+                   internal_edge_lists_init(&lists, s, o->p->n);
         if (good) drop[i] = is_dropped(o, s, &lists, i);
     }
     for (int64_t i = 0; good && drop && i < s->n; i++)

@@ -18,8 +18,8 @@
 #ifndef NSD_SEAM_H
 #define NSD_SEAM_H
 
-#include "state/contact.h"
 #include "contact/seek.h"
+#include "state/contact.h"
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
 int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);

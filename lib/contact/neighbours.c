@@ -237,7 +237,8 @@ int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct fa
     if (!p->mesh.elements || s->surfaces == p->walls) return 0;
     surfaces_free(s);
     s->surface = calloc((size_t)p->walls + 1, sizeof *s->surface);
-    if (!s->surface) return failure_set(failure, EX_SOFTWARE, "no memory for the surfaces of meshes");
+    if (!s->surface)
+        return failure_set(failure, EX_SOFTWARE, "no memory for the surfaces of meshes");
     s->surfaces = p->walls;
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];

@@ -6,8 +6,8 @@
 #define NSD_NEIGHBOURS_H
 
 #include "base/failure.h"
-#include "state/placement.h"
 #include "contact/seek.h"
+#include "state/placement.h"
 
 /* All zero to begin with. */
 struct neighbours {

@@ -67,7 +67,7 @@ struct line {
 /* Lists those of entries first .. end-1 that are in the line. Returns false, as all that look do, when memory is
    short. */
 static bool seek_look_at(const struct seeker *s, const struct grid *g, int64_t first, int64_t end,
-                    struct line l)
+                         struct line l)
 {
     for (const struct grid_entry *f = g->entry + first; f < g->entry + end; f++) {
         if (f->cell[0] < l.i0 || f->cell[0] > l.i1 || f->cell[1] != l.j || f->cell[2] != l.k)
@@ -129,7 +129,8 @@ static double seek_edges_along(const struct seek_lattice *c, int k, vec3 x)
     return v3_dot(c->inverse[k], x);
 }
 
-static struct seek_lattice seek_lattice_of(const struct packing *p, const vec3 *x, const vec3 edge[3])
+static struct seek_lattice seek_lattice_of(const struct packing *p, const vec3 *x,
+                                           const vec3 edge[3])
 {
     struct seek_lattice c = { .edge = edge, .repeats = p->cell.repeats };
     cell_inverse(edge, c.inverse);
@@ -223,7 +224,7 @@ static bool pairs_sort(struct pairs *s)
 /* The bodies of one grid that look for others, in parts */
 struct search {
     const struct packing *p;
-    const struct grid *g;    /* [level + 1] */
+    const struct grid *g;         /* [level + 1] */
     const struct seek_lattice *c; /* NULL: nothing repeats */
     int level;
     pthread_mutex_t lock; /* of what follows */
@@ -304,9 +305,10 @@ int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const ve
             failure, EX_DATAERR,
             "bodies are more than three cells apart: some move through the cell in a step");
     if (make_list(s, p, x, images ? &c : NULL)) return 0;
-    return s->n < crowd(s) ? failure_set(failure, EX_SOFTWARE, "no memory for the neighbours")
-                           : failure_set(failure, EX_DATAERR,
-                                     "more than %lld pairs of neighbours: bodies in one place, or "
-                                     "a wide gap",
-                                     (long long)crowd(s));
+    return s->n < crowd(s)
+               ? failure_set(failure, EX_SOFTWARE, "no memory for the neighbours")
+               : failure_set(failure, EX_DATAERR,
+                             "more than %lld pairs of neighbours: bodies in one place, or "
+                             "a wide gap",
+                             (long long)crowd(s));
 }

@@ -32,7 +32,6 @@ static inline const struct surface *situation_surface(const struct situation *o,
     return o->p->wall[w].shape == BOUNDARY_MESH ? &o->surface[w] : NULL;
 }
 
-
 struct pair {
     int32_t a, b;    /* bodies, a < b; at least one can move */
     int8_t shift[3]; /* of the cell, when the list was made: b is near a at x_b + shift edge */

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double CROSSING_GRAZE = 1e-2; /* of the sum of radii: how deep a path must go into the other */
+static const double CROSSING_GRAZE =
+    1e-2; /* of the sum of radii: how deep a path must go into the other */
 
 static double crossing_size_of(const struct fast *b)
 {
@@ -40,20 +41,23 @@ static bool crossing_cross(const struct counting *o, const struct fast *a, const
     const vec3 none = v3(0, 0, 0);
     if (!(v3_dot(way, way) > thick * thick)) return false;
     if (!ha && !hb) return through_ball(o, crossing_size_of(a) + crossing_size_of(b), from, way);
-    if (ha && tunnelling_through_hull(ha, p->dim, a->radius, a->q, from, v3_add(from, way))) return true;
+    if (ha && tunnelling_through_hull(ha, p->dim, a->radius, a->q, from, v3_add(from, way)))
+        return true;
     return hb && tunnelling_through_hull(hb, p->dim, b->radius, b->q, v3_sub(none, from),
-                                    v3_sub(none, v3_add(from, way)));
+                                         v3_sub(none, v3_add(from, way)));
 }
 
 static void crossing_count_pair(void *arg, const struct fast *a, const struct fast *b)
 {
     const struct counting *o = arg;
     if (fast_is_fixed_hull(o->p, a) || fast_is_fixed_hull(o->p, b)) return; // in swift_passed()
-    if (crossing_cross(o, a, b)) tunnelling_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
+    if (crossing_cross(o, a, b))
+        tunnelling_note(o->passed, b->fast ? b->id : a->id, b->fast ? a->id : b->id);
 }
 
 int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
-                   const struct fast_list *list, struct window window, bool beyond, struct failure *failure)
+                     const struct fast_list *list, struct window window, bool beyond,
+                     struct failure *failure)
 {
     struct counting o = { p, window, beyond, s };
     if (!(window.length > 0)) return 0;
@@ -64,7 +68,8 @@ int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
    less makes meetings exact that nearly coincide, as long as QUARTER of the substeps left suffice for all of the path.
    At least several times the gap at which an impact is one already [state/packing.h]. */
 static const double CALM_LEAST = 0.01, CALM_MOST = 0.05, QUARTER = 0.25;
-static const double IMPACT_GRAZE = 1e-6;  /* of the sum of radii: bodies that overlap by less go past */
+static const double IMPACT_GRAZE =
+    1e-6;                          /* of the sum of radii: bodies that overlap by less go past */
 static const double DEEPER = 1e-5; /* of the thickness: what overlaps already meets by more */
 static const double TOUCH = 1e-4;  /* of the thickness: cores with this gap meet */
 static const double SLIVER = 1e-3; /* of a substep in which bodies meet: no substep is shorter */
@@ -152,8 +157,8 @@ static void time_of_impact_place(const struct packing *p, const struct fast *b, 
     }
 }
 
-static struct core time_of_impact_core_of(const struct packing *p, const struct fast *b, vec3 x, const vec3 *v,
-                           int32_t k)
+static struct core time_of_impact_core_of(const struct packing *p, const struct fast *b, vec3 x,
+                                          const vec3 *v, int32_t k)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
     if (!s) return (struct core){ .n = 1, .v = v, .round = b->radius, .centre = x };
@@ -262,7 +267,8 @@ static double horizon_of(const struct fast_list *list)
 }
 
 int time_of_impact_part(double *part, const struct packing *p, const bool *of,
-                 const struct fast_list *list, double rest, int64_t left, struct failure *failure)
+                        const struct fast_list *list, double rest, int64_t left,
+                        struct failure *failure)
 {
     struct time_of_impact_meeting s = { .p = p, .least = rest / (QUARTER * (double)left) };
     s.sought = (1 - p->theta) * rest;
@@ -275,7 +281,8 @@ int time_of_impact_part(double *part, const struct packing *p, const bool *of,
     // paths are looked at as far as it takes: a meeting after the time t leaves a substep of more than t/2
     for (double time = horizon; good && !ends; time *= 4) {
         s.rest = s.part = dmin(time, most);
-        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, time_of_impact_look, &s, failure);
+        good = !fast_pairs(p, of, list, (struct window){ 0, s.rest }, time_of_impact_look, &s,
+                           failure);
         ends = s.part <= 0.5 * s.rest || s.rest >= most;
     }
     free(s.room.a), free(s.room.b), free(s.room.moved);

@@ -19,8 +19,8 @@
    one. beyond: balls need not end apart, but beyond the place at which they are nearest, where a contact would have the
    wrong normal. Returns 0 or EX_SOFTWARE. */
 int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
-                   const struct fast_list *list, struct window window, bool beyond,
-                   struct failure *failure);
+                     const struct fast_list *list, struct window window, bool beyond,
+                     struct failure *failure);
 
 /*
  * When fast bodies meet others, and how long a substep may be for that.
@@ -39,6 +39,7 @@ int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
    of which `rest` (s) is left, for `left` substeps at most: *part = how long (s) the next substep may be, at most the rest. Bodies lie in the cell.
    Returns 0 or EX_SOFTWARE. */
 int time_of_impact_part(double *part, const struct packing *p, const bool *of,
-                 const struct fast_list *list, double rest, int64_t left, struct failure *failure);
+                        const struct fast_list *list, double rest, int64_t left,
+                        struct failure *failure);
 
 #endif

@@ -2,8 +2,8 @@
 
 #include "contact/bond_anchor.h"
 #include "contact/contact_law.h"
-#include "state/kinematics.h"
 #include "contact/detect.h"
+#include "state/kinematics.h"
 
 #include <math.h>
 
@@ -130,7 +130,8 @@ static bool bond_all(struct two_places *y)
         int64_t n = count_new(y, i, end, &then);
         int32_t key = 0;
         for (int64_t k = i; n && good && k < end; k++)
-            if (touching_touches(y->p, &y->now.c[k])) good = bond(y->p, &y->now.c[k], n, rows, --key);
+            if (touching_touches(y->p, &y->now.c[k]))
+                good = bond(y->p, &y->now.c[k], n, rows, --key);
     }
     bonds_sort(&y->p->bonds);
     return good;

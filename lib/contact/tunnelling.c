@@ -1,8 +1,8 @@
 #include "contact/tunnelling.h"
 
 #include "contact/detect_shapes.h"
-#include "shape/wall_edge.h"
 #include "shape/mesh.h"
+#include "shape/wall_edge.h"
 
 #include <stdlib.h>
 
@@ -186,13 +186,14 @@ static bool tunnelling_look(struct tunnelling_beside *s, int64_t lo, int64_t hi)
 {
     double half = 0.5 * (double)(hi - 1 - lo);
     vec3 middle = v3_axpy(s->c, (double)lo + half, s->step);
-    if (!tunnelling_is_near(s, middle, s->o->p->radius[s->to.y->i] + half * v3_norm(s->step))) return false;
+    if (!tunnelling_is_near(s, middle, s->o->p->radius[s->to.y->i] + half * v3_norm(s->step)))
+        return false;
     if (hi - lo == 1) return tunnelling_look_at(s, lo);
     return tunnelling_look(s, lo, lo + (hi - lo) / 2) || tunnelling_look(s, lo + (hi - lo) / 2, hi);
 }
 
-bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
-                      int64_t i)
+bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o,
+                           int32_t w, int64_t i)
 {
     const struct packing *p = o->p;
     const struct wall *wall = &p->wall[w];
@@ -374,7 +375,7 @@ bool tunnelling_watches(const struct packing *p)
 }
 
 void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,
-                  const struct surface *surface, struct window window)
+                       const struct surface *surface, struct window window)
 {
     double most, speed = 0;
     int64_t first = first_fixed_hull(p, &most);
@@ -400,7 +401,8 @@ void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of
             vec3 from = v3_axpy(p->x[i], -window.back, v);
             vec3 to = v3_axpy(from, window.length, v);
             from = v3_sub(from, p->x[f]), to = v3_sub(to, p->x[f]);
-            if (tunnelling_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from, to))
+            if (tunnelling_through_hull(packing_shape(p, f), p->dim, p->radius[f], p->q[f], from,
+                                        to))
                 tunnelling_note(s, p->id[i], p->id[f]);
         }
     }

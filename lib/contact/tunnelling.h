@@ -14,9 +14,9 @@
 #ifndef NSD_SWIFT_H
 #define NSD_SWIFT_H
 
+#include "contact/seek.h"
 #include "state/contact.h"
 #include "state/placement.h"
-#include "contact/seek.h"
 
 /* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
 enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };
@@ -39,8 +39,8 @@ double tunnelling_reach(const struct packing *p);
 
 /* Adds what body i meets ahead of wall w, which is no plane, besides the contacts out->c[first ...] of these two.
    False when memory is short. */
-bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o, int32_t w,
-                      int64_t i);
+bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct situation *o,
+                           int32_t w, int64_t i);
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
 bool tunnelling_meet_hulls(struct contacts *out, const struct situation *o);
 
@@ -72,6 +72,6 @@ static inline struct window window_after(const struct packing *p)
 bool tunnelling_watches(const struct packing *p);
 /* In the window, of bodies for which of[p->n] is true; NULL: all */
 void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,
-                  const struct surface *surface, struct window window);
+                       const struct surface *surface, struct window window);
 
 #endif

@@ -13,7 +13,8 @@ struct fields_file {
     struct output output;
 };
 
-static int write_head(hid_t file, const struct fields *f, const char *history, struct failure *failure)
+static int write_head(hid_t file, const struct fields *f, const char *history,
+                      struct failure *failure)
 {
     const int32_t version[2] = { 1, 1 };
     const int64_t points[3] = { f->n[0], f->n[1], f->n[2] };
@@ -30,8 +31,10 @@ static int write_head(hid_t file, const struct fields *f, const char *history, s
     if (!e) e = h5_write_text(file, "/nsd/history", history, failure);
     if (!e) e = h5_attr_text(file, "/fields", "function", "gauss", failure);
     if (!e) e = h5_attr(file, "/fields", "width", h5_scalar(H5T_NATIVE_DOUBLE, &f->width), failure);
-    if (!e) e = h5_write(file, "/fields/points", h5_vector(H5T_NATIVE_INT64, 3, points), "1", failure);
-    if (!e) e = h5_write(file, "/fields/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, origin), "m", failure);
+    if (!e)
+        e = h5_write(file, "/fields/points", h5_vector(H5T_NATIVE_INT64, 3, points), "1", failure);
+    if (!e)
+        e = h5_write(file, "/fields/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, origin), "m", failure);
     if (!e) h5_write(file, "/fields/spacing", h5_vector(H5T_NATIVE_DOUBLE, 3, step), "m", failure);
     return failure->status;
 }

@@ -55,7 +55,6 @@ void export_frame_box(struct box *box, const struct packing *packing);
    periodic */
 void export_put_image(FILE *out, const struct packing *p, int64_t i);
 
-
 struct format {
     const char *name, *ending; /* of --to, and of files */
     const char *help;          /* a few words */

@@ -101,8 +101,8 @@ static uint64_t hash_of(const unsigned char *b, size_t n)
     return h;
 }
 
-static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t columns, const void *data,
-                     struct failure *failure)
+static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t columns,
+                     const void *data, struct failure *failure)
 {
     const size_t size = (size_t)(rows * columns) * gsd_size_of(chunks[k].type);
     const uint64_t hash = hash_of(data, size);
@@ -115,7 +115,8 @@ static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t colu
     if (g->entries == g->room) {
         int64_t room = g->room ? 2 * g->room : 64;
         struct index_entry *more = realloc(g->entry, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the index of a GSD file");
+        if (!more)
+            return failure_set(failure, EX_SOFTWARE, "no memory for the index of a GSD file");
         g->entry = more, g->room = room;
     }
     g->entry[g->entries++] = (struct index_entry){ .frame = (uint64_t)g->frames,
@@ -164,9 +165,9 @@ static struct kind *gsd_list_types(const struct packing *p, int64_t *types, stru
         if (!kept || by_kind(&t[kept - 1], &t[k])) t[kept++] = t[k];
     if (kept - p->kinds > TYPES_MOST) {
         failure_set(failure, EX_DATAERR,
-                "%lld sizes of grains that are no balls: GSD has a type for each, at most %d; "
-                "--to vtp --part surfaces takes any number",
-                (long long)(kept - p->kinds), TYPES_MOST);
+                    "%lld sizes of grains that are no balls: GSD has a type for each, at most %d; "
+                    "--to vtp --part surfaces takes any number",
+                    (long long)(kept - p->kinds), TYPES_MOST);
         free(t);
         return NULL;
     }
@@ -208,7 +209,7 @@ static void put_shape(FILE *out, const struct packing *p, const struct kind *k)
 
 /* The k-th type's name: its kind, with the shape and, where there are several sizes of that, a number */
 static void gsd_put_name(FILE *out, const struct packing *p, const struct kind *t, int64_t types,
-                     int64_t k)
+                         int64_t k)
 {
     int64_t first = k, last = k;
     fputs(p->kind_name[t[k].kind], out);
@@ -221,14 +222,15 @@ static void gsd_put_name(FILE *out, const struct packing *p, const struct kind *
 }
 
 /* Texts as rows of one width, ended by zeros */
-static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int64_t n, struct failure *failure)
+static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int64_t n,
+                         struct failure *failure)
 {
     size_t width = 1;
     for (int64_t k = 0; k < n; k++)
         if (strlen(text[k]) >= width) width = strlen(text[k]) + 1;
     if ((double)width * (double)n > SHAPES_BYTES_MOST)
         return failure_set(failure, EX_DATAERR, "the shapes of all types take more than %d MB",
-                       SHAPES_BYTES_MOST >> 20);
+                           SHAPES_BYTES_MOST >> 20);
     char *rows = calloc((size_t)n + 1, width);
     if (!rows) return failure_set(failure, EX_SOFTWARE, "no memory for the types of an export");
     for (int64_t k = 0; k < n; k++) strcpy(rows + (size_t)k * width, text[k]);
@@ -282,9 +284,10 @@ static int gsd_box_of(float of[6], struct box *b, const struct packing *p, struc
     export_frame_box(b, p);
     const vec3 *e = b->edge;
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
-        return failure_set(failure, EX_DATAERR,
-                       "the cell's first edge is not along x, or the second not in the plane of x "
-                       "and y: GSD has no such box; --to lammps does");
+        return failure_set(
+            failure, EX_DATAERR,
+            "the cell's first edge is not along x, or the second not in the plane of x "
+            "and y: GSD has no such box; --to lammps does");
     const double box[6] = { e[0].x,          e[1].y,          e[2].z,
                             e[1].x / e[1].y, e[2].x / e[2].z, e[2].y / e[2].z };
     for (int k = 0; k < 6; k++) of[k] = (float)box[k];
@@ -340,7 +343,8 @@ static void numbers_of(const struct packing *p, const struct box *b, int64_t i, 
     if (c == DIAMETER) out[0] = (float)(2 * p->radius[i]);
 }
 
-static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b, struct failure *failure)
+static int put_numbers(struct gsd *g, const struct packing *p, const struct box *b,
+                       struct failure *failure)
 {
     static const struct {
         enum gsd_chunk chunk;
@@ -360,7 +364,8 @@ static int put_numbers(struct gsd *g, const struct packing *p, const struct box 
     return failure->status;
 }
 
-static int put_images(struct gsd *g, const struct packing *p, const struct box *b, struct failure *failure)
+static int put_images(struct gsd *g, const struct packing *p, const struct box *b,
+                      struct failure *failure)
 {
     int32_t(*image)[3] = calloc((size_t)p->n + 1, sizeof *image);
     if (!image) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
@@ -383,9 +388,10 @@ static int put_frame(struct gsd *g, const struct packing *p, struct failure *fai
     int64_t types = 0;
     if (gsd_box_of(box, &b, p, failure)) return failure->status;
     struct kind *t = gsd_list_types(p, &types, failure);
-    if (t && !put_chunk(g, STEP, 1, 1, &step, failure) && !put_chunk(g, DIMENSIONS, 1, 1, &dim, failure) &&
-        !put_chunk(g, BOX, 6, 1, box, failure) && !put_chunk(g, COUNT, 1, 1, &n, failure) &&
-        !put_types(g, p, t, types, TYPES, failure) && !put_types(g, p, t, types, TYPE_SHAPES, failure) &&
+    if (t && !put_chunk(g, STEP, 1, 1, &step, failure) &&
+        !put_chunk(g, DIMENSIONS, 1, 1, &dim, failure) && !put_chunk(g, BOX, 6, 1, box, failure) &&
+        !put_chunk(g, COUNT, 1, 1, &n, failure) && !put_types(g, p, t, types, TYPES, failure) &&
+        !put_types(g, p, t, types, TYPE_SHAPES, failure) &&
         !put_type_ids(g, p, t, types, failure) && !put_numbers(g, p, &b, failure) &&
         !put_images(g, p, &b, failure) && !put_chunk(g, TIME, 1, 1, &p->t, failure))
         put_chunk(g, ID, p->n, 1, p->id, failure);

@@ -1,8 +1,8 @@
 #include "convert/import_file.h"
 
+#include "base/bounded.h"
 #include "convert/imported.h"
 #include "convert/ondem_read.h"
-#include "base/bounded.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -32,9 +32,9 @@ static int read_bytes(struct imported *to, const char *name, const char *bytes, 
     for (int k = 0; k < FORMATS; k++)
         if (formats[k]->looks(w.at, w.end - w.at)) return formats[k]->read(to, &w, frame);
     return failure_set(failure, EX_DATAERR,
-                   "%s: neither a LAMMPS dump or data file, nor a table of Yade (#format), nor "
-                   "ON-DEM's",
-                   name);
+                       "%s: neither a LAMMPS dump or data file, nor a table of Yade (#format), nor "
+                       "ON-DEM's",
+                       name);
 }
 
 struct import_file_work {
@@ -53,7 +53,8 @@ static int import_file_read_open(void *with, struct bounded *to, struct failure 
     while (n < f->size) {
         ssize_t more = read(f->fd, bytes + n, (size_t)(f->size - n));
         if (more < 0 && errno == EINTR) continue;
-        if (more < 0) failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", f->path, strerror(errno));
+        if (more < 0)
+            failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", f->path, strerror(errno));
         if (more <= 0) break;
         n += more;
     }
@@ -76,14 +77,14 @@ static int import_file_by_number(const void *one, const void *other)
 
 /* The types that there are, sorted; to be freed */
 static int32_t *import_file_list_types(const struct imported_ball *ball, int64_t n, int32_t *types,
-                           const char *name, struct failure *failure)
+                                       const char *name, struct failure *failure)
 {
     int32_t *type = malloc((TYPES_MOST + 1) * sizeof *type), last = -1;
     if (!type) return failure_set(failure, EX_SOFTWARE, "no memory for the kinds"), NULL;
     *types = 0;
     for (int64_t i = 0; i < n; i++) {
-        if (ball[i].type == last ||
-            (*types && bsearch(&ball[i].type, type, (size_t)*types, sizeof *type, import_file_by_number)))
+        if (ball[i].type == last || (*types && bsearch(&ball[i].type, type, (size_t)*types,
+                                                       sizeof *type, import_file_by_number)))
             continue;
         if (*types == TYPES_MOST) {
             failure_set(failure, EX_DATAERR, "%s: more than %d types", name, TYPES_MOST);
@@ -108,15 +109,16 @@ static int set_kinds(struct packing *p, const int32_t *type, int32_t types, stru
     return 0;
 }
 
-static int import_file_set_body(struct packing *p, int64_t i, const struct imported_ball *b, const char *name,
-                    struct failure *failure)
+static int import_file_set_body(struct packing *p, int64_t i, const struct imported_ball *b,
+                                const char *name, struct failure *failure)
 {
     double mass, inertia;
     p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
     p->radius[i] = b->radius, p->id[i] = b->id;
     if (p->dim == 2 && (b->v.z != 0 || b->w.x != 0 || b->w.y != 0))
-        return failure_set(failure, EX_DATAERR, "%s: ball %lld moves out of the plane: \"dim\": 3 takes it",
-                       name, (long long)i);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: ball %lld moves out of the plane: \"dim\": 3 takes it", name,
+                           (long long)i);
     if (p->dim == 2) p->x[i].z = 0, p->q[i] = (quat){ 1, 0, 0, 0 };
     packing_solid(p->dim, b->radius, b->density > 0 ? b->density : 1, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
@@ -128,7 +130,8 @@ static int import_file_set_body(struct packing *p, int64_t i, const struct impor
 
 /* The box, where it is periodic; the plane has none across it. */
 static int import_file_set_cell(struct packing *p, const struct imported_head *h,
-                    const struct import_wish *wish, const char *name, struct failure *failure)
+                                const struct import_wish *wish, const char *name,
+                                struct failure *failure)
 {
     struct cell *c = &p->cell;
     bool any = false;
@@ -138,7 +141,8 @@ static int import_file_set_cell(struct packing *p, const struct imported_head *h
         any |= c->repeats[k];
     }
     if (!any) return 0;
-    if (!h->boxed) return failure_set(failure, EX_DATAERR, "%s: has no box for a periodic cell", name);
+    if (!h->boxed)
+        return failure_set(failure, EX_DATAERR, "%s: has no box for a periodic cell", name);
     c->origin = h->origin;
     for (int k = 0; k < 3; k++) c->edge[k] = h->edge[k];
     if (p->dim == 2) c->edge[2] = v3(0, 0, 1), c->origin.z = 0;
@@ -155,8 +159,8 @@ static int make_packing(struct packing *p, const struct imported_head *h,
         if (!set_kinds(p, type, types, failure) && !import_file_set_cell(p, h, wish, name, failure))
             for (int64_t i = 0; i < h->n && !failure->status; i++) {
                 if (import_file_set_body(p, i, &ball[i], name, failure)) break;
-                const int32_t *k =
-                    bsearch(&ball[i].type, type, (size_t)types, sizeof *type, import_file_by_number);
+                const int32_t *k = bsearch(&ball[i].type, type, (size_t)types, sizeof *type,
+                                           import_file_by_number);
                 p->kind[i] = k ? (int32_t)(k - type) : 0;
             }
         struct failure trouble = { 0 };
@@ -185,10 +189,11 @@ static int import_file_open_plain(const char *path, int64_t *size, struct failur
     if (fd < 0 || fstat(fd, &st))
         failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
     else if (!S_ISREG(st.st_mode))
-        failure_set(failure, EX_NOINPUT, "%s: no plain file: a packing is not imported from a %s", path,
-                S_ISDIR(st.st_mode) ? "directory" : "pipe or device");
+        failure_set(failure, EX_NOINPUT, "%s: no plain file: a packing is not imported from a %s",
+                    path, S_ISDIR(st.st_mode) ? "directory" : "pipe or device");
     else if (st.st_size > BYTES_MOST)
-        failure_set(failure, EX_DATAERR, "%s: more than %lld GB", path, (long long)(BYTES_MOST >> 30));
+        failure_set(failure, EX_DATAERR, "%s: more than %lld GB", path,
+                    (long long)(BYTES_MOST >> 30));
     else
         return *size = st.st_size, fd;
     if (fd >= 0) close(fd);
@@ -205,9 +210,10 @@ int import_file(struct packing *p, const char *path, const struct import_wish *w
     if ((f.fd = import_file_open_plain(path, &f.size, failure)) < 0) return failure->status;
     if (ondem_looks(f.fd)) {
         close(f.fd);
-        if (wish->frame == -1 || wish->frame == 0) return ondem_read(p, path, wish->dim, said, failure);
+        if (wish->frame == -1 || wish->frame == 0)
+            return ondem_read(p, path, wish->dim, said, failure);
         return failure_set(failure, EX_DATAERR, "%s: no frame %lld: there is one", path,
-                       (long long)wish->frame);
+                           (long long)wish->frame);
     }
     const struct bounded_task task = { import_file_read_open, &f, path, (uint64_t)f.size };
     bounded_run(&task, &answer, &n, failure);

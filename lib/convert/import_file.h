@@ -6,8 +6,8 @@
 #ifndef NSD_IMPORT_FILE_H
 #define NSD_IMPORT_FILE_H
 
-#include "state/packing.h"
 #include "convert/imported.h"
+#include "state/packing.h"
 
 /* Which frame of it, and what it does not say itself */
 struct import_wish {

@@ -134,7 +134,8 @@ static void import_lammps_data_set_box(struct data *d)
 }
 
 /* Goes to the next line that has words; *word: the first */
-static int import_lammps_data_next_line(struct data *d, int64_t i, const char *what, struct word *word)
+static int import_lammps_data_next_line(struct data *d, int64_t i, const char *what,
+                                        struct word *word)
 {
     do
         if (!words_line(d->w))
@@ -214,7 +215,8 @@ static int read_velocities(struct data *d)
     if (!d->sorted && sort_balls(d)) return d->w->soup->failure->status;
     for (int64_t i = 0; i < d->atoms; i++) {
         double x[7] = { 0 };
-        if (import_lammps_data_next_line(d, i, "velocities", &word)) return d->w->soup->failure->status;
+        if (import_lammps_data_next_line(d, i, "velocities", &word))
+            return d->w->soup->failure->status;
         unread(d->w, word);
         int n = import_lammps_data_count_words(*d->w);
         if (n != 4 && n != 7)
@@ -224,7 +226,8 @@ static int read_velocities(struct data *d)
             if (words_number(d->w, &x[k])) return d->w->soup->failure->status;
         bool whole = x[0] >= 0 && x[0] <= INT32_MAX && x[0] == (double)(int32_t)x[0];
         const struct ref key = { whole ? (int32_t)x[0] : -1, NULL };
-        const struct ref *r = bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, import_lammps_data_by_id);
+        const struct ref *r =
+            bsearch(&key, d->sorted, (size_t)d->atoms, sizeof *r, import_lammps_data_by_id);
         if (!r) return word_fault(d->w, word, "is the id of no atom");
         r->ball->v = v3(x[1], x[2], x[3]), r->ball->w = v3(x[4], x[5], x[6]);
     }
@@ -297,4 +300,5 @@ static int import_lammps_data_read(struct imported *to, struct words *w, int64_t
     return bad;
 }
 
-const struct import_format import_lammps_data = { "a LAMMPS data file", import_lammps_data_looks, import_lammps_data_read };
+const struct import_format import_lammps_data = { "a LAMMPS data file", import_lammps_data_looks,
+                                                  import_lammps_data_read };

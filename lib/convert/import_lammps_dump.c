@@ -117,7 +117,8 @@ static int import_lammps_dump_read_units(struct imported *to, struct words *w)
 }
 
 /* The next frame. *more: false where there is none. kept: false: it is only gone through. */
-static int import_lammps_dump_read_frame(struct imported *to, struct words *w, bool kept, bool *more)
+static int import_lammps_dump_read_frame(struct imported *to, struct words *w, bool kept,
+                                         bool *more)
 {
     struct word word, name;
     int64_t n = -1;
@@ -137,8 +138,10 @@ static int import_lammps_dump_read_frame(struct imported *to, struct words *w, b
         }
         if (item == STEP && read_whole(w, INT64_MIN, "step", &to->head.step))
             return w->soup->failure->status;
-        if (item == NUMBER && read_whole(w, 0, "number of atoms", &n)) return w->soup->failure->status;
-        if (item == BOX && import_lammps_dump_read_box(&to->head, w)) return w->soup->failure->status;
+        if (item == NUMBER && read_whole(w, 0, "number of atoms", &n))
+            return w->soup->failure->status;
+        if (item == BOX && import_lammps_dump_read_box(&to->head, w))
+            return w->soup->failure->status;
         if (item == UNITS && import_lammps_dump_read_units(to, w)) return w->soup->failure->status;
         if (item == OTHER && !words_line(w)) break; // TIME: a line
     } while (words_line(w));
@@ -150,7 +153,8 @@ static int import_lammps_dump_count_frames(struct words w, int64_t *frames)
     struct imported none = { 0 };
     bool more = true;
     for (*frames = 0;; ++*frames)
-        if (import_lammps_dump_read_frame(&none, &w, false, &more) || !more) return w.soup->failure->status;
+        if (import_lammps_dump_read_frame(&none, &w, false, &more) || !more)
+            return w.soup->failure->status;
 }
 
 static int import_lammps_dump_read(struct imported *to, struct words *w, int64_t k)
@@ -166,9 +170,11 @@ static int import_lammps_dump_read(struct imported *to, struct words *w, int64_t
                           (long long)frames);
     }
     for (int64_t f = 0; f <= wanted; f++)
-        if (import_lammps_dump_read_frame(to, w, f == wanted, &more)) return w->soup->failure->status;
+        if (import_lammps_dump_read_frame(to, w, f == wanted, &more))
+            return w->soup->failure->status;
     import_to_si(to);
     return 0;
 }
 
-const struct import_format import_lammps_dump = { "a LAMMPS dump", import_lammps_dump_looks, import_lammps_dump_read };
+const struct import_format import_lammps_dump = { "a LAMMPS dump", import_lammps_dump_looks,
+                                                  import_lammps_dump_read };

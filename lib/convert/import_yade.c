@@ -80,4 +80,5 @@ static int import_yade_read(struct imported *to, struct words *w, int64_t k)
     return 0;
 }
 
-const struct import_format import_yade_text = { "a table of Yade", import_yade_looks, import_yade_read };
+const struct import_format import_yade_text = { "a table of Yade", import_yade_looks,
+                                                import_yade_read };

@@ -98,7 +98,8 @@ const struct format format_lammps = {
 /* A data file has nothing but balls that move. */
 static int lammps_check(const struct packing *p, struct failure *failure)
 {
-    if (p->dim == 2) return failure_set(failure, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
+    if (p->dim == 2)
+        return failure_set(failure, EX_DATAERR, "discs: a LAMMPS data file holds only balls");
     for (int64_t i = 0; i < p->n; i++) {
         if (packing_shape(p, i))
             return failure_set(
@@ -107,9 +108,9 @@ static int lammps_check(const struct packing *p, struct failure *failure)
                 " is not a ball: a LAMMPS data file holds only balls; --to gsd writes shapes",
                 p->id[i]);
         if (!(p->mass[i] > 0))
-            return failure_set(failure, EX_DATAERR,
-                           "grain %" PRId32 " is fixed: a LAMMPS data file needs a density of each",
-                           p->id[i]);
+            return failure_set(
+                failure, EX_DATAERR,
+                "grain %" PRId32 " is fixed: a LAMMPS data file needs a density of each", p->id[i]);
     }
     return 0;
 }
@@ -120,9 +121,10 @@ static int lammps_data_put_box(FILE *out, const struct packing *p, struct failur
     export_frame_box(&b, p);
     const vec3 *e = b.edge, o = b.origin;
     if (!(e[0].x > 0 && e[0].y == 0 && e[0].z == 0 && e[1].y > 0 && e[1].z == 0 && e[2].z > 0))
-        return failure_set(failure, EX_DATAERR,
-                       "the cell's first edge is not along x, or the second not in the plane of x "
-                       "and y: a LAMMPS data file has no such box; --to lammps does");
+        return failure_set(
+            failure, EX_DATAERR,
+            "the cell's first edge is not along x, or the second not in the plane of x "
+            "and y: a LAMMPS data file has no such box; --to lammps does");
     fprintf(out, "%.17g %.17g xlo xhi\n%.17g %.17g ylo yhi\n%.17g %.17g zlo zhi\n", o.x,
             o.x + e[0].x, o.y, o.y + e[1].y, o.z, o.z + e[2].z);
     if (e[1].x != 0 || e[2].x != 0 || e[2].y != 0)

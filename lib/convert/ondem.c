@@ -66,7 +66,8 @@ static const struct {
     { "radius", false, true, 1, offsetof(struct ondem_row, radius) },
     { "dimensions", false, false, 3, offsetof(struct ondem_row, dimensions) },
     { "clump_relative_position", false, false, 3, offsetof(struct ondem_row, relative_position) },
-    { "clump_relative_orientation", false, false, 4, offsetof(struct ondem_row, relative_orientation) },
+    { "clump_relative_orientation", false, false, 4,
+      offsetof(struct ondem_row, relative_orientation) },
     { "wall_axis", true, false, 1, offsetof(struct ondem_row, wall_axis) },
     { "wall_sense", true, false, 1, offsetof(struct ondem_row, wall_sense) },
     { "nsd_shape", true, false, 1, offsetof(struct ondem_row, shape) },
@@ -96,7 +97,7 @@ static struct ondem_row *ondem_add_row(struct ondem_rows *b, struct failure *fai
     double *real = r->x;
     const size_t reals = (sizeof *r - offsetof(struct ondem_row, x)) / sizeof *real;
     *r = (struct ondem_row){ -1,    -1, -1, -1,    -1, -1,    -1,    -1,    { 0 }, { 0 }, { 0 },
-                       { 0 }, 0,  0,  { 0 }, 0,  { 0 }, { 0 }, { 0 }, 0,     0 };
+                             { 0 }, 0,  0,  { 0 }, 0,  { 0 }, { 0 }, { 0 }, 0,     0 };
     for (size_t k = 0; k < reals; k++) real[k] = NAN;
     return r;
 }
@@ -127,11 +128,13 @@ static bool is_box(const struct shape *s, vec3 *half)
 
 static void set_motion(struct ondem_row *r, vec3 x, vec3 v, vec3 w, quat q)
 {
-    ondem_put3(r->x, x), ondem_put3(r->velocity, v), ondem_put3(r->angular_velocity, w), put4(r->orientation, q);
+    ondem_put3(r->x, x), ondem_put3(r->velocity, v), ondem_put3(r->angular_velocity, w),
+        put4(r->orientation, q);
 }
 
 /* The balls of a clump, bodies of their own that have no mass */
-static int ondem_add_members(struct ondem_rows *b, const struct packing *p, int64_t i, struct failure *failure)
+static int ondem_add_members(struct ondem_rows *b, const struct packing *p, int64_t i,
+                             struct failure *failure)
 {
     const struct shape *s = &p->shapes.s[p->shape[i]];
     const quat one = { 1, 0, 0, 0 };
@@ -149,7 +152,8 @@ static int ondem_add_members(struct ondem_rows *b, const struct packing *p, int6
     return 0;
 }
 
-static int ondem_add_body(struct ondem_rows *b, const struct packing *p, int64_t i, struct failure *failure)
+static int ondem_add_body(struct ondem_rows *b, const struct packing *p, int64_t i,
+                          struct failure *failure)
 {
     const struct shape *s = packing_shape(p, i);
     struct ondem_row *r = ondem_add_row(b, failure);
@@ -190,7 +194,8 @@ static int axis_of(const struct wall *w, vec3 n, int *sense)
 }
 
 /* Planes across an axis; *id: what each wall is called, -1: it is left out */
-static int add_walls(struct ondem_rows *b, const struct packing *p, int64_t *id, struct failure *failure)
+static int add_walls(struct ondem_rows *b, const struct packing *p, int64_t *id,
+                     struct failure *failure)
 {
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
@@ -257,7 +262,8 @@ static int put_scalar(hid_t file, const char *group, const char *name, bool whol
 }
 
 /* Texts of any length, as h5py has lists of them */
-static int ondem_put_texts(hid_t file, const char *path, const char *const *text, int n, struct failure *failure)
+static int ondem_put_texts(hid_t file, const char *path, const char *const *text, int n,
+                           struct failure *failure)
 {
     const hsize_t shape = (hsize_t)n;
     hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate_simple(1, &shape, NULL),
@@ -284,7 +290,8 @@ static int put_attribute(hid_t file, const char *path, const char *name, const c
     return good ? 0 : failure_set(failure, EX_SOFTWARE, "%s: cannot be made", path);
 }
 
-static int put_cells(hid_t file, const char *block, const char *name, int64_t n, struct failure *failure)
+static int put_cells(hid_t file, const char *block, const char *name, int64_t n,
+                     struct failure *failure)
 {
     static const char *const part[] = { "NumberOfCells", "NumberOfConnectivityIds", "Offsets",
                                         "Connectivity" };
@@ -315,26 +322,31 @@ static bool is_used(const struct ondem_rows *b, int c)
     return false;
 }
 
-static int ondem_put_block(hid_t file, int group, const struct ondem_rows *b, struct choice of, struct failure *failure)
+static int ondem_put_block(hid_t file, int group, const struct ondem_rows *b, struct choice of,
+                           struct failure *failure)
 {
     char block[60], path[160];
     const char *rows = b->row ? (const char *)b->row : "";
     snprintf(block, sizeof block, "/VTKHDF/%s", group_names[group]);
     snprintf(path, sizeof path, "%s/NumberOfPoints", block);
-    if (vtkhdf_group(file, block, failure) || vtkhdf_type(file, block, "PolyData", MINOR, failure) ||
+    if (vtkhdf_group(file, block, failure) ||
+        vtkhdf_type(file, block, "PolyData", MINOR, failure) ||
         h5_write(file, path, h5_vector(H5T_NATIVE_INT64, 1, &of.n), NULL, failure))
         return failure->status;
     snprintf(path, sizeof path, "%s/Points", block);
-    const struct ondem_member points = { rows + offsetof(struct ondem_row, x), sizeof *b->row, false, 3 };
-    if (put_column(file, path, of, points, failure) || put_cells(file, block, "Vertices", of.n, failure) ||
-        put_cells(file, block, "Lines", 0, failure) || put_cells(file, block, "Polygons", 0, failure) ||
+    const struct ondem_member points = { rows + offsetof(struct ondem_row, x), sizeof *b->row,
+                                         false, 3 };
+    if (put_column(file, path, of, points, failure) ||
+        put_cells(file, block, "Vertices", of.n, failure) ||
+        put_cells(file, block, "Lines", 0, failure) ||
+        put_cells(file, block, "Polygons", 0, failure) ||
         put_cells(file, block, "Strips", 0, failure))
         return failure->status;
     for (int k = 0; k < COLUMNS; k++) {
         if (!columns[k].always && !is_used(b, k)) continue;
         snprintf(path, sizeof path, "%s/PointData/%s", block, columns[k].name);
         const struct ondem_member m = { rows + columns[k].at, sizeof *b->row, columns[k].whole,
-                                  columns[k].width };
+                                        columns[k].width };
         if (put_column(file, path, of, m, failure) ||
             (columns[k].width == 4 && put_attribute(file, path, "order", "wxyz", failure)))
             return failure->status;
@@ -373,7 +385,8 @@ static int put_scene(hid_t file, const struct packing *p, struct failure *failur
            h5_attr(file, scene, "time", h5_scalar(H5T_NATIVE_DOUBLE, &p->t), failure) ||
            h5_attr(file, scene, "timestep", h5_scalar(H5T_NATIVE_DOUBLE, &p->dt), failure) ||
            h5_attr(file, scene, "iteration", h5_scalar(H5T_NATIVE_INT64, &p->step), failure) ||
-           h5_write(file, "/ONDEM/Scene/gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), NULL, failure) ||
+           h5_write(file, "/ONDEM/Scene/gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), NULL,
+                    failure) ||
            ondem_put_texts(file, "/ONDEM/Scene/units", units, 3, failure) ||
            ondem_put_texts(file, "/ONDEM/Scene/display_group_names", group_names, 2, failure) ||
            ondem_put_texts(file, "/ONDEM/Scene/shape_names", shape_names, SHAPES, failure);
@@ -389,7 +402,8 @@ static double density_of(const struct ondem_rows *b, int32_t kind)
     return volume > 0 ? mass / volume : NAN;
 }
 
-static int put_materials(hid_t file, const struct packing *p, const struct ondem_rows *b, struct failure *failure)
+static int put_materials(hid_t file, const struct packing *p, const struct ondem_rows *b,
+                         struct failure *failure)
 {
     for (int32_t k = 0; k < p->kinds && !failure->status; k++) {
         char group[60], path[80];
@@ -435,7 +449,7 @@ static const struct {
 
 /* Contacts that push or pull, of bodies that are in the file; a clump's is the clump's */
 static int ondem_put_contacts(hid_t file, const struct packing *p, const struct contacts *t,
-                        const int64_t *wall_id, struct failure *failure)
+                              const int64_t *wall_id, struct failure *failure)
 {
     static const char group[] = "/ONDEM/Interactions/hard_contact";
     struct interaction *list = malloc(((size_t)t->n + 1) * sizeof *list);
@@ -459,7 +473,7 @@ static int ondem_put_contacts(hid_t file, const struct packing *p, const struct 
         char path[120];
         snprintf(path, sizeof path, "%s/%s", group, of_contacts[k].name);
         const struct ondem_member m = { (const char *)list + of_contacts[k].at, sizeof *list,
-                                  of_contacts[k].whole, of_contacts[k].width };
+                                        of_contacts[k].whole, of_contacts[k].width };
         put_column(file, path, (struct choice){ n, NULL }, m, failure);
     }
     free(list);
@@ -495,7 +509,8 @@ static int put_extension(hid_t file, const struct packing *p, struct failure *fa
                   failure) ||
          h5_write(file, "/nsd/cell/edges", h5_array(H5T_NATIVE_DOUBLE, 2, edges, edge), NULL,
                   failure) ||
-         h5_write(file, "/nsd/cell/repeats", h5_vector(H5T_NATIVE_INT32, 3, repeats), NULL, failure)))
+         h5_write(file, "/nsd/cell/repeats", h5_vector(H5T_NATIVE_INT32, 3, repeats), NULL,
+                  failure)))
         return failure->status;
     return shape_tables_write(file, p, failure);
 }
@@ -527,7 +542,8 @@ void *ondem_write(const struct packing *p, const struct contacts *contacts, size
     for (int64_t i = 0; i < p->n && !failure->status; i++) ondem_add_body(&b, p, i, failure);
     if (!failure->status && !add_walls(&b, p, wall_id, failure) && !put_blocks(file, &b, failure) &&
         !put_scene(file, p, failure) && !put_materials(file, p, &b, failure) &&
-        (!contacts || !contacts->found || !ondem_put_contacts(file, p, contacts, wall_id, failure)) &&
+        (!contacts || !contacts->found ||
+         !ondem_put_contacts(file, p, contacts, wall_id, failure)) &&
         !put_extension(file, p, failure))
         bytes = image_of(file, size, failure);
     if (file >= 0) H5Fclose(file);
@@ -541,7 +557,8 @@ static int write_ondem(FILE *out, const struct export_frame *m, enum part part, 
     size_t size = 0;
     (void)part, (void)first;
     if (m->packing->dim == 2) // which would come back as balls
-        return failure_set(failure, EX_DATAERR, "discs: ON-DEM's format is for 3D; --to gsd writes discs");
+        return failure_set(failure, EX_DATAERR,
+                           "discs: ON-DEM's format is for 3D; --to gsd writes discs");
     void *bytes = ondem_write(m->packing, m->contacts, &size, failure);
     if (!bytes) return failure->status;
     fwrite(bytes, 1, size, out);

@@ -1,8 +1,8 @@
 #include "convert/ondem_read.h"
 
-#include "shape/solid.h"
-#include "file/source.h"
 #include "file/shape_tables.h"
+#include "file/source.h"
+#include "shape/solid.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -42,8 +42,8 @@ struct file {
     struct material *material;
     int64_t members, members_room;
     struct ondem_read_member *member; /* [members] by their clumps */
-    int64_t n;             /* bodies so far */
-    int32_t walls;         /* walls so far */
+    int64_t n;                        /* bodies so far */
+    int32_t walls;                    /* walls so far */
 };
 
 static int ondem_read_fault(const struct file *f, const char *place, const char *trouble)
@@ -65,7 +65,8 @@ static int read_shape_names(struct file *f)
 {
     char *text = source_lines(f->in, "/ONDEM/Scene/shape_names", f->failure);
     if (f->failure->status) return f->failure->status;
-    if (!text) return ondem_read_fault(f, "/ONDEM/Scene/shape_names", "no list of the names of shapes");
+    if (!text)
+        return ondem_read_fault(f, "/ONDEM/Scene/shape_names", "no list of the names of shapes");
     for (const char *s = text; *s; s++) f->kinds_of_shape += *s == '\n';
     f->shape = calloc((size_t)f->kinds_of_shape + 1, sizeof *f->shape);
     if (!f->shape) failure_set(f->failure, EX_SOFTWARE, "no memory for the shapes");
@@ -113,7 +114,8 @@ static int ondem_read_material(struct file *f, const char *group)
     m->id = (int64_t)id;
     const bool named = m->label && *m->label && strlen(m->label) < 200;
     for (const char *c = m->label; named && *c; c++)
-        if ((unsigned char)*c < ' ') return ondem_read_fault(f, group, "a label with control characters");
+        if ((unsigned char)*c < ' ')
+            return ondem_read_fault(f, group, "a label with control characters");
     if (named) return 0;
     free(m->label);
     snprintf(path, sizeof path, "%" PRId64, m->id);
@@ -160,8 +162,8 @@ static void block_free(struct ondem_read_block *b)
     free(b->material), free(b->clump), free(b->dofs), free(b->axis), free(b->sense), free(b->row);
 }
 
-static void *read_column(struct file *f, const struct ondem_read_block *b, const char *name, bool whole,
-                         int width, bool needed)
+static void *read_column(struct file *f, const struct ondem_read_block *b, const char *name,
+                         bool whole, int width, bool needed)
 {
     char path[PATH];
     uint64_t shape[4] = { 0 };
@@ -209,10 +211,11 @@ static int ondem_read_columns(struct file *f, struct ondem_read_block *b)
     return f->failure->status;
 }
 
-static int body_fault(const struct file *f, const struct ondem_read_block *b, int64_t i, const char *trouble)
+static int body_fault(const struct file *f, const struct ondem_read_block *b, int64_t i,
+                      const char *trouble)
 {
-    return failure_set(f->failure, EX_DATAERR, "%.150s: %.60s: body %" PRId64 ": %.140s", f->path, b->path,
-                   b->id[i], trouble);
+    return failure_set(f->failure, EX_DATAERR, "%.150s: %.60s: body %" PRId64 ": %.140s", f->path,
+                       b->path, b->id[i], trouble);
 }
 
 static bool all_finite(const double *x, int n)
@@ -228,7 +231,8 @@ static int keep_shape(struct file *f, struct shape *s, const char *called, int32
     struct packing *p = f->p;
     char name[40];
     // to compare it with each takes some ns
-    if (source_draw(f->in, 4 * (uint64_t)p->shapes.n, f->failure)) return shape_free(s), f->failure->status;
+    if (source_draw(f->in, 4 * (uint64_t)p->shapes.n, f->failure))
+        return shape_free(s), f->failure->status;
     for (int32_t k = 1; k < p->shapes.n; k++)
         if (shape_same(&p->shapes.s[k], s)) return shape_free(s), *row = k, 0;
     snprintf(name, sizeof name, "%s %d", called, p->shapes.n ? p->shapes.n : 1);
@@ -272,7 +276,8 @@ static int by_clump(const void *one, const void *other)
     return (a->id > b->id) - (a->id < b->id);
 }
 
-static int ondem_read_add_members(struct file *f, const struct ondem_read_block *b, const double *at)
+static int ondem_read_add_members(struct file *f, const struct ondem_read_block *b,
+                                  const double *at)
 {
     for (int64_t i = 0; i < b->n; i++) {
         if (b->clump[i] < 0 || !b->radius || !(b->radius[i] > 0) || !all_finite(at + 3 * i, 3))
@@ -285,7 +290,7 @@ static int ondem_read_add_members(struct file *f, const struct ondem_read_block 
         }
         f->member[f->members++] =
             (struct ondem_read_member){ b->clump[i], b->id[i], b->material[i],
-                             v3(at[3 * i], at[3 * i + 1], at[3 * i + 2]), b->radius[i] };
+                                        v3(at[3 * i], at[3 * i + 1], at[3 * i + 2]), b->radius[i] };
     }
     return 0;
 }
@@ -306,7 +311,8 @@ static const struct ondem_read_member *members_of(const struct file *f, int64_t 
 }
 
 /* The balls of a clump about its centre, in its principal axes; the moments are those that the file has for it. */
-static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i, double *reach, int32_t *row)
+static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i, double *reach,
+                     int32_t *row)
 {
     int64_t n;
     const struct ondem_read_member *m = members_of(f, b->id[i], &n);
@@ -326,15 +332,16 @@ static int clump_row(struct file *f, const struct ondem_read_block *b, int64_t i
     for (int k = 0; k < 3; k++) s.moment[k] = I[4 * k] / (mass * *reach * *reach);
     s.volume = b->volume ? b->volume[i] / (*reach * *reach * *reach) : 0;
     // else by lines through the balls, which takes some ms for each
-    if (!(s.volume > 0) &&
-        (source_draw(f->in, 2000000 * (uint64_t)n, f->failure) || solid_of(&balls, &s, 3, f->failure)))
+    if (!(s.volume > 0) && (source_draw(f->in, 2000000 * (uint64_t)n, f->failure) ||
+                            solid_of(&balls, &s, 3, f->failure)))
         return shape_free(&s), f->failure->status;
     if (!(s.volume > 0)) s.volume = balls.volume;
     if (shape_finish(&s, 3, f->failure)) return shape_free(&s), f->failure->status;
     return keep_shape(f, &s, "clump", row);
 }
 
-static int ondem_read_add_wall(struct file *f, const struct ondem_read_block *b, int64_t i, int32_t kind)
+static int ondem_read_add_wall(struct file *f, const struct ondem_read_block *b, int64_t i,
+                               int32_t kind)
 {
     const int64_t axis = b->axis ? b->axis[i] : -1, sense = b->sense ? b->sense[i] : 0;
     const double *x = b->x + 3 * i, zero[3] = { 0 }, *v = b->v ? b->v + 3 * i : zero;
@@ -351,8 +358,8 @@ static int ondem_read_add_wall(struct file *f, const struct ondem_read_block *b,
 }
 
 /* The shape's row in the packing, and the radius of the ball around the body */
-static int ondem_read_shape(struct file *f, const struct ondem_read_block *b, int64_t i, enum shape_kind is,
-                      int32_t *row, double *reach)
+static int ondem_read_shape(struct file *f, const struct ondem_read_block *b, int64_t i,
+                            enum shape_kind is, int32_t *row, double *reach)
 {
     *row = 0;
     if (is == SPHERE) {
@@ -431,7 +438,8 @@ static int for_blocks(struct file *f, int (*each)(struct file *, const char *))
         if (each(f, path)) return f->failure->status;
     }
     return blocks ? 0
-                  : ondem_read_fault(f, "/VTKHDF", "no block of bodies (files before October 2026 have none)");
+                  : ondem_read_fault(f, "/VTKHDF",
+                                     "no block of bodies (files before October 2026 have none)");
 }
 
 static int64_t rows_of(struct file *f, const char *block)
@@ -501,7 +509,8 @@ static int ondem_read_by_id(const void *one, const void *other)
 }
 
 /* array[k] = what was at place[k].was */
-static void ondem_read_gather(void *array, size_t size, const struct ondem_read_place *place, int64_t n, quat *space)
+static void ondem_read_gather(void *array, size_t size, const struct ondem_read_place *place,
+                              int64_t n, quat *space)
 {
     char *room = (char *)space;
     for (int64_t k = 0; array && k < n; k++)
@@ -516,11 +525,14 @@ static int sort_bodies(struct file *f)
     struct ondem_read_place *place = malloc(((size_t)n + 1) * sizeof *place);
     quat *room = malloc(((size_t)n + 1) * sizeof *room);
     if (!place || !room) failure_set(f->failure, EX_SOFTWARE, "no memory for the bodies");
-    for (int64_t k = 0; !f->failure->status && k < n; k++) place[k] = (struct ondem_read_place){ p->id[k], k };
+    for (int64_t k = 0; !f->failure->status && k < n; k++)
+        place[k] = (struct ondem_read_place){ p->id[k], k };
     if (!f->failure->status) {
         qsort(place, (size_t)n, sizeof *place, ondem_read_by_id);
-        ondem_read_gather(p->x, sizeof *p->x, place, n, room), ondem_read_gather(p->v, sizeof *p->v, place, n, room);
-        ondem_read_gather(p->w, sizeof *p->w, place, n, room), ondem_read_gather(p->q, sizeof *p->q, place, n, room);
+        ondem_read_gather(p->x, sizeof *p->x, place, n, room),
+            ondem_read_gather(p->v, sizeof *p->v, place, n, room);
+        ondem_read_gather(p->w, sizeof *p->w, place, n, room),
+            ondem_read_gather(p->q, sizeof *p->q, place, n, room);
         ondem_read_gather(p->radius, sizeof *p->radius, place, n, room);
         ondem_read_gather(p->mass, sizeof *p->mass, place, n, room);
         ondem_read_gather(p->inertia, sizeof *p->inertia, place, n, room);
@@ -591,7 +603,8 @@ static int ondem_read_open(struct file *f, int dim, struct import_said *said)
             f->failure, EX_DATAERR,
             "%s: an HDF5 file without the group /ONDEM: a document is read by \"document\"",
             f->path);
-    if (dim != 3) return ondem_read_fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
+    if (dim != 3)
+        return ondem_read_fault(f, "/ONDEM", "bodies in space, and the scene is in the plane");
     int64_t most;
     if (read_shape_names(f) || ondem_read_materials(f) || for_blocks(f, count_block) ||
         for_blocks(f, read_members))

@@ -6,8 +6,8 @@
 #ifndef NSD_ONDEM_READ_H
 #define NSD_ONDEM_READ_H
 
-#include "state/packing.h"
 #include "convert/imported.h"
+#include "state/packing.h"
 
 /* Does the file begin as HDF5 does? */
 bool ondem_looks(int fd);

@@ -27,8 +27,8 @@ char *scene_file_slurp(FILE *f, const char *name, size_t *n, struct failure *fai
         if (!file && *n >= MOST_PIPED) {
             free(text);
             failure_set(failure, EX_DATAERR,
-                    "%s: more than %d MB for a scene (endless?): put it into a file", name,
-                    MOST_PIPED >> 20);
+                        "%s: more than %d MB for a scene (endless?): put it into a file", name,
+                        MOST_PIPED >> 20);
             return NULL;
         }
         room *= 2;
@@ -70,11 +70,13 @@ static int scene_file_read_frame(struct frame *f, char *path, int64_t k, struct 
     if (failure->status) return failure->status;
     if (!more || (k < -1 && wanted < 0))
         return failure_set(failure, EX_DATAERR, "%s: no frame %lld", path, (long long)k);
-    return f->packed ? 0 : failure_set(failure, EX_DATAERR, "%s: an FCLIB problem has no bodies", path);
+    return f->packed ? 0
+                     : failure_set(failure, EX_DATAERR, "%s: an FCLIB problem has no bodies", path);
 }
 
 /* The balls of another program's file, as the scene's group asks for them */
-static int scene_file_read_foreign(struct scene_bodies *b, int dim, const char *path, struct failure *failure)
+static int scene_file_read_foreign(struct scene_bodies *b, int dim, const char *path,
+                                   struct failure *failure)
 {
     struct import_said said;
     struct import_wish wish = { .dim = dim, .frame = b->frame, .has_repeats = b->has_repeats };
@@ -84,7 +86,8 @@ static int scene_file_read_foreign(struct scene_bodies *b, int dim, const char *
     return 0;
 }
 
-static int scene_file_read_document(struct scene_bodies *b, int dim, const char *dir, struct failure *failure)
+static int scene_file_read_document(struct scene_bodies *b, int dim, const char *dir,
+                                    struct failure *failure)
 {
     struct frame f = { 0 };
     char *path = scene_path(dir, b->file);
@@ -112,7 +115,8 @@ int scene_file_parse(struct scene *s, const char *text, size_t n, const char *na
         return name ? failure_set(failure, trouble.status, "%s:%s", name, trouble.text)
                     : failure_set(failure, trouble.status, "%s", trouble.text);
     for (int64_t g = 0; g < s->groups && !failure->status; g++)
-        if (s->bodies[g].from == SCENE_DOCUMENT) scene_file_read_document(&s->bodies[g], s->dim, dir, failure);
+        if (s->bodies[g].from == SCENE_DOCUMENT)
+            scene_file_read_document(&s->bodies[g], s->dim, dir, failure);
     if (!failure->status) mesh_files_read(s, &files, failure);
     if (!failure->status) scene_parts_split(s, failure);
     if (failure->status) scene_free(s);

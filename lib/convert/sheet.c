@@ -58,9 +58,10 @@ static int keep_wanted(struct sheet *s, enum part part, const struct export_fram
 
 int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure)
 {
-    static int (*const fill[PART_COUNT])(
-        struct sheet *, const struct export_frame *,
-        struct failure *) = { sheet_grains, sheet_contacts, sheet_boundary, sheet_box, sheet_surfaces };
+    static int (*const fill[PART_COUNT])(struct sheet *, const struct export_frame *,
+                                         struct failure *) = { sheet_grains, sheet_contacts,
+                                                               sheet_boundary, sheet_box,
+                                                               sheet_surfaces };
     *s = (struct sheet){ .shape = SHEET_POINT };
     if (fill[part](s, m, failure) || keep_wanted(s, part, m, failure)) sheet_free(s);
     return failure->status;
@@ -85,7 +86,8 @@ static int sheet_grow(struct sheet *s, int64_t least)
 
 int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failure)
 {
-    if (sheet_grow(s, s->points + corners)) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
+    if (sheet_grow(s, s->points + corners))
+        return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int k = 0; k < corners; k++) {
         s->corner[s->corners++] = s->points;
         s->x[s->points++] = x[k];
@@ -134,7 +136,8 @@ int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *fai
             const vec3 line[2] = { from, v3_add(from, b.edge[k]) };
             if (sheet_add(s, 2, line, failure)) return failure->status;
         }
-    int32_t *edge = sheet_whole(s, "edge", "", failure), *repeats = sheet_whole(s, "repeats", "", failure);
+    int32_t *edge = sheet_whole(s, "edge", "", failure),
+            *repeats = sheet_whole(s, "repeats", "", failure);
     double *rate = sheet_real(s, "rate", "xyz", failure);
     if (failure->status) return failure->status;
     for (int k = 0; k < 12; k++) {
@@ -190,8 +193,10 @@ int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure
     s->shape = SHEET_LINE;
     if (!m->contacts) return 0;
     if (sheet_add_lines(s, m, failure)) return failure->status;
-    int32_t *body = sheet_whole(s, "body", "ab", failure), *id = sheet_whole(s, "id", "ab", failure);
-    double *point = sheet_real(s, "point", "xyz", failure), *n = sheet_real(s, "normal", "xyz", failure);
+    int32_t *body = sheet_whole(s, "body", "ab", failure),
+            *id = sheet_whole(s, "id", "ab", failure);
+    double *point = sheet_real(s, "point", "xyz", failure),
+           *n = sheet_real(s, "normal", "xyz", failure);
     double *gap = sheet_real(s, "gap", "", failure), *mu = sheet_real(s, "mu", "", failure);
     if (failure->status) return failure->status;
     for (int64_t i = 0; i < m->contacts->n; i++) {
@@ -207,7 +212,8 @@ int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure
 /* Grains as points, with all that a document says of each. */
 
 /* contacts[i], force[i] = how many contacts of grain i push, and the sum of their forces (N) */
-static int sheet_add_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
+static int sheet_add_contacts(struct sheet *s, const struct export_frame *m,
+                              struct failure *failure)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
@@ -236,7 +242,8 @@ int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *
     for (int64_t i = 0; i < p->n; i++)
         if (sheet_add(s, 1, &p->x[i], failure)) return failure->status;
     int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure);
-    double *radius = sheet_real(s, "radius", "", failure), *mass = sheet_real(s, "mass", "", failure);
+    double *radius = sheet_real(s, "radius", "", failure),
+           *mass = sheet_real(s, "mass", "", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
     double *w = sheet_real(s, "angular_velocity", "xyz", failure);
     double *q = sheet_real(s, "orientation", "wxyz", failure);
@@ -289,11 +296,12 @@ static void sheet_surfaces_put(double *out, int64_t k, vec3 x)
 }
 
 static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
-                        struct failure *failure)
+                              struct failure *failure)
 {
     int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure),
             *shape = sheet_whole(s, "shape", "", failure);
-    double *radius = sheet_real(s, "radius", "", failure), *mass = sheet_real(s, "mass", "", failure);
+    double *radius = sheet_real(s, "radius", "", failure),
+           *mass = sheet_real(s, "mass", "", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
     double *w = sheet_real(s, "angular_velocity", "xyz", failure);
     if (failure->status) return;
@@ -306,8 +314,8 @@ static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct p
 }
 
 /* Of solved contacts: how many push each cell's grain, and the sum of their forces on it (N) */
-static void sheet_surfaces_add_contacts(struct sheet *s, const int32_t *of, const struct export_frame *m,
-                         struct failure *failure)
+static void sheet_surfaces_add_contacts(struct sheet *s, const int32_t *of,
+                                        const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
@@ -338,7 +346,8 @@ int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure
         if (packing_shape(p, c.grain) && export_frame_has(m, c.grain))
             facets_of(&f, p, c.grain, sheet_add_cell, &c);
     if (!failure->status) sheet_add_columns(s, c.of, p, failure);
-    if (!failure->status && m->contacts && m->contacts->found) sheet_surfaces_add_contacts(s, c.of, m, failure);
+    if (!failure->status && m->contacts && m->contacts->found)
+        sheet_surfaces_add_contacts(s, c.of, m, failure);
     facets_free(&f);
     free(c.of);
     return failure->status;

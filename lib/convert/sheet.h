@@ -33,7 +33,8 @@ struct sheet {
 };
 
 /* s = a part of a moment, of as many cells as there are such things that are wanted. Returns 0 or EX_SOFTWARE. */
-int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure);
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m,
+             struct failure *failure);
 void sheet_free(struct sheet *s);
 
 static inline int64_t sheet_rows(const struct sheet *s)
@@ -56,6 +57,7 @@ int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failu
  * Columns are added when the cells are there.
  */
 double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct failure *failure);
-int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, struct failure *failure);
+int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix,
+                     struct failure *failure);
 
 #endif

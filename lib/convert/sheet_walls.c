@@ -2,11 +2,11 @@
  * convert/sheet_walls.c: boundaries as polygons, in the plane as lines, at the moment's time. A plane
  * is infinite: it is cut off where the region of the grains ends, and by the other planes.
  */
-#include "state/selection.h"
-#include "state/face_of.h"
+#include "convert/sheet.h"
 #include "draw/outline.h"
 #include "draw/walls.h"
-#include "convert/sheet.h"
+#include "state/face_of.h"
+#include "state/selection.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ struct owners {
 };
 
 static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
-                    const vec3 *corner, struct failure *failure)
+                                const vec3 *corner, struct failure *failure)
 {
     if (!o->of || s->cells == o->room) {
         int64_t room = 2 * o->room + 64;
@@ -34,7 +34,7 @@ static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner 
 }
 
 static int sheet_walls_add_planes(struct sheet *s, struct owners *o, const struct packing *p,
-                      const struct extent *region, struct failure *failure)
+                                  const struct extent *region, struct failure *failure)
 {
     vec3 corner[WALLS_CORNERS];
     for (int32_t i = 0; i < p->walls && i < WALLS_PANELS; i++) {
@@ -47,10 +47,11 @@ static int sheet_walls_add_planes(struct sheet *s, struct owners *o, const struc
 }
 
 static int sheet_walls_add_outlines(struct sheet *s, struct owners *o, const struct packing *p,
-                        const struct extent *region, struct failure *failure)
+                                    const struct extent *region, struct failure *failure)
 {
     struct outline line;
-    if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), failure)) return failure->status;
+    if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), failure))
+        return failure->status;
     for (int64_t i = 0; p->dim == 3 && i < line.triangles && !failure->status; i++) {
         const struct owner of = { line.triangle[i].boundary, line.triangle[i].face };
         if (selection_face(&o->chosen, p, of.boundary, of.face))
@@ -71,25 +72,29 @@ static void sheet_walls_put(double *out, int64_t i, vec3 x)
 }
 
 static int sheet_walls_add_columns(struct sheet *s, const struct owners *o, const struct packing *p,
-                       struct failure *failure)
+                                   struct failure *failure)
 {
-    int32_t *number = sheet_whole(s, "boundary", "", failure), *kind = sheet_whole(s, "kind", "", failure);
-    double *point = sheet_real(s, "point", "xyz", failure), *n = sheet_real(s, "normal", "xyz", failure);
+    int32_t *number = sheet_whole(s, "boundary", "", failure),
+            *kind = sheet_whole(s, "kind", "", failure);
+    double *point = sheet_real(s, "point", "xyz", failure),
+           *n = sheet_real(s, "normal", "xyz", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
     if (failure->status) return failure->status;
     for (int64_t k = 0; o->of && k < s->cells; k++) {
         const struct wall *w = &p->wall[o->of[k].boundary];
         vec3 x = wall_at(p, w, p->t);
         number[k] = o->of[k].boundary, kind[k] = w->kind;
-        sheet_walls_put(point, k, x), sheet_walls_put(n, k, wall_normal(p, w, p->t)), sheet_walls_put(v, k, wall_velocity(p, w, x));
+        sheet_walls_put(point, k, x), sheet_walls_put(n, k, wall_normal(p, w, p->t)),
+            sheet_walls_put(v, k, wall_velocity(p, w, x));
     }
     return 0;
 }
 
 /* Of solved contacts: those on each cell's face, and their forces (N) on it. A face of several cells, a cylinder or a
    sphere, has them in each. */
-static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o, const struct export_frame *m,
-                        const struct wall_faces *faces, struct failure *failure)
+static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o,
+                                    const struct export_frame *m, const struct wall_faces *faces,
+                                    struct failure *failure)
 {
     const struct packing *p = m->packing;
     const struct contacts *t = m->contacts;
@@ -97,7 +102,8 @@ static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o, con
     double *force = sheet_real(s, "contact_force", "xyz", failure);
     vec3 *sum = calloc((size_t)faces->n + 1, sizeof *sum);
     int32_t *pushes = calloc((size_t)faces->n + 1, sizeof *pushes);
-    if (!sum || !pushes) failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!sum || !pushes)
+        failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; !failure->status && i < t->n && t->c[i].a < 0; i++) {
         int32_t k = faces->first[-1 - t->c[i].a] + face_of_contact(faces, p, &t->c[i], 0);
         sum[k] = v3_axpy(sum[k], -1 / p->dt, contact_in_space(&t->c[i], t->found[i].r));
@@ -133,8 +139,8 @@ static int add_sums(struct sheet *s, const struct owners *o, const struct packin
     return failure->status;
 }
 
-static int sheet_walls_add_forces(struct sheet *s, const struct owners *o, const struct export_frame *m,
-                      struct failure *failure)
+static int sheet_walls_add_forces(struct sheet *s, const struct owners *o,
+                                  const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     bool solved = m->contacts && m->contacts->found;
@@ -158,7 +164,8 @@ int sheet_boundary(struct sheet *s, const struct export_frame *m, struct failure
     if (m->only && m->only->walls) o.chosen = *m->only;
     if (region_of(&region, p) && !sheet_walls_add_planes(s, &o, p, &region, failure))
         sheet_walls_add_outlines(s, &o, p, &region, failure);
-    if (!failure->status && !sheet_walls_add_columns(s, &o, p, failure)) sheet_walls_add_forces(s, &o, m, failure);
+    if (!failure->status && !sheet_walls_add_columns(s, &o, p, failure))
+        sheet_walls_add_forces(s, &o, m, failure);
     free(o.of);
     return failure->status;
 }

@@ -2,9 +2,9 @@
  * convert/stl.c: a moment as triangles, binary STL, in m: grains as draw/facets.h has them, boundaries
  * as their polygons.
  */
-#include "draw/facets.h"
 #include "convert/format.h"
 #include "convert/sheet.h"
+#include "draw/facets.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,7 +43,8 @@ static void put_polygons(FILE *out, const struct sheet *s)
     int64_t first = 0;
     for (int64_t k = 0; k < s->cells; first = s->end[k++])
         for (int64_t c = first + 1; c + 1 < s->end[k]; c++)
-            stl_put_triangle(out, s->x[s->corner[first]], s->x[s->corner[c]], s->x[s->corner[c + 1]]);
+            stl_put_triangle(out, s->x[s->corner[first]], s->x[s->corner[c]],
+                             s->x[s->corner[c + 1]]);
 }
 
 static int64_t polygon_triangles(const struct sheet *s)
@@ -54,7 +55,8 @@ static int64_t polygon_triangles(const struct sheet *s)
     return n;
 }
 
-static int stl(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
+static int stl(FILE *out, const struct export_frame *m, enum part part, bool first,
+               struct failure *failure)
 {
     const struct packing *p = m->packing;
     struct facets b;

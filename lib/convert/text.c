@@ -40,7 +40,7 @@ static void put_row(FILE *out, const struct export_frame *m, const struct sheet 
 }
 
 static int text_put(FILE *out, const struct export_frame *m, enum part part, bool first, char by,
-               struct failure *failure)
+                    struct failure *failure)
 {
     struct sheet s;
     if (sheet_of(&s, part, m, failure)) return failure->status;
@@ -53,12 +53,14 @@ static int text_put(FILE *out, const struct export_frame *m, enum part part, boo
     return 0;
 }
 
-static int csv(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
+static int csv(FILE *out, const struct export_frame *m, enum part part, bool first,
+               struct failure *failure)
 {
     return text_put(out, m, part, first, ',', failure);
 }
 
-static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
+static int tsv(FILE *out, const struct export_frame *m, enum part part, bool first,
+               struct failure *failure)
 {
     return text_put(out, m, part, first, '\t', failure);
 }

@@ -30,7 +30,7 @@ static bool vtk_is_wanted(const struct sheet_column *c)
 }
 
 static int vtk_make(struct vtkhdf_cells *cells, const struct packing *p, int k, void **made,
-                struct failure *failure)
+                    struct failure *failure)
 {
     const struct export_frame m = { .packing = p, .detail = DETAIL };
     struct sheet *s = *made = calloc(1, sizeof *s);
@@ -77,7 +77,8 @@ int pvd_add(struct pvd *l, const char *name, double time, struct failure *failur
     if (fseek(l->out, -(long)strlen(tail), SEEK_END))
         return failure_set(failure, EX_IOERR, "%s.pvd: %s", name, strerror(errno));
     fprintf(l->out, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"%s\"/>\n%s", time, name, tail);
-    if (fflush(l->out)) return failure_set(failure, EX_IOERR, "%s: its list: %s", name, strerror(errno));
+    if (fflush(l->out))
+        return failure_set(failure, EX_IOERR, "%s: its list: %s", name, strerror(errno));
     return output_place(&l->file, failure); // there is something whole in it, with the first
 }
 
@@ -128,7 +129,8 @@ static void open_file(FILE *out, const char *type, const struct export_frame *m)
 }
 
 /* Points, their data and that of the cells; b[0] is the points, b[1] ... the columns. */
-static void name_columns(FILE *out, const struct sheet *s, const struct vtk_block *b, uint64_t *offset)
+static void name_columns(FILE *out, const struct sheet *s, const struct vtk_block *b,
+                         uint64_t *offset)
 {
     fprintf(out, "<Points>\n");
     name_block(out, &b[0], offset);
@@ -201,7 +203,8 @@ static int write_cells(FILE *out, const struct export_frame *m, const struct she
     return 0;
 }
 
-static int vtp(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
+static int vtp(FILE *out, const struct export_frame *m, enum part part, bool first,
+               struct failure *failure)
 {
     struct sheet s;
     (void)first;
@@ -211,7 +214,8 @@ static int vtp(FILE *out, const struct export_frame *m, enum part part, bool fir
     return 0;
 }
 
-static int vtu(FILE *out, const struct export_frame *m, enum part part, bool first, struct failure *failure)
+static int vtu(FILE *out, const struct export_frame *m, enum part part, bool first,
+               struct failure *failure)
 {
     struct sheet s;
     (void)first;

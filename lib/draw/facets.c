@@ -33,7 +33,8 @@ static void icosahedron(struct facets_triangle t[20])
 static void divide(const struct facets_triangle *t, struct facets_triangle out[4])
 {
     const vec3 a = t->corner[0], b = t->corner[1], c = t->corner[2];
-    const vec3 ab = facets_unit(v3_add(a, b)), bc = facets_unit(v3_add(b, c)), ca = facets_unit(v3_add(c, a));
+    const vec3 ab = facets_unit(v3_add(a, b)), bc = facets_unit(v3_add(b, c)),
+               ca = facets_unit(v3_add(c, a));
     out[0] = (struct facets_triangle){ { a, ab, ca } },
     out[1] = (struct facets_triangle){ { ab, b, bc } };
     out[2] = (struct facets_triangle){ { ca, bc, c } },
@@ -68,7 +69,8 @@ struct facets_sink {
     void *to;
 };
 
-static void put_ball(const struct facets_sink *out, vec3 x0, double r, quat q, const struct facets *b)
+static void put_ball(const struct facets_sink *out, vec3 x0, double r, quat q,
+                     const struct facets *b)
 {
     for (int64_t k = 0; k < b->n; k++) {
         vec3 x[3];

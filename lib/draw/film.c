@@ -95,7 +95,8 @@ static int film_start(struct film *f, struct failure *failure)
                                      f->url,     NULL };
     int end[2];
     posix_spawn_file_actions_t actions;
-    if (pipe2(end, O_CLOEXEC)) return failure_set(failure, EX_IOERR, "%s: %s", f->path, strerror(errno));
+    if (pipe2(end, O_CLOEXEC))
+        return failure_set(failure, EX_IOERR, "%s: %s", f->path, strerror(errno));
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, end[0], STDIN_FILENO);
     pid_t child;

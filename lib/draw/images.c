@@ -30,7 +30,8 @@ static bool shift_of(const struct cell *c, int k, int8_t shift[3])
 }
 
 /* Body `to` of q = body i of p, moved */
-static void images_copy_body(struct packing *q, int64_t to, const struct packing *p, int64_t i, vec3 by)
+static void images_copy_body(struct packing *q, int64_t to, const struct packing *p, int64_t i,
+                             vec3 by)
 {
     packing_copy_body(q, to, p, i);
     q->x[to] = v3_add(p->x[i], by);

@@ -14,8 +14,8 @@ struct outline_placed {
     double reach; /* m */
 };
 
-static bool add_triangle(struct outline *o, const struct outline_placed *b, int32_t face, vec3 x, vec3 y,
-                         vec3 z)
+static bool add_triangle(struct outline *o, const struct outline_placed *b, int32_t face, vec3 x,
+                         vec3 y, vec3 z)
 {
     if (o->triangles == o->triangle_room) {
         int64_t room = 2 * o->triangle_room + 256;
@@ -154,7 +154,8 @@ static int by_ends(const void *a, const void *b)
 }
 
 /* Edges that are no other triangle's, or where two meet at an angle */
-static bool add_sharp(struct outline *o, const struct outline_placed *b, struct outline_side *s, size_t n)
+static bool add_sharp(struct outline *o, const struct outline_placed *b, struct outline_side *s,
+                      size_t n)
 {
     qsort(s, n, sizeof *s, by_ends);
     for (size_t i = 0, next; i < n; i = next) {

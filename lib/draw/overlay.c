@@ -162,7 +162,8 @@ static void say_length(double m, char *text, size_t room)
 enum overlay_side { LEFT, MIDDLE, RIGHT };
 
 /* Words on the line y; returns their width. */
-static double overlay_write_words(cairo_t *cr, double x, double y, enum overlay_side side, const char *text)
+static double overlay_write_words(cairo_t *cr, double x, double y, enum overlay_side side,
+                                  const char *text)
 {
     cairo_text_extents_t e;
     cairo_text_extents(cr, text, &e);
@@ -250,8 +251,8 @@ static void draw_classes(cairo_t *cr, const struct view *v, const struct packing
 }
 
 /* What the colours of solid boundaries show: their names, or numbers */
-static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct paint *paint, double x,
-                       double y, double end)
+static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct paint *paint,
+                       double x, double y, double end)
 {
     const struct surface_meaning *m = &surface_meaning[s->by];
     double size = font_height(cr);
@@ -385,7 +386,8 @@ int overlay_draw(const struct overlay *o, const struct view *v, const struct pac
     if (!data) {
         cairo_surface_destroy(surface);
         picture_free(pic);
-        return failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", pic->width, pic->height);
+        return failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", pic->width,
+                           pic->height);
     }
     copy_pixels(pic, data, cairo_image_surface_get_stride(surface), false);
     cairo_surface_mark_dirty(surface);

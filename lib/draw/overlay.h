@@ -8,8 +8,8 @@
 #ifndef NSD_OVERLAY_H
 #define NSD_OVERLAY_H
 
-#include "state/contact.h"
 #include "draw/view.h"
+#include "state/contact.h"
 
 #include <cairo.h>
 

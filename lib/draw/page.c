@@ -64,7 +64,8 @@ static int not_written(const struct page *p, struct failure *failure)
 static int write_chunk(struct page *p, char letter, int64_t number, const struct chunk *b,
                        struct failure *failure)
 {
-    return chunk_write(p->out, letter, number, b) ? page_no_memory(failure) : not_written(p, failure);
+    return chunk_write(p->out, letter, number, b) ? page_no_memory(failure)
+                                                  : not_written(p, failure);
 }
 
 /* Writes a chunk unless it is the same as the last of its kind; frees b or keeps it. */
@@ -121,7 +122,7 @@ static void put_walls(struct chunk *b, const struct walls *w, const struct outli
     for (int i = 0; i < w->panels; i++)
         for (int c = 2; c < w->panel[i].corners; c++)
             page_put_triangle(b, w->panel[i].corner[0], w->panel[i].corner[c - 1],
-                         w->panel[i].corner[c]);
+                              w->panel[i].corner[c]);
     for (int64_t i = 0; i < o->triangles; i++) {
         const vec3 *x = o->triangle[i].corner;
         page_put_triangle(b, x[0], x[1], x[2]);
@@ -205,7 +206,7 @@ static double page_tangential(const struct found *f)
 }
 
 static void page_put_contacts(struct chunk *b, const struct page_moment *m, const struct packing *k,
-                         const struct contacts *s)
+                              const struct contacts *s)
 {
     for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].a, 4);
     for (int64_t i = 0; i < s->n; i++) chunk_put(b, &s->c[i].b, 4);
@@ -289,7 +290,8 @@ static int adopt(struct page *p, const struct packing *k, struct failure *failur
     return p->kind_name && p->kinds == k->kinds ? 0 : page_no_memory(failure);
 }
 
-int page_frame(struct page *p, const struct packing *k, const struct contacts *s, struct failure *failure)
+int page_frame(struct page *p, const struct packing *k, const struct contacts *s,
+               struct failure *failure)
 {
     struct extent r = { 0 };
     const struct contacts none = { 0 };
@@ -297,7 +299,8 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     if (k->n > INT32_MAX || s->n > INT32_MAX)
         return failure_set(failure, EX_DATAERR, "too many grains or contacts for a page");
     if (p->frames && k->dim != p->dim)
-        return failure_set(failure, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim, p->dim);
+        return failure_set(failure, EX_DATAERR, "dim is %d, that of the first frame %d", k->dim,
+                           p->dim);
     if (!p->frames && adopt(p, k, failure)) return failure->status;
     struct page_moment *m = page_add_moment(p);
     if (!m) return page_no_memory(failure);
@@ -317,7 +320,8 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     if (any && walls && write_walls(p, k, &r, failure)) return failure->status;
     if (k->shape && write_shapes(p, k, failure)) return failure->status;
     if (k->shape) m->shapes = p->shapes.n - 1;
-    if (write_grains(p, k, failure) || widen(p, m, k, s, failure) || write_frame(p, m, k, s, failure))
+    if (write_grains(p, k, failure) || widen(p, m, k, s, failure) ||
+        write_frame(p, m, k, s, failure))
         return failure->status;
     m->grains = p->grains.n - 1;
     if (any && walls) m->walls = p->walls.n - 1;
@@ -325,7 +329,8 @@ int page_frame(struct page *p, const struct packing *k, const struct contacts *s
     return 0;
 }
 
-int page_value(struct page *p, const char *name, const char *unit, double value, struct failure *failure)
+int page_value(struct page *p, const char *name, const char *unit, double value,
+               struct failure *failure)
 {
     int c = 0;
     while (c < p->curves && strcmp(p->curve[c].name, name) != 0) c++;
@@ -356,7 +361,8 @@ static void write_text(FILE *out, const char *text) // as HTML
             fputc(*text, out);
 }
 
-int page_begin(struct page *p, FILE *out, const char *name, const char *title, struct failure *failure)
+int page_begin(struct page *p, FILE *out, const char *name, const char *title,
+               struct failure *failure)
 {
     *p = (struct page){ .out = out, .name = name };
     fputs("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"

@@ -195,7 +195,7 @@ struct paint_columns {
 
 /* The first line: names. */
 static int paint_read_names(struct values *v, char *line, const char *path, const char *column,
-                      struct paint_columns *c, struct failure *failure)
+                            struct paint_columns *c, struct failure *failure)
 {
     int k = 0;
     *c = (struct paint_columns){ -1, -1, -1 };
@@ -210,7 +210,8 @@ static int paint_read_names(struct values *v, char *line, const char *path, cons
         if (!(v->name = strdup(name))) return failure_set(failure, EX_SOFTWARE, "no memory");
     }
     if (c->id < 0) return failure_set(failure, EX_DATAERR, "%s:1: no column is named id", path);
-    if (c->x < 0) return failure_set(failure, EX_DATAERR, "%s:1: no column is named %s", path, column);
+    if (c->x < 0)
+        return failure_set(failure, EX_DATAERR, "%s:1: no column is named %s", path, column);
     return 0;
 }
 
@@ -227,15 +228,16 @@ static int read_row(struct values *v, char *line, const char *path, int64_t numb
         double x = strtod(word, &end);
         bool none = k == c->x && (!strcmp(word, "null") || !strcmp(word, "nan"));
         if ((*end || (k != c->x && !(fabs(x) < 1e15))) && !none)
-            return failure_set(failure, EX_DATAERR, "%s:%lld: '%s' is no number", path, (long long)number,
-                           word);
+            return failure_set(failure, EX_DATAERR, "%s:%lld: '%s' is no number", path,
+                               (long long)number, word);
         found++;
         if (k == c->id) row->id = (int64_t)x;
         if (k == c->step) row->step = (int64_t)x;
         if (k == c->x) row->x = none ? NAN : x;
     }
     if (found < (c->step < 0 ? 2 : 3) && !(c->id == c->x && found))
-        return failure_set(failure, EX_DATAERR, "%s:%lld: too few columns", path, (long long)number);
+        return failure_set(failure, EX_DATAERR, "%s:%lld: too few columns", path,
+                           (long long)number);
     return 0;
 }
 
@@ -252,16 +254,17 @@ int values_read(struct values *v, const char *path, const char *column, struct f
     for (int64_t number = 1; !failure->status && fgets(line, LINE, in); number++) {
         if (strlen(line) == LINE - 1)
             failure_set(failure, EX_DATAERR, "%s:%lld: a line of more than %d bytes", path,
-                    (long long)number, LINE - 2);
+                        (long long)number, LINE - 2);
         else if (!file && number > MOST_PIPED)
-            failure_set(failure, EX_DATAERR, "%s: too many lines for a pipe (endless?): put it into a file",
-                    path);
+            failure_set(failure, EX_DATAERR,
+                        "%s: too many lines for a pipe (endless?): put it into a file", path);
         else if (number == 1)
             paint_read_names(v, line, path, column, &c, failure);
         else if (line[strspn(line, blank)] && *line != '#')
             read_row(v, line, path, number, &c, failure);
     }
-    if (!failure->status && ferror(in)) failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!failure->status && ferror(in))
+        failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
     if (!failure->status && !v->name) failure_set(failure, EX_DATAERR, "%s: empty", path);
     free(line), fclose(in);
     if (v->n) qsort(v->row, (size_t)v->n, sizeof *v->row, paint_compare);
@@ -278,7 +281,8 @@ static double value_at(const struct values *v, int64_t step, int64_t id)
 {
     const struct value exact = { step, id, 0 }, any = { -1, id, 0 };
     if (!v || !v->n) return NAN;
-    const struct value *found = bsearch(&exact, v->row, (size_t)v->n, sizeof *v->row, paint_compare);
+    const struct value *found =
+        bsearch(&exact, v->row, (size_t)v->n, sizeof *v->row, paint_compare);
     if (!found) found = bsearch(&any, v->row, (size_t)v->n, sizeof *v->row, paint_compare);
     return found ? found->x : NAN;
 }

@@ -16,7 +16,9 @@ int picture_init(struct picture *p, int width, int height, struct failure *failu
 {
     *p = (struct picture){ .width = width, .height = height };
     p->rgb = malloc((size_t)width * (size_t)height * 3);
-    return p->rgb ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", width, height);
+    return p->rgb
+               ? 0
+               : failure_set(failure, EX_SOFTWARE, "no memory for %d x %d pixels", width, height);
 }
 
 void picture_free(struct picture *p)
@@ -107,7 +109,8 @@ int bytes_write(const struct bytes_out *b, const char *path, struct failure *fai
     struct output o;
     if (!path) return write_open(STDOUT_FILENO, b, "standard output", failure);
     if (output_open(&o, path, failure)) return failure->status;
-    if (!picture_write_all(o.fd, b)) failure_set(failure, EX_IOERR, "%s: %s", path, strerror(errno));
+    if (!picture_write_all(o.fd, b))
+        failure_set(failure, EX_IOERR, "%s: %s", path, strerror(errno));
     return output_close(&o, failure);
 }
 

@@ -2,8 +2,8 @@
 #include "draw/raster.h"
 
 #include "base/team.h"
-#include "draw/shade.h"
 #include "draw/ray.h"
+#include "draw/shade.h"
 
 #include <stdlib.h>
 
@@ -37,9 +37,8 @@ static void raster_draw_shape(struct band *b, const struct raster *s, int64_t i)
         for (int x = t.x0; x < t.x1; x++) {
             size_t k = band_at(b, x, y);
             const double *side = s->cutting.side;
-            struct ray line = {
-                v3_axpy(v3_scale(x + 0.5 - o->x.x, right), y + 0.5 - o->x.y, down), toward, INFINITY
-            };
+            struct ray line = { v3_axpy(v3_scale(x + 0.5 - o->x.x, right), y + 0.5 - o->x.y, down),
+                                toward, INFINITY };
             double beside = side[0] * (x + 0.5) + side[1] * (y + 0.5) + side[3], at, z = o->x.z;
             vec3 n = v3(0, 0, 1);
             if (s->cutting.cuts && side[2] > 0) line.before = unit * (-beside / side[2] - o->x.z);
@@ -90,8 +89,8 @@ struct raster_run {
 };
 
 /* Those of the row y with their middle inside a polygon */
-static struct raster_run row_inside(const struct band *b, const double *px, const double *py, int corners,
-                             int y)
+static struct raster_run row_inside(const struct band *b, const double *px, const double *py,
+                                    int corners, int y)
 {
     double x0 = INFINITY, x1 = -INFINITY, at = y + 0.5;
     for (int k = 0; k < corners; k++) { // where its sides cross this row
@@ -101,7 +100,7 @@ static struct raster_run row_inside(const struct band *b, const double *px, cons
         x0 = fmin(x0, x), x1 = fmax(x1, x);
     }
     return (struct raster_run){ band_clamp(ceil(x0 - 0.5), 0, b->width),
-                         band_clamp(ceil(x1 - 0.5), 0, b->width) };
+                                band_clamp(ceil(x1 - 0.5), 0, b->width) };
 }
 
 static void draw_ground(struct band *b, const struct raster *s, int i)

@@ -86,11 +86,13 @@ bool ray_meets(const struct shape *s, const struct ray *l, double *t, vec3 *n)
     for (int32_t i = 0; i < s->vertices && (clump || s->round > 0); i++)
         ray_take(&best, ray_in_ball(l, s->vertex[i], clump ? s->ball[i] : s->round), l);
     for (int32_t k = 0; k < s->edges && hull && s->round > 0; k++)
-        ray_take(&best, ray_in_tube(l, s->vertex[s->edge[k].tail], s->vertex[s->edge[k].head], s->round),
-             l);
+        ray_take(&best,
+                 ray_in_tube(l, s->vertex[s->edge[k].tail], s->vertex[s->edge[k].head], s->round),
+                 l);
     for (int32_t f = 0; f < s->faces && hull && s->round > 0; f++)
         ray_take(&best, ray_over_face(s, l, f), l);
-    if (s->form == SHAPE_CAPSULE) ray_take(&best, ray_in_tube(l, s->vertex[0], s->vertex[1], s->round), l);
+    if (s->form == SHAPE_CAPSULE)
+        ray_take(&best, ray_in_tube(l, s->vertex[0], s->vertex[1], s->round), l);
     *t = best.hi, *n = best.n;
     return best.lo < best.hi;
 }

@@ -151,8 +151,8 @@ struct shade_turn {
 };
 
 /* (x, y, z) of the camera, in the axes of the body */
-static vec3 camera_to_body(struct shade_turn *t, const struct raster *s, int64_t body, double x, double y,
-                           double z)
+static vec3 camera_to_body(struct shade_turn *t, const struct raster *s, int64_t body, double x,
+                           double y, double z)
 {
     if (t->body != body) { // neighbouring samples mostly show the same body
         quat q = s->q[body];
@@ -173,7 +173,8 @@ static struct rgb solid_light(const struct band *b, const struct raster *s, size
     return scaled(s->pane[SOLID - b->what[k]].own, (float)light, 0);
 }
 
-static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k, struct shade_turn *t)
+static struct rgb ball_light(const struct band *b, const struct raster *s, size_t k,
+                             struct shade_turn *t)
 {
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
@@ -226,7 +227,8 @@ static struct rgb behind_glass(struct rgb seen, const struct veil *v)
     return rgb_mix(seen, scaled(glass, light, 0), 1 - v->passes);
 }
 
-static struct rgb shade_sample(const struct band *b, const struct raster *s, int x, int y, struct shade_turn *t)
+static struct rgb shade_sample(const struct band *b, const struct raster *s, int x, int y,
+                               struct shade_turn *t)
 {
     size_t k = band_at(b, x, y);
     int64_t what = b->what[k];

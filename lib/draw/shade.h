@@ -131,7 +131,6 @@ static inline size_t band_at(const struct band *b, int x, int y)
     return (size_t)(y - b->y0) * (size_t)b->width + (size_t)x;
 }
 
-
 /* In this order: b->n; b->dark; the pixels of p in the band */
 void shade_normals(struct band *b, const struct raster *s);
 void shade_near(struct band *b, const struct raster *s);

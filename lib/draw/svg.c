@@ -36,7 +36,7 @@ static void draw_core(cairo_t *cr, const struct view *v, const struct packing *p
 }
 
 static void svg_draw_shape(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
-                       struct rgb own, double r)
+                           struct rgb own, double r)
 {
     const struct rgb dark = { 0.06F, 0.06F, 0.06F };
     const struct shape *s = packing_shape(p, i);
@@ -141,7 +141,8 @@ int svg_draw(const struct overlay *o, const struct view *v, const struct packing
 {
     const struct camera *c = &v->camera;
     struct bytes_out b = { 0 };
-    if (p->dim != 2) return failure_set(failure, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
+    if (p->dim != 2)
+        return failure_set(failure, EX_DATAERR, "an SVG shows discs, and dim is %d", p->dim);
     cairo_surface_t *surface = cairo_svg_surface_create_for_stream(
         svg_keep, &b, c->width, c->height + overlay_strip(o, c->width));
     cairo_t *cr = cairo_create(surface);

@@ -1,10 +1,10 @@
 /* draw/view.c: the window of a series, and its bodies and walls placed among the samples. */
 #include "draw/view.h"
 
-#include "state/selection.h"
-#include "draw/wall_facets.h"
 #include "draw/images.h"
 #include "draw/raster.h"
+#include "draw/wall_facets.h"
+#include "state/selection.h"
 
 #include <stdlib.h>
 
@@ -137,7 +137,8 @@ static int extend_crowd(struct view *v, const struct packing *p, struct failure 
 int view_extend(struct view *v, const struct packing *p, struct failure *failure)
 {
     if (v->started && v->dim != p->dim)
-        return failure_set(failure, EX_DATAERR, "dim %d after dim %d in one series", p->dim, v->dim);
+        return failure_set(failure, EX_DATAERR, "dim %d after dim %d in one series", p->dim,
+                           v->dim);
     if (!v->started) {
         v->dim = p->dim, v->window = window_empty;
         vec3 up = v3_norm(v->up) > 0 ? v3_scale(1 / v3_norm(v->up), v->up) : walls_up(p);
@@ -276,7 +277,8 @@ static void place_cutting(struct cutting *c, const struct view *v)
 
 static void place_ground(struct ground *g, const struct view *v, const struct panel *f)
 {
-    vec3 n = camera_sees(&v->camera, f->n), foot = view_sample_of(v, v3_sub(f->corner[0], v->moved));
+    vec3 n = camera_sees(&v->camera, f->n),
+         foot = view_sample_of(v, v3_sub(f->corner[0], v->moved));
     g->n = v3(n.x, -n.y, n.z);
     if (isinf(v->camera.eye)) {
         g->plane[1] = -g->n.x / g->n.z, g->plane[2] = -g->n.y / g->n.z;
@@ -369,7 +371,8 @@ static int place_panes(struct raster *s, const struct view *v, const struct pack
     return s->pane ? 0 : -1;
 }
 
-int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct failure *failure)
+int view_draw(const struct view *v, const struct packing *p, struct picture *pic,
+              struct failure *failure)
 {
     const struct camera *c = &v->camera;
     int longer = c->width > c->height ? c->width : c->height;

@@ -27,12 +27,12 @@ struct view {
     bool follows;   /* a body stays where it is in the picture: */
     int32_t follow; /* its id */
     bool glass;     /* boundaries are half-transparent, not lines alone [draw/wall_facets.h] */
-    const struct selection *only; /* bodies that are drawn, and what joins them; NULL: all */
+    const struct selection *only;    /* bodies that are drawn, and what joins them; NULL: all */
     const struct solid_walls *solid; /* boundaries that are solid instead; NULL: none */
-    float pale;                /* 0 to 1: how much bodies are mixed with the background */
-    int width, height;         /* pixels; 0: chosen */
-    int samples;               /* a pixel is the mean of samples x samples */
-    int threads;               /* the picture does not depend on them */
+    float pale;                      /* 0 to 1: how much bodies are mixed with the background */
+    int width, height;               /* pixels; 0: chosen */
+    int samples;                     /* a pixel is the mean of samples x samples */
+    int threads;                     /* the picture does not depend on them */
     struct rgb background;
     struct paint paint;
     bool
@@ -65,6 +65,7 @@ int view_extend(struct view *v, const struct packing *p, struct failure *failure
 /* Fits the camera to all packings given to view_extend, and to the walls of this one. */
 void view_fit(struct view *v, const struct packing *p);
 /* pic = the picture, which the caller frees. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE. */
-int view_draw(const struct view *v, const struct packing *p, struct picture *pic, struct failure *failure);
+int view_draw(const struct view *v, const struct packing *p, struct picture *pic,
+              struct failure *failure);
 
 #endif

@@ -29,7 +29,8 @@ void solid_free(struct solid_walls *s)
 }
 
 /* The number that a face shows; NaN where its area has no end */
-static double value_of(const struct solid_walls *s, const struct packing *p, int32_t wall, int32_t face)
+static double value_of(const struct solid_walls *s, const struct packing *p, int32_t wall,
+                       int32_t face)
 {
     const struct face_sums *x = &p->sums.face[s->faces.first[wall] + face];
     double area = face_of_area(p, wall, face), span = p->t - p->sums.since;
@@ -39,8 +40,8 @@ static double value_of(const struct solid_walls *s, const struct packing *p, int
 }
 
 /* The name by which a face was chosen; else its own; NULL: none */
-static const char *wall_facets_name_of(const struct selection *c, const struct packing *p, int32_t wall,
-                           int32_t face)
+static const char *wall_facets_name_of(const struct selection *c, const struct packing *p,
+                                       int32_t wall, int32_t face)
 {
     for (int32_t k = 0; c->any && k < p->names.rows; k++) {
         const struct named *r = &p->names.row[k];
@@ -86,7 +87,8 @@ static struct rgb palette_colour(const struct solid_walls *s, const struct paint
     return paint->palette[(int)(255 * fmin(fmax(t, 0), 1) + 0.5)];
 }
 
-int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o, struct failure *failure)
+int solid_init(struct solid_walls *s, const struct packing *p, const struct solid_opt *o,
+               struct failure *failure)
 {
     const enum solid_by by = o->by;
     struct selection c;
@@ -126,18 +128,21 @@ static void wall_facets_add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec
     if (area > 0) g->facet[g->facets++] = (struct facet){ { a, b, c }, v3_scale(1 / area, n), own };
 }
 
-static void wall_facets_add_planes(struct glass *g, const struct packing *p, const struct glass_opt *o)
+static void wall_facets_add_planes(struct glass *g, const struct packing *p,
+                                   const struct glass_opt *o)
 {
     vec3 corner[WALLS_CORNERS];
     for (int i = 0; i < p->walls && i < WALLS_PANELS; i++) {
         int corners = walls_polygon(p, i, &o->region, corner);
         struct rgb own = wall_facets_own_of(o->solid, i, 0);
         if (corners < 3 || (own.r < 0 && (!o->glass || walls_floor(p, i, o->toward)))) continue;
-        for (int k = 2; k < corners; k++) wall_facets_add(g, own, corner[0], corner[k - 1], corner[k]);
+        for (int k = 2; k < corners; k++)
+            wall_facets_add(g, own, corner[0], corner[k - 1], corner[k]);
     }
 }
 
-int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o, struct failure *failure)
+int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o,
+               struct failure *failure)
 {
     const vec3 across = v3_sub(o->region.hi, o->region.lo);
     struct outline all;
@@ -150,7 +155,8 @@ int glass_init(struct glass *g, const struct packing *p, const struct glass_opt 
         wall_facets_add_planes(g, p, o);
         for (int64_t i = 0; i < all.triangles; i++) {
             const vec3 *x = all.triangle[i].corner;
-            struct rgb own = wall_facets_own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
+            struct rgb own =
+                wall_facets_own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
             if (own.r >= 0 || o->glass) wall_facets_add(g, own, x[0], x[1], x[2]);
         }
     } else

@@ -65,9 +65,9 @@ struct glass {
 /* Which boundaries are drawn as facets */
 struct glass_opt {
     struct extent region;
-    vec3 toward;               /* unit vector to the viewer */
+    vec3 toward;                     /* unit vector to the viewer */
     const struct solid_walls *solid; /* those that are solid; NULL: none */
-    bool glass;                /* the others, too */
+    bool glass;                      /* the others, too */
 };
 
 /* The boundaries of p inside the region, at p's time, in space; none in the plane. Planes that are drawn

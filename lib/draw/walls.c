@@ -47,7 +47,8 @@ static double walls_limit(const struct packing *p, int axis, double sign)
     double found = NAN;
     for (int i = 0; i < walls_of(p); i++) {
         vec3 x = wall_now(p, i);
-        if (!is_plane(p, i) || !is_drawn(x) || v3_dot(normal_now(p, i), walls_unit(axis, sign)) < 0.999)
+        if (!is_plane(p, i) || !is_drawn(x) ||
+            v3_dot(normal_now(p, i), walls_unit(axis, sign)) < 0.999)
             continue;
         double c = *walls_component(&x, axis);
         if (isnan(found) || sign * c > sign * found) found = c;
@@ -167,7 +168,8 @@ static bool find_region(struct extent *r, const struct packing *p, bool near)
     const vec3 up = walls_up(p);
     int upright = p->dim - 1; // the axis that is nearest to gravity
     for (int k = 0; k < p->dim; k++)
-        if (fabs(v3_dot(up, walls_unit(k, 1))) > fabs(v3_dot(up, walls_unit(upright, 1)))) upright = k;
+        if (fabs(v3_dot(up, walls_unit(k, 1))) > fabs(v3_dot(up, walls_unit(upright, 1))))
+            upright = k;
     for (int k = 0; k < p->dim; k++) {
         // wide beside the bodies, where the floor is seen; narrow above them
         double margin = size * (k == upright ? 0.04 : 0.25);
@@ -243,15 +245,16 @@ static struct walls_polygon wall_uncut(const struct packing *p, int i, vec3 midd
                                : v3_cross(n, v3(0, 1, 0));
     s = v3_scale(size / v3_norm(s), s);
     vec3 t = v3_cross(n, s);
-    if (p->dim == 2) return (struct walls_polygon){ 2, { v3_sub(foot, t), v3_add(foot, t) }, { -1, -1 } };
+    if (p->dim == 2)
+        return (struct walls_polygon){ 2, { v3_sub(foot, t), v3_add(foot, t) }, { -1, -1 } };
     struct walls_polygon g = { .count = 4, .cut = { -1, -1, -1, -1 } };
     g.p[0] = v3_sub(v3_sub(foot, s), t), g.p[1] = v3_sub(v3_add(foot, s), t);
     g.p[2] = v3_add(v3_add(foot, s), t), g.p[3] = v3_add(v3_sub(foot, s), t);
     return g;
 }
 
-static void keep_polygon(struct walls *b, const struct packing *p, int i, const struct walls_polygon *g,
-                         vec3 middle)
+static void keep_polygon(struct walls *b, const struct packing *p, int i,
+                         const struct walls_polygon *g, vec3 middle)
 {
     bool stroke = p->dim == 2;
     for (int k = 0; k < (stroke ? 1 : g->count); k++) {
@@ -267,7 +270,8 @@ static void keep_polygon(struct walls *b, const struct packing *p, int i, const 
 }
 
 /* Wall i cut by the region and by all other walls; corners from the middle */
-static struct walls_polygon wall_cut(const struct packing *p, int i, const struct extent *r, vec3 middle)
+static struct walls_polygon wall_cut(const struct packing *p, int i, const struct extent *r,
+                                     vec3 middle)
 {
     double size = v3_norm(v3_sub(r->hi, r->lo));
     if (!is_plane(p, i) || !is_drawn(wall_now(p, i))) return (struct walls_polygon){ .count = 0 };

@@ -11,8 +11,8 @@ struct background_writer {
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t changed;
     struct frame frame;
-    bool full;      /* frame is to be written, or is being */
-    bool over;      /* none comes any more */
+    bool full;              /* frame is to be written, or is being */
+    bool over;              /* none comes any more */
     struct failure failure; /* of the first that could not be */
 };
 

@@ -15,7 +15,8 @@ int background_open(struct background_writer **b, struct writer *writer, struct 
  * Writes one more frame, of which packing and contacts are copied and the rest stays as it is until
  * background_close. Waits for the one before. Returns what writer_frame returned of that.
  */
-int background_frame(struct background_writer *b, const struct frame *frame, struct failure *failure);
+int background_frame(struct background_writer *b, const struct frame *frame,
+                     struct failure *failure);
 /* Waits for the last one, and frees; NULL: nothing. */
 int background_close(struct background_writer *b, struct failure *failure);
 

@@ -15,18 +15,20 @@ int cell_tables_open(struct source *source, bool repeats[3], struct failure *fai
     for (int k = 0; there && k < 3; k++) {
         repeats[k] = !strcmp(boundary[k], "periodic");
         if (!repeats[k] && strcmp(boundary[k], "none") != 0)
-            return failure_set(failure, EX_DATAERR, "%s@boundary: '%s' is neither periodic nor none", box,
-                           boundary[k]);
+            return failure_set(failure, EX_DATAERR,
+                               "%s@boundary: '%s' is neither periodic nor none", box, boundary[k]);
         if (repeats[k] && !edges)
             return failure_set(failure, EX_DATAERR, "%s: periodic without edges", box);
     }
     if (!there && edges)
-        return failure_set(failure, EX_DATAERR, "%s@boundary: not three strings of fixed length", box);
+        return failure_set(failure, EX_DATAERR, "%s@boundary: not three strings of fixed length",
+                           box);
     return 0;
 }
 
 /* Edges, constant or of frame k: three lengths, or three vectors */
-static int cell_tables_read_edges(struct source *source, int64_t k, struct cell *c, struct failure *failure)
+static int cell_tables_read_edges(struct source *source, int64_t k, struct cell *c,
+                                  struct failure *failure)
 {
     const char *moving = "/particles/all/box/edges/value", *still = "/particles/all/box/edges";
     uint64_t shape[4];
@@ -102,9 +104,11 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
     struct cell *c = &p->cell;
     memcpy(c->repeats, repeats, sizeof c->repeats);
     if (!cell_repeats(c)) return 0;
-    if (cell_tables_read_edges(source, k, c, failure) || cell_tables_read_drive(source, c, failure) || read_size(source, c, failure) ||
+    if (cell_tables_read_edges(source, k, c, failure) ||
+        cell_tables_read_drive(source, c, failure) || read_size(source, c, failure) ||
         packing_alloc_images(p, failure) ||
-        (source_has(source, origin) && source_read(source, origin, COLUMN_F64, 3, &c->origin, failure)))
+        (source_has(source, origin) &&
+         source_read(source, origin, COLUMN_F64, 3, &c->origin, failure)))
         return failure->status;
     cell_set_rate(c, p->t);
     return source_has(source, rate)
@@ -146,7 +150,8 @@ static int write_size(hid_t file, const struct cell *c, struct failure *failure)
     if (c->size_mass > 0 &&
         (h5_write(file, "/nsd/cell/size_mass", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->size_mass),
                   "kg m2", failure) ||
-         h5_write(file, "/nsd/cell/mean", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->mean), "Pa", failure)))
+         h5_write(file, "/nsd/cell/mean", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->mean), "Pa",
+                  failure)))
         return failure->status;
     return c->factors ? h5_write(file, "/nsd/cell/factor",
                                  h5_array(H5T_NATIVE_DOUBLE, 2, shape, c->factor), "s; 1", failure)
@@ -167,8 +172,9 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct failure *fail
     bool repeats = cell_repeats(c);
     hid_t text = H5Tcopy(H5T_C_S1);
     H5Tset_size(text, repeats ? sizeof boundary[0] : sizeof none[0]);
-    int e = h5_attr(file, box, "boundary",
-                    h5_vector(text, 3, repeats ? (const void *)boundary : (const void *)none), failure);
+    int e =
+        h5_attr(file, box, "boundary",
+                h5_vector(text, 3, repeats ? (const void *)boundary : (const void *)none), failure);
     H5Tclose(text);
     if (e || !repeats) return e;
     return h5_write(file, "/particles/all/box/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, &c->origin),

@@ -129,7 +129,8 @@ static void start_beside_threads(struct child_start *s)
         child_start_reader(H5P_DEFAULT, "", s);
 }
 
-int child_start(struct child **out, int files, char *const *file, uint64_t limit, struct failure *failure)
+int child_start(struct child **out, int files, char *const *file, uint64_t limit,
+                struct failure *failure)
 {
     struct child *c = *out = calloc(1, sizeof *c);
     struct child_start s = {
@@ -188,10 +189,12 @@ static int child_gone(struct child *c, struct failure *failure)
     c->shared->where[sizeof c->shared->where - 1] = 0;
     const char *where = c->shared->where[0] ? c->shared->where : "input";
     if (signal == SIGBUS)
-        return failure_set(failure, EX_DATAERR, "%.250s: has become shorter while it was read", where);
+        return failure_set(failure, EX_DATAERR, "%.250s: has become shorter while it was read",
+                           where);
     if (limits_reason(signal, where, failure)) return failure->status;
-    return failure_set(failure, EX_DATAERR, "%.250s: libhdf5 breaks down over it (%s): damaged, or made to",
-                   where, signal ? strsignal(signal) : "it ended");
+    return failure_set(failure, EX_DATAERR,
+                       "%.250s: libhdf5 breaks down over it (%s): damaged, or made to", where,
+                       signal ? strsignal(signal) : "it ended");
 }
 
 /* All pieces of an answer, out of shared memory */
@@ -206,7 +209,8 @@ static int child_take(struct child *c, struct taker *t, struct failure *failure)
         if (!begun && t->sink.begin(&t->sink, &r)) return failure->status;
         begun = true;
         if (r.here > REQUEST_PIECE || r.here > t->size - t->done || (!r.here && t->done < t->size))
-            return failure_set(failure, EX_DATAERR, "%.250s: an answer of another size", c->shared->where);
+            return failure_set(failure, EX_DATAERR, "%.250s: an answer of another size",
+                               c->shared->where);
         const unsigned char *piece = c->shared->piece[pieces % 2];
         if (t->pour ? t->pour(t->out, piece, (size_t)r.here, failure) : 0) return failure->status;
         if (r.here && t->out && !t->pour) memcpy((char *)t->out + t->done, piece, (size_t)r.here);

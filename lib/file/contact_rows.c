@@ -24,8 +24,8 @@ static int check_shifts(const struct contacts *s, const struct cell *cell, struc
         for (int k = 0; k < 3; k++)
             if (s->c[i].shift[k] && !cell->repeats[k])
                 return failure_set(failure, EX_DATAERR,
-                               "contact %lld: shift along edge %d, which is not periodic",
-                               (long long)i, k);
+                                   "contact %lld: shift along edge %d, which is not periodic",
+                                   (long long)i, k);
     return 0;
 }
 
@@ -37,16 +37,17 @@ static int check_order(const struct contacts *s, struct failure *failure)
         int order = contact_key_order(contact_key(c), contact_key(next));
         if (order < 0) continue;
         if (order == 0)
-            return failure_set(failure, EX_DATAERR, "contact %lld: of bodies %d and %d, as the one before",
-                           (long long)i, next->a, next->b);
+            return failure_set(failure, EX_DATAERR,
+                               "contact %lld: of bodies %d and %d, as the one before", (long long)i,
+                               next->a, next->b);
         bool same_pair = c->a == next->a && c->b == next->b;
         return failure_set(failure, EX_DATAERR, "contact %lld: not sorted by its %s", (long long)i,
-                       same_pair ? "feature and shift" : "bodies");
+                           same_pair ? "feature and shift" : "bodies");
     }
     for (int64_t i = 0; s->found && i < s->n; i++)
         if (s->found[i].status < LOCAL_FREE || s->found[i].status > STATUS_SUMMED)
             return failure_set(failure, EX_DATAERR, "contact %lld: status is %d", (long long)i,
-                           s->found[i].status);
+                               s->found[i].status);
     return 0;
 }
 
@@ -55,20 +56,22 @@ static int read_bases(struct source *r, int64_t first, struct contacts *s, struc
 {
     vec3(*basis)[3] = malloc((size_t)(s->n + 1) * sizeof *basis);
     if (!basis) return failure_set(failure, EX_SOFTWARE, "no memory for /contacts/frame");
-    int e =
-        source_rows(r, "/contacts/frame", (struct slab){ COLUMN_F64, first, s->n, 9 }, basis, failure);
+    int e = source_rows(r, "/contacts/frame", (struct slab){ COLUMN_F64, first, s->n, 9 }, basis,
+                        failure);
     for (int64_t i = 0; !e && i < s->n; i++) {
         struct contact *c = &s->c[i];
         c->n = basis[i][0], c->t1 = basis[i][1];
         if (!(v3_norm(v3_sub(contact_t2(c), basis[i][2])) < 1e-6))
-            e = failure_set(failure, EX_DATAERR, "contact %lld: frame is not right-handed and orthonormal",
-                        (long long)i);
+            e = failure_set(failure, EX_DATAERR,
+                            "contact %lld: frame is not right-handed and orthonormal",
+                            (long long)i);
     }
     free(basis);
     return e;
 }
 
-static int read_moments(struct source *r, int64_t first, struct contacts *s, struct failure *failure)
+static int read_moments(struct source *r, int64_t first, struct contacts *s,
+                        struct failure *failure)
 {
     if (contacts_alloc_moment(s)) return failure_set(failure, EX_SOFTWARE, "no memory for moments");
     return source_rows(r, LAYOUT_MOMENT, (struct slab){ COLUMN_F64, first, s->n, 3 }, s->moment,
@@ -87,8 +90,8 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct failure *f
     if (source_shape(r->source, "/contacts/body", shape) != 2 ||
         (uint64_t)(first + s->n) > shape[0])
         return failure_set(failure, EX_DATAERR,
-                       "/contacts/body: fewer than the %lld contacts of its frames",
-                       (long long)(first + s->n));
+                           "/contacts/body: fewer than the %lld contacts of its frames",
+                           (long long)(first + s->n));
     s->room = s->n ? s->n : 1;
     s->c = calloc((size_t)s->room, sizeof *s->c);
     if (!s->c) return failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
@@ -164,7 +167,8 @@ static int write_moments(struct table_write *s, const struct contacts *t, struct
     return e;
 }
 
-static int contact_rows_write_forces(struct table_write *s, const struct contacts *t, double dt, struct failure *failure)
+static int contact_rows_write_forces(struct table_write *s, const struct contacts *t, double dt,
+                                     struct failure *failure)
 {
     const hsize_t shape[2] = { (hsize_t)t->n, 3 };
     vec3 *force = malloc((size_t)(t->n + 1) * sizeof *force);
@@ -172,7 +176,8 @@ static int contact_rows_write_forces(struct table_write *s, const struct contact
     for (int64_t i = 0; i < t->n; i++)
         force[i] = v3_scale(1 / dt, contact_in_space(&t->c[i], t->found[i].r));
     int e = table_write_rows(
-        s, (struct dataset){ LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N" }, failure);
+        s, (struct dataset){ LAYOUT_FORCE, COLUMN_F64, 2, shape, CHUNK_CONTACTS, force, "N" },
+        failure);
     free(force);
     return e;
 }
@@ -204,8 +209,9 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
         return failure->status;
     if (s->growing) s->contacts += t->n;
     int moved = f->moved;
-    return !first ? 0
-                  : h5_attr(s->file, "/contacts", "moved", h5_scalar(H5T_NATIVE_INT, &moved), failure);
+    return !first
+               ? 0
+               : h5_attr(s->file, "/contacts", "moved", h5_scalar(H5T_NATIVE_INT, &moved), failure);
 }
 
 static const char group[] = "/nsd/memory";
@@ -239,7 +245,8 @@ int memory_rows_read(struct memory_rows *r, struct packing *p, struct failure *f
     // before its first contact a document has no rows
     bool any = source_has(r->source, "/nsd/memory/body");
     if (at < 0) return 0;
-    if (any && table_read_span(r->source, (struct table_spans){ group, "body", 2 }, at, &span, failure))
+    if (any &&
+        table_read_span(r->source, (struct table_spans){ group, "body", 2 }, at, &span, failure))
         return failure->status;
     const int64_t start = span.start, count = span.count;
     struct memory *m = &p->memory;
@@ -248,7 +255,8 @@ int memory_rows_read(struct memory_rows *r, struct packing *p, struct failure *f
     m->on = true, m->n = count, m->room = count + 1;
     if (!any) return 0;
     struct source *s = r->source;
-    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall), failure) ||
+    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall),
+                           failure) ||
         (features(p) &&
          table_read_columns(s, group, "", start, RECORDS(layout_memory_features, count, m->recall),
                             failure)) ||

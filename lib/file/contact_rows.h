@@ -22,7 +22,8 @@ void contact_rows_close(struct contact_rows *rows);
 int contact_rows_read(struct contact_rows *rows, struct frame *frame, struct failure *failure);
 
 /* The frame's contacts, as the next block */
-int contact_rows_write(struct table_write *tables, const struct frame *frame, struct failure *failure);
+int contact_rows_write(struct table_write *tables, const struct frame *frame,
+                       struct failure *failure);
 
 /*
  * The reactions that the next step starts from, in a document, /nsd/memory [nsd-format(5)]: a

@@ -24,7 +24,8 @@ struct distributed {
     /* Shall the n bodies of a frame with these settings be taken? Else the packing has them. */
     bool (*wants)(struct distributed *e, const struct packing *settings, int64_t n);
     /* Bodies first .. first + block->n - 1, checked; blocks follow each other from 0 on. */
-    int (*take)(struct distributed *e, const struct packing *block, int64_t first, struct failure *failure);
+    int (*take)(struct distributed *e, const struct packing *block, int64_t first,
+                struct failure *failure);
     /* Fills the datasets of `file`, which is open and flushed; path: where all processes find it, NULL where
        there is no such file. EX_IOERR: not written. */
     int (*give)(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,

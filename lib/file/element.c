@@ -129,8 +129,8 @@ char *element_lines(hid_t set, size_t *length, bool *no_memory)
         hid_t type = H5Tcopy(H5T_C_S1);
         H5Tset_size(type, H5T_VARIABLE), H5Tset_cset(type, H5Tget_cset(disk));
         if (H5Dread(set, variable ? type : disk, H5S_ALL, H5S_ALL, H5P_DEFAULT, list) >= 0)
-            *no_memory = !(
-                out = element_join(variable ? list : NULL, variable ? NULL : (const char *)list, width, n));
+            *no_memory = !(out = element_join(variable ? list : NULL,
+                                              variable ? NULL : (const char *)list, width, n));
         for (hssize_t k = 0; variable && k < n; k++) H5free_memory(list[k]);
         H5Tclose(type);
     }

@@ -8,14 +8,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define EXTERNAL_HOME  "/nsd/outside"
-#define LASTS EXTERNAL_HOME "/lasting"
+#define EXTERNAL_HOME "/nsd/outside"
+#define LASTS         EXTERNAL_HOME "/lasting"
 
 /* ---- to a document ---- */
 
 /* A row of numbers of the frame */
-static struct dataset external_force_tables_row_of(const char *path, int rank, const hsize_t *shape, const void *data,
-                             const char *units)
+static struct dataset external_force_tables_row_of(const char *path, int rank, const hsize_t *shape,
+                                                   const void *data, const char *units)
 {
     return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
 }
@@ -34,15 +34,21 @@ static int write_boundaries(struct table_write *s, const struct packing *p, stru
         x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
         if (p->outside.push) push[w] = p->outside.push[w];
     }
-    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"), failure) &&
-        !table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"), failure))
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"), failure);
+    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"),
+                          failure) &&
+        !table_write_rows(
+            s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"),
+            failure))
+        table_write_rows(
+            s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"),
+            failure);
     free(x), free(push);
     return failure->status;
 }
 
 /* Of bodies, without which a column has 0 */
-static int external_force_tables_write_forces(struct table_write *s, const struct packing *p, bool any, struct failure *failure)
+static int external_force_tables_write_forces(struct table_write *s, const struct packing *p,
+                                              bool any, struct failure *failure)
 {
     int64_t n = any ? p->n : 0;
     const hsize_t shape[2] = { (hsize_t)n, 3 };
@@ -64,7 +70,8 @@ static int external_force_tables_write_forces(struct table_write *s, const struc
     return failure->status;
 }
 
-static int external_force_tables_write_words(struct table_write *s, const struct external_force *o, struct failure *failure)
+static int external_force_tables_write_words(struct table_write *s, const struct external_force *o,
+                                             struct failure *failure)
 {
     const hsize_t length = (hsize_t)o->length;
     if (table_write_span(s, EXTERNAL_HOME "/answer", s->words, o->length, failure) ||
@@ -90,8 +97,10 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
     if (!none || !rest)
         failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
     else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, failure) &&
-             !table_write_rows(
-                 s, external_force_tables_row_of(LASTS "/push", 2, walls, o->push ? o->push : rest, "N, N m"), failure) &&
+             !table_write_rows(s,
+                               external_force_tables_row_of(LASTS "/push", 2, walls,
+                                                            o->push ? o->push : rest, "N, N m"),
+                               failure) &&
              !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, failure) &&
              !table_write_rows(s,
                                (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
@@ -106,7 +115,8 @@ static int write_lasting(struct table_write *s, const struct packing *p, struct 
     return failure->status;
 }
 
-int external_force_tables_write(struct table_write *s, const struct frame *f, struct failure *failure)
+int external_force_tables_write(struct table_write *s, const struct frame *f,
+                                struct failure *failure)
 {
     const struct packing *p = &f->packing;
     const struct external_force *o = &p->outside;
@@ -116,30 +126,38 @@ int external_force_tables_write(struct table_write *s, const struct frame *f, st
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
     if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, failure) ||
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"), failure) ||
-        table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL), failure) ||
-        write_boundaries(s, p, failure) || external_force_tables_write_forces(s, p, forces, failure))
+        table_write_rows(s,
+                         external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"),
+                         failure) ||
+        table_write_rows(
+            s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL),
+            failure) ||
+        write_boundaries(s, p, failure) ||
+        external_force_tables_write_forces(s, p, forces, failure))
         return failure->status;
     return external_force_tables_write_words(s, o, failure);
 }
 
 /* ---- from a document ---- */
 
-static int read_boundaries(struct source *s, int64_t row, struct packing *p, struct failure *failure)
+static int read_boundaries(struct source *s, int64_t row, struct packing *p,
+                           struct failure *failure)
 {
     size_t n = (size_t)p->walls;
     vec3 *x = calloc(2 * n + 1, sizeof *x);
     if (!x) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
-    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x, failure) &&
-        !source_rows(s, EXTERNAL_HOME "/velocity", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n,
-                     failure) &&
+    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls },
+                     x, failure) &&
+        !source_rows(s, EXTERNAL_HOME "/velocity",
+                     (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n, failure) &&
         !external_force_alloc_push(&p->outside, p->walls, failure))
-        source_rows(s, EXTERNAL_HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, p->outside.push,
-                    failure);
+        source_rows(s, EXTERNAL_HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls },
+                    p->outside.push, failure);
     bool any = false;
     for (size_t w = 0; w < n && !failure->status; w++) {
         if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
-            failure_set(failure, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite", w);
+            failure_set(failure, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite",
+                        w);
         p->wall[w].x = x[w], p->wall[w].v = x[n + w];
         any = any || p->outside.push[w] != 0;
     }
@@ -160,7 +178,7 @@ static int read_span(struct source *s, const char *name, int64_t row, int64_t mo
     if (source_rows(s, path, number, &span->count, failure)) return failure->status;
     if (span->start >= 0 && span->count >= 0 && span->count <= most) return 0;
     return failure_set(failure, EX_DATAERR, "%s: %lld from %lld on is out of range", path,
-                   (long long)span->count, (long long)span->start);
+                       (long long)span->count, (long long)span->start);
 }
 
 static int read_forces(struct source *s, int64_t row, struct packing *p, struct failure *failure)
@@ -170,8 +188,8 @@ static int read_forces(struct source *s, int64_t row, struct packing *p, struct 
     const int64_t start = span.start, count = span.count;
     if (count != p->n)
         return failure_set(failure, EX_DATAERR,
-                       EXTERNAL_HOME "/body/count: forces of %lld bodies, and there are %lld",
-                       (long long)count, (long long)p->n);
+                           EXTERNAL_HOME "/body/count: forces of %lld bodies, and there are %lld",
+                           (long long)count, (long long)p->n);
     if (external_force_alloc(&p->outside.force, p->n, failure) ||
         external_force_alloc(&p->outside.torque, p->n, failure) ||
         source_rows(s, EXTERNAL_HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
@@ -209,15 +227,18 @@ static int read_lasting(struct source *s, struct packing *p, struct failure *fai
         return failure->status;
     const int64_t start = span.start, count = span.count;
     if (count && count != p->n)
-        return failure_set(failure, EX_DATAERR, LASTS "/count: forces of %lld bodies, and there are %lld",
-                       (long long)count, (long long)p->n);
+        return failure_set(failure, EX_DATAERR,
+                           LASTS "/count: forces of %lld bodies, and there are %lld",
+                           (long long)count, (long long)p->n);
     if (!(o->push = calloc((size_t)p->walls + 1, sizeof *o->push)))
         return failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
-    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push, failure))
+    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push,
+                    failure))
         return failure->status;
     drop_zeros(&o->push, p->walls);
     if (!count) return 0;
-    if (external_force_alloc(&o->force, p->n, failure) || external_force_alloc(&o->torque, p->n, failure) ||
+    if (external_force_alloc(&o->force, p->n, failure) ||
+        external_force_alloc(&o->torque, p->n, failure) ||
         source_rows(s, LASTS "/force", (struct slab){ COLUMN_F64, start, count, 3 }, o->force,
                     failure) ||
         source_rows(s, LASTS "/torque", (struct slab){ COLUMN_F64, start, count, 3 }, o->torque,
@@ -227,7 +248,8 @@ static int read_lasting(struct source *s, struct packing *p, struct failure *fai
     return 0;
 }
 
-static int read_words(struct source *s, int64_t row, struct external_force *o, struct failure *failure)
+static int read_words(struct source *s, int64_t row, struct external_force *o,
+                      struct failure *failure)
 {
     uint64_t shape[4];
     struct span span = { 0, 0 };
@@ -249,7 +271,8 @@ int external_force_tables_read(struct source *s, struct packing *p, struct failu
     if (read_lasting(s, p, failure)) return failure->status;
     int64_t row = table_read_row_at(s, EXTERNAL_HOME "/step", p->step, failure);
     if (failure->status || row < 0) return failure->status;
-    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g, failure) ||
+    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g,
+                    failure) ||
         source_rows(s, EXTERNAL_HOME "/friction",
                     (struct slab){ COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds }, p->mu,
                     failure) ||
@@ -275,9 +298,10 @@ int pull_tables_read(struct source *s, struct packing *p, struct failure *failur
         n[0] > 1 << 24 || m[0] > 1 << 24)
         return failure_set(failure, EX_DATAERR, FORCE_HOME ": not a table of forces");
     if (drives_alloc(&p->pulls, (int32_t)n[0], (int32_t)m[0], failure) ||
-        table_read_columns(s, FORCE_HOME, "", 0, RECORDS(layout_pull, p->pulls.n, p->pulls.drive), failure) ||
-        source_rows(s, FORCE_HOME "/row", (struct slab){ COLUMN_F64, 0, p->pulls.rows, 2 }, p->pulls.row,
-                    failure))
+        table_read_columns(s, FORCE_HOME, "", 0, RECORDS(layout_pull, p->pulls.n, p->pulls.drive),
+                           failure) ||
+        source_rows(s, FORCE_HOME "/row", (struct slab){ COLUMN_F64, 0, p->pulls.rows, 2 },
+                    p->pulls.row, failure))
         return failure->status;
     return source_attribute(s, FORCE_HOME, "acceleration",
                             (struct numbers){ COLUMN_F64, -1, &p->pulls_most }, failure);
@@ -293,7 +317,8 @@ int pull_tables_write(struct table_write *t, const struct packing *p, struct fai
                              failure) &&
         !h5_write(t->file, FORCE_HOME "/row", h5_array(H5T_NATIVE_DOUBLE, 2, shape, p->pulls.row),
                   "s; N, N m", failure))
-        h5_attr(t->file, FORCE_HOME, "acceleration", h5_scalar(H5T_NATIVE_DOUBLE, &p->pulls_most), failure);
+        h5_attr(t->file, FORCE_HOME, "acceleration", h5_scalar(H5T_NATIVE_DOUBLE, &p->pulls_most),
+                failure);
     t->growing = growing;
     return failure->status;
 }

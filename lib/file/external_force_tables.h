@@ -13,7 +13,8 @@
 /* Into a packing that has all else of its frame, its step too. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int external_force_tables_read(struct source *source, struct packing *p, struct failure *failure);
 /* A frame's part */
-int external_force_tables_write(struct table_write *tables, const struct frame *frame, struct failure *failure);
+int external_force_tables_write(struct table_write *tables, const struct frame *frame,
+                                struct failure *failure);
 
 /* Forces and torques on single bodies in a document. */
 

@@ -32,52 +32,59 @@ static double *read_vector(struct source *source, const char *group, const char 
 {
     char path[64];
     uint64_t length;
-    double *x = source_read_all(source, fclib_join(path, group, name), COLUMN_F64, &length, failure);
+    double *x =
+        source_read_all(source, fclib_join(path, group, name), COLUMN_F64, &length, failure);
     if (!x) return NULL;
     if (count >= 0 && length != (uint64_t)count)
         failure_set(failure, EX_DATAERR, "%s: %llu values, %lld are needed", path,
-                (unsigned long long)length, (long long)count);
+                    (unsigned long long)length, (long long)count);
     for (uint64_t k = 0; k < length && !failure->status; k++)
         if (!isfinite(x[k]))
-            failure_set(failure, EX_DATAERR, "%s: entry %llu is %g", path, (unsigned long long)k, x[k]);
+            failure_set(failure, EX_DATAERR, "%s: entry %llu is %g", path, (unsigned long long)k,
+                        x[k]);
     if (found) *found = (int64_t)length;
     if (!failure->status) return x;
     free(x);
     return NULL;
 }
 
-static int stored_read(struct stored *S, struct source *source, const char *group, struct failure *failure)
+static int stored_read(struct stored *S, struct source *source, const char *group,
+                       struct failure *failure)
 {
     char path[64];
     int32_t *const number[] = { &S->m, &S->n, &S->nz, &S->nzmax };
     const char *const name[] = { "m", "n", "nz", "nzmax" };
     for (int k = 0; k < 4; k++)
-        if (source_read(source, fclib_join(path, group, name[k]), COLUMN_I32, 1, number[k], failure))
+        if (source_read(source, fclib_join(path, group, name[k]), COLUMN_I32, 1, number[k],
+                        failure))
             return failure->status;
     uint64_t np = 0, ni = 0, nx = 0;
     S->p = source_read_all(source, fclib_join(path, group, "p"), COLUMN_I32, &np, failure);
-    if (S->p) S->i = source_read_all(source, fclib_join(path, group, "i"), COLUMN_I32, &ni, failure);
-    if (S->i) S->x = source_read_all(source, fclib_join(path, group, "x"), COLUMN_F64, &nx, failure);
+    if (S->p)
+        S->i = source_read_all(source, fclib_join(path, group, "i"), COLUMN_I32, &ni, failure);
+    if (S->i)
+        S->x = source_read_all(source, fclib_join(path, group, "x"), COLUMN_F64, &nx, failure);
     S->np = np, S->ni = ni, S->nx = nx;
     return S->x ? 0 : failure->status;
 }
 
 /* An m x n matrix */
 static int fclib_read_matrix(struct sparse *A, struct source *source, const char *group, int64_t m,
-                       int64_t n, struct failure *failure)
+                             int64_t n, struct failure *failure)
 {
     struct stored S = { 0 };
     int e = stored_read(&S, source, group, failure);
     if (!e && (S.m != m || S.n != n))
-        e = failure_set(failure, EX_DATAERR, "%s: is %d x %d, the vectors need %lld x %lld", group, S.m,
-                    S.n, (long long)m, (long long)n);
+        e = failure_set(failure, EX_DATAERR, "%s: is %d x %d, the vectors need %lld x %lld", group,
+                        S.m, S.n, (long long)m, (long long)n);
     if (!e) e = sparse_unpack(A, &S, group, failure);
     stored_free(&S);
     return e;
 }
 
 /* spacedim and mu, which every problem has */
-static int fclib_read_law(struct raw *R, struct source *source, const char *group, struct failure *failure)
+static int fclib_read_law(struct raw *R, struct source *source, const char *group,
+                          struct failure *failure)
 {
     char path[64];
     int32_t d;
@@ -85,13 +92,14 @@ static int fclib_read_law(struct raw *R, struct source *source, const char *grou
         return failure->status;
     if (d != 2 && d != 3) return failure_set(failure, EX_DATAERR, "%s: is %d, not 2 or 3", path, d);
     R->d = d;
-    if (!(R->mu = read_vector(source, group, "vectors/mu", -1, &R->n, failure))) return failure->status;
+    if (!(R->mu = read_vector(source, group, "vectors/mu", -1, &R->n, failure)))
+        return failure->status;
     if (R->n > INT32_MAX / d)
         return failure_set(failure, EX_DATAERR, "%s/vectors/mu: too many contacts", group);
     for (int64_t c = 0; c < R->n; c++)
         if (R->mu[c] < 0)
-            return failure_set(failure, EX_DATAERR, "%s/vectors/mu: entry %lld is %g", group, (long long)c,
-                           R->mu[c]);
+            return failure_set(failure, EX_DATAERR, "%s/vectors/mu: entry %lld is %g", group,
+                               (long long)c, R->mu[c]);
     return 0;
 }
 
@@ -99,11 +107,12 @@ static int read_local(struct raw *R, struct source *source, struct failure *fail
 {
     const char *group = "/fclib_local";
     if (source_has(source, "/fclib_local/V") || source_has(source, "/fclib_local/R"))
-        return failure_set(failure, EX_DATAERR, "%s: a mixed problem (V, R, s), which is not solved here",
-                       group);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: a mixed problem (V, R, s), which is not solved here", group);
     if (fclib_read_law(R, source, group, failure)) return failure->status;
     int64_t nd = R->n * R->d;
-    if (!(R->q = read_vector(source, group, "vectors/q", nd, NULL, failure))) return failure->status;
+    if (!(R->q = read_vector(source, group, "vectors/q", nd, NULL, failure)))
+        return failure->status;
     return fclib_read_matrix(&R->W, source, "/fclib_local/W", nd, nd, failure);
 }
 
@@ -113,12 +122,17 @@ static int read_global(struct raw *R, struct source *source, struct failure *fai
     struct global *P = &R->global;
     if (fclib_read_law(R, source, group, failure)) return failure->status;
     int64_t nd = R->n * R->d;
-    if (!(R->q = read_vector(source, group, "vectors/w", nd, NULL, failure))) return failure->status;
-    if (!(P->f = read_vector(source, group, "vectors/f", -1, &P->nv, failure))) return failure->status;
-    if (fclib_read_matrix(&P->M, source, "/fclib_global/M", P->nv, P->nv, failure)) return failure->status;
-    if (fclib_read_matrix(&P->H, source, "/fclib_global/H", P->nv, nd, failure)) return failure->status;
+    if (!(R->q = read_vector(source, group, "vectors/w", nd, NULL, failure)))
+        return failure->status;
+    if (!(P->f = read_vector(source, group, "vectors/f", -1, &P->nv, failure)))
+        return failure->status;
+    if (fclib_read_matrix(&P->M, source, "/fclib_global/M", P->nv, P->nv, failure))
+        return failure->status;
+    if (fclib_read_matrix(&P->H, source, "/fclib_global/H", P->nv, nd, failure))
+        return failure->status;
     if (!source_has(source, "/fclib_global/G")) return 0;
-    if (!(P->b = read_vector(source, group, "vectors/b", -1, &P->nl, failure))) return failure->status;
+    if (!(P->b = read_vector(source, group, "vectors/b", -1, &P->nl, failure)))
+        return failure->status;
     if (P->nl > INT32_MAX - P->nv)
         return failure_set(failure, EX_DATAERR, "%s/vectors/b: too many unknowns", group);
     return fclib_read_matrix(&P->G, source, "/fclib_global/G", P->nv, P->nl, failure);
@@ -145,8 +159,9 @@ int fclib_none(const struct source *source, struct failure *failure)
     const uint64_t *shape;
     for (int64_t k = 0; source_object(source, k, &path, &shape); k++)
         if (!strncmp(path, "/fclib", 6))
-            return failure_set(failure, EX_DATAERR, "%.*s: a kind of FCLIB problem that is not solved: %s",
-                           (int)(1 + strcspn(path + 1, "/")), path, read);
+            return failure_set(failure, EX_DATAERR,
+                               "%.*s: a kind of FCLIB problem that is not solved: %s",
+                               (int)(1 + strcspn(path + 1, "/")), path, read);
     return failure_set(failure, EX_DATAERR, "holds neither particles nor an FCLIB problem");
 }
 
@@ -169,7 +184,8 @@ int fclib_read(struct fclib *F, struct source *source, struct failure *failure)
     return e;
 }
 
-int fclib_load_solution(const struct fclib *F, struct source *source, double *r, struct failure *failure)
+int fclib_load_solution(const struct fclib *F, struct source *source, double *r,
+                        struct failure *failure)
 {
     int64_t nd = F->W.n * F->W.d;
     memset(r, 0, (size_t)nd * sizeof *r);
@@ -243,7 +259,8 @@ int fclib_store_solution(const struct fclib *F, int64_t file, const double *u, c
 }
 
 /* A compressed matrix, with libfclib's fields */
-static int stored_write(const struct stored *A, hid_t file, const char *group, struct failure *failure)
+static int stored_write(const struct stored *A, hid_t file, const char *group,
+                        struct failure *failure)
 {
     int32_t lines = A->nz == -2 ? A->m : A->n, count = A->p[lines];
     int e = write_ints(file, group, "m", 1, &A->m, failure);
@@ -276,7 +293,8 @@ static int write_bonded_MH(const struct assembly *A, hid_t file, struct failure 
     struct global P;
     struct stored M = { 0 }, H = { 0 };
     int e = bonded_global(A, &P, failure);
-    if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H))) e = fclib_short_of_memory(failure);
+    if (!e && (!stored_columns(&M, &P.M) || !stored_columns(&H, &P.H)))
+        e = fclib_short_of_memory(failure);
     if (!e) e = stored_write(&M, file, "/fclib_global/M", failure);
     if (!e) e = stored_write(&H, file, "/fclib_global/H", failure);
     if (!e) e = write_vector(file, "/fclib_global/vectors", "f", P.nv, P.f, failure);
@@ -354,7 +372,8 @@ static int write_vectors(const struct assembly *A, bool global, hid_t file, stru
 
 int fclib_write_problem(const struct problem *p, bool global, int64_t file, struct failure *failure)
 {
-    if (!p->body) return failure_set(failure, EX_SOFTWARE, "a problem given by W has no bodies to write");
+    if (!p->body)
+        return failure_set(failure, EX_SOFTWARE, "a problem given by W has no bodies to write");
     struct assembly A;
     int e = assembly_init(&A, p, failure);
     if (!e) e = write_vectors(&A, global, file, failure);

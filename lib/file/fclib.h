@@ -39,6 +39,7 @@ int fclib_store_solution(const struct fclib *problem, int64_t file, const double
                          const double *r, struct failure *failure);
 
 /* Writes a packing's contact problem with its info. Replaces any problem and solution there. */
-int fclib_write_problem(const struct problem *problem, bool global, int64_t file, struct failure *failure);
+int fclib_write_problem(const struct problem *problem, bool global, int64_t file,
+                        struct failure *failure);
 
 #endif

@@ -1,13 +1,13 @@
 #include "file/frame_read.h"
 
-#include "file/wall_tables.h"
 #include "file/cell_tables.h"
 #include "file/distributed.h"
-#include "file/roster.h"
 #include "file/external_force_tables.h"
 #include "file/pair_law_tables.h"
+#include "file/roster.h"
 #include "file/shape_tables.h"
 #include "file/wall_load_tables.h"
+#include "file/wall_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -39,8 +39,8 @@ static int frame_read_count_frames(struct frame_read *r, struct failure *failure
         layout_body_path(b, path);
         if (!(b->traits & BODY_MOVES) || b->traits & BODY_OPTIONAL) continue;
         if (source_shape(r->source, path, shape) != 3)
-            return failure_set(failure, EX_DATAERR, "%s: no dataset of shape frames x bodies x %d", path,
-                           b->column.width);
+            return failure_set(failure, EX_DATAERR, "%s: no dataset of shape frames x bodies x %d",
+                               path, b->column.width);
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     }
     if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
@@ -48,8 +48,9 @@ static int frame_read_count_frames(struct frame_read *r, struct failure *failure
     const int64_t most = (int64_t)1 << STEPS_LOG2;
     for (int64_t k = 0; k < n; k++)
         if (r->step[k] < -most || r->step[k] > most)
-            return failure_set(failure, EX_DATAERR, "/particles/all/position/step: %lld is out of range",
-                           (long long)r->step[k]);
+            return failure_set(failure, EX_DATAERR,
+                               "/particles/all/position/step: %lld is out of range",
+                               (long long)r->step[k]);
     // a killed writer may have made room for a step without setting it
     for (r->frames = n > 0; r->frames < n; r->frames++)
         if (r->step[r->frames] <= r->step[r->frames - 1]) break;
@@ -60,7 +61,8 @@ int frame_read_open(struct frame_read *r, struct source *source, struct failure 
 {
     *r = (struct frame_read){ .source = source, .frames = 1 };
     if (source_has(source, "/particles/all")) {
-        if (frame_read_count_frames(r, failure) || cell_tables_open(source, r->repeats, failure)) return failure->status;
+        if (frame_read_count_frames(r, failure) || cell_tables_open(source, r->repeats, failure))
+            return failure->status;
         if (memory_rows_open(&r->memory, source, failure)) return failure->status;
         if (source_has(source, "/contacts") && contact_rows_open(&r->contacts, source, failure))
             return failure->status;
@@ -91,12 +93,13 @@ static int read_pairs(struct source *doc, const struct column *c, bool optional,
         double *table = column_array(c, p);
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
         if (optional && !source_has(doc, path)) continue;
-        if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, failure)) return failure->status;
+        if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, failure))
+            return failure->status;
         for (int32_t a = 0; a < p->kinds; a++)
             for (int32_t b = 0; b < a; b++)
                 if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
                     return failure_set(failure, EX_DATAERR, "%s: %s and %s have two values", path,
-                                   p->kind_name[b], p->kind_name[a]);
+                                       p->kind_name[b], p->kind_name[a]);
     }
     return 0;
 }
@@ -109,7 +112,8 @@ static int frame_read_material(struct source *doc, struct packing *p, struct fai
     if (failure->status) return failure->status;
     if (kinds > KINDS_MOST) {
         free(names);
-        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: more than %d kinds", KINDS_MOST);
+        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: more than %d kinds",
+                           KINDS_MOST);
     }
     if (!kinds) {
         free(names);
@@ -137,7 +141,9 @@ static int read_overlap(struct source *doc, struct packing *p, struct failure *f
     for (int k = OVERLAP_KEEP; k < OVERLAP_COUNT; k++)
         if (!strcmp(name, overlap_name[k])) p->overlap = (enum overlap)k;
     free(name);
-    return p->overlap ? 0 : failure_set(failure, EX_DATAERR, "/nsd@overlap: no such treatment of overlap");
+    return p->overlap
+               ? 0
+               : failure_set(failure, EX_DATAERR, "/nsd@overlap: no such treatment of overlap");
 }
 
 /* Whether dt is automatic; a document need not say it. */
@@ -150,7 +156,7 @@ static int read_tolerance(struct source *doc, struct packing *p, struct failure 
         return 0;
     if (!(tolerance > 0 && tolerance <= 1))
         return failure_set(failure, EX_DATAERR,
-                       "/nsd@" LAYOUT_TOLERANCE ": not a number above 0 and at most 1");
+                           "/nsd@" LAYOUT_TOLERANCE ": not a number above 0 and at most 1");
     p->tolerance = tolerance, p->adapts = true;
     return 0;
 }
@@ -179,13 +185,14 @@ static int read_time_step(struct frame_read *r, int64_t k, double t0, struct pac
 {
     double dt;
     int halved = 0;
-    if (source_rows(r->source, LAYOUT_TIME_STEP, (struct slab){ COLUMN_F64, k, 1, 1 }, &dt, failure))
+    if (source_rows(r->source, LAYOUT_TIME_STEP, (struct slab){ COLUMN_F64, k, 1, 1 }, &dt,
+                    failure))
         return failure->status;
     bool good = dt > 0 && frexp(p->dt / dt, &halved) == 0.5 && halved >= 1 &&
                 halved <= HALVED_MOST + 1 && ldexp(dt, halved - 1) == p->dt;
     if (!good)
-        return failure_set(failure, EX_DATAERR, LAYOUT_TIME_STEP ": not /nsd@dt, halved at most %d times",
-                       HALVED_MOST);
+        return failure_set(failure, EX_DATAERR,
+                           LAYOUT_TIME_STEP ": not /nsd@dt, halved at most %d times", HALVED_MOST);
     p->adapts = true, p->halved = halved - 1, p->t0 = t0;
     packing_set_dt(p, dt);
     return 0;
@@ -193,7 +200,8 @@ static int read_time_step(struct frame_read *r, int64_t k, double t0, struct pac
 
 /* Step and time of frame k, and from where its time is counted: a document whose time is step dt need not
    say it, and what one says that contradicts its times is not believed. */
-static int frame_read_clock(struct frame_read *r, int64_t k, struct packing *p, struct failure *failure)
+static int frame_read_clock(struct frame_read *r, int64_t k, struct packing *p,
+                            struct failure *failure)
 {
     const double most = (double)((int64_t)1 << STEPS_LOG2);
     double origin[2] = { 0 };
@@ -204,7 +212,8 @@ static int frame_read_clock(struct frame_read *r, int64_t k, struct packing *p, 
         origin[0] = origin[1] = 0;
     p->step = r->step[k], p->t = r->time[k];
     packing_count_from(p, origin[0], (int64_t)origin[1]);
-    return source_has(r->source, LAYOUT_TIME_STEP) ? read_time_step(r, k, origin[0], p, failure) : 0;
+    return source_has(r->source, LAYOUT_TIME_STEP) ? read_time_step(r, k, origin[0], p, failure)
+                                                   : 0;
 }
 
 /* The bodies of frame k in rows first .. first + p->n - 1, into p; first -1: all rows that there are */
@@ -219,9 +228,11 @@ static int read_bodies(struct frame_read *r, int64_t k, int64_t first, struct pa
         if (!to || may_lack(r->source, b, path)) continue;
         if (!(b->traits & BODY_MOVES))
             source_rows(r->source, path,
-                        (struct slab){ c->type, first < 0 ? 0 : first, p->n, c->width }, to, failure);
+                        (struct slab){ c->type, first < 0 ? 0 : first, p->n, c->width }, to,
+                        failure);
         else if (first < 0)
-            source_rows(r->source, path, (struct slab){ c->type, k, 1, p->n * c->width }, to, failure);
+            source_rows(r->source, path, (struct slab){ c->type, k, 1, p->n * c->width }, to,
+                        failure);
         else
             source_part(r->source, path, k, (struct slab){ c->type, first, p->n, c->width }, to,
                         failure);
@@ -249,14 +260,17 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
                          struct failure *failure)
 {
     int dim;
-    if (source_attribute(r->source, "/nsd", "dim", (struct numbers){ COLUMN_I32, -1, &dim }, failure) ||
+    if (source_attribute(r->source, "/nsd", "dim", (struct numbers){ COLUMN_I32, -1, &dim },
+                         failure) ||
         packing_init(p, dim, n, failure) || read_parameters(r->source, p, failure) ||
         frame_read_material(r->source, p, failure) || shape_tables_read(r->source, p, failure) ||
-        boundary_tables_read(r->source, k, p, failure) || flow_tables_read(r->source, k, p, failure) ||
-        pull_tables_read(r->source, p, failure) || pair_law_tables_read(r->source, k, p, failure) ||
-        frame_read_clock(r, k, p, failure) || cell_tables_read(r->source, k, r->repeats, p, failure))
+        boundary_tables_read(r->source, k, p, failure) ||
+        flow_tables_read(r->source, k, p, failure) || pull_tables_read(r->source, p, failure) ||
+        pair_law_tables_read(r->source, k, p, failure) || frame_read_clock(r, k, p, failure) ||
+        cell_tables_read(r->source, k, r->repeats, p, failure))
         return failure->status;
-    if (flow_tables_read_numbers(r->source, p, failure) || external_force_tables_read(r->source, p, failure) ||
+    if (flow_tables_read_numbers(r->source, p, failure) ||
+        external_force_tables_read(r->source, p, failure) ||
         name_tables_read(r->source, p, failure) || sum_tables_read(r->source, k, p, failure))
         return failure->status;
     return alloc_optional(r, p, failure);
@@ -291,9 +305,11 @@ static int hand_over(struct frame_read *r, int64_t k, const struct packing *p, i
     for (int64_t first = 0; first < n && !failure->status; first += BLOCK) {
         struct packing block =
             packing_with_bodies(p, &room, 0, n - first < BLOCK ? n - first : BLOCK);
-        if (read_bodies(r, k, first, &block, failure) || packing_check_bodies(&block, first, failure) ||
+        if (read_bodies(r, k, first, &block, failure) ||
+            packing_check_bodies(&block, first, failure) ||
             r->distributed->take(r->distributed, &block, first, failure) ||
-            source_unload(r->source, failure) || source_frame(r->source, failure)) // the block is gone
+            source_unload(r->source, failure) ||
+            source_frame(r->source, failure)) // the block is gone
             break;
         for (int64_t i = 0; i < block.n; i++)
             most = most < block.radius[i] ? block.radius[i] : most;
@@ -327,8 +343,8 @@ static int read_packing(struct frame_read *r, int64_t k, struct packing *p, stru
     // no memory is allocated for bodies without positions
     if (source_shape(r->source, "/particles/all/position/value", shape) != 3 ||
         (row ? (int64_t)shape[1] < n : (int64_t)shape[1] != n)) {
-        failure_set(failure, EX_DATAERR, "/particles/all/position/value: not of shape frames x %lld x 3",
-                (long long)n);
+        failure_set(failure, EX_DATAERR,
+                    "/particles/all/position/value: not of shape frames x %lld x 3", (long long)n);
         goto end;
     }
     if (read_settings(r, k, n, p, failure) ||
@@ -351,7 +367,8 @@ static int frame_read_foreign(struct frame_read *r, struct frame *f, struct fail
         uint64_t n = (uint64_t)(W->d * W->n);
         f->u = calloc(n + 1, sizeof *f->u);
         if (!f->u) return failure_set(failure, EX_SOFTWARE, "no memory for the solution");
-        if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, failure)) return failure->status;
+        if (source_read(source, "/solution/u", COLUMN_F64, n, f->u, failure))
+            return failure->status;
     }
     return report_rows_read(&r->reports, 0, &f->report, &f->account, &f->reported, failure);
 }
@@ -370,5 +387,6 @@ int frame_read_moment(struct frame_read *r, int64_t k, struct frame *f, struct f
     }
     f->packed = true;
     if (contact_rows_read(&r->contacts, f, failure)) return failure->status;
-    return report_rows_read(&r->reports, r->step[k], &f->report, &f->account, &f->reported, failure);
+    return report_rows_read(&r->reports, r->step[k], &f->report, &f->account, &f->reported,
+                            failure);
 }

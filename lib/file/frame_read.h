@@ -25,7 +25,8 @@ struct frame_read {
 /* The source's document; it stays the source's. EX_DATAERR: there are no frames in it. */
 int frame_read_open(struct frame_read *document, struct source *source, struct failure *failure);
 /* Reads frame k into an empty frame. Everything read is checked (EX_DATAERR). */
-int frame_read_moment(struct frame_read *document, int64_t k, struct frame *frame, struct failure *failure);
+int frame_read_moment(struct frame_read *document, int64_t k, struct frame *frame,
+                      struct failure *failure);
 void frame_read_close(struct frame_read *document);
 
 #endif

@@ -1,17 +1,17 @@
 #include "file/frame_write.h"
 
-#include "file/h5.h"
-#include "file/stream.h"
-#include "file/report_rows.h"
-#include "file/wall_tables.h"
 #include "file/cell_tables.h"
 #include "file/contact_rows.h"
-#include "file/roster.h"
 #include "file/external_force_tables.h"
+#include "file/h5.h"
 #include "file/pair_law_tables.h"
+#include "file/report_rows.h"
+#include "file/roster.h"
 #include "file/shape_tables.h"
-#include "file/wall_load_tables.h"
+#include "file/stream.h"
 #include "file/unknown.h"
+#include "file/wall_load_tables.h"
+#include "file/wall_tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -44,8 +44,8 @@ static int write_parameters(hid_t file, const struct frame *f, struct failure *f
         h5_attr(file, "/nsd", "gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), failure) ||
         h5_attr(file, "/nsd", "seed", h5_scalar(H5T_NATIVE_INT64, &seed), failure) ||
         (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], failure)) ||
-        (p->tolerance > 0 &&
-         h5_attr(file, "/nsd", LAYOUT_TOLERANCE, h5_scalar(H5T_NATIVE_DOUBLE, &p->tolerance), failure)))
+        (p->tolerance > 0 && h5_attr(file, "/nsd", LAYOUT_TOLERANCE,
+                                     h5_scalar(H5T_NATIVE_DOUBLE, &p->tolerance), failure)))
         return failure->status;
     const double origin[2] = { p->t0, (double)p->step0 };
     if ((p->t0 != 0 || p->step0) &&
@@ -95,7 +95,8 @@ static int write_material(hid_t file, const struct packing *p, struct failure *f
 static int write_bodies(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     if (!s->roster && table_write_bodies(s, false, p, failure)) return failure->status;
-    if (boundary_tables_write_static(s, p, failure) || pull_tables_write(s, p, failure)) return failure->status;
+    if (boundary_tables_write_static(s, p, failure) || pull_tables_write(s, p, failure))
+        return failure->status;
     return sum_tables_write_static(s, p, failure);
 }
 
@@ -118,12 +119,12 @@ static int write_motion(struct table_write *s, const struct packing *p, struct f
 int frame_write_static(struct table_write *s, const struct frame *f, struct failure *failure)
 {
     if (write_parameters(s->file, f, failure)) return failure->status;
-    if (f->packed &&
-        (write_material(s->file, &f->packing, failure) ||
-         shape_tables_write(s->file, &f->packing, failure) || name_tables_write(s, &f->packing, failure) ||
-         pair_law_tables_write_static(s->file, &f->packing, failure) ||
-         cell_tables_write_box(s->file, &f->packing.cell, failure) ||
-         write_bodies(s, &f->packing, failure)))
+    if (f->packed && (write_material(s->file, &f->packing, failure) ||
+                      shape_tables_write(s->file, &f->packing, failure) ||
+                      name_tables_write(s, &f->packing, failure) ||
+                      pair_law_tables_write_static(s->file, &f->packing, failure) ||
+                      cell_tables_write_box(s->file, &f->packing.cell, failure) ||
+                      write_bodies(s, &f->packing, failure)))
         return failure->status;
     return unknown_write(f->unknown, s->file, f->stale && !f->foreign, failure);
 }
@@ -138,7 +139,8 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     bool linked = table_write_grows(s, from);
     const void *value = step ? (const void *)&p->step : (const void *)&p->t;
     const char *name = step ? "step" : "time";
-    if (table_write_number(s, from, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s", failure))
+    if (table_write_number(s, from, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s",
+                           failure))
         return failure->status;
     for (const struct body_column *b = body_columns; b->column.name && !linked; b++) {
         const struct column it[] = { b->column, { 0 } };
@@ -152,7 +154,8 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
 
 static int write_time_step(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    return p->adapts ? table_write_number(s, LAYOUT_TIME_STEP, COLUMN_F64, &p->dt, "s", failure) : 0;
+    return p->adapts ? table_write_number(s, LAYOUT_TIME_STEP, COLUMN_F64, &p->dt, "s", failure)
+                     : 0;
 }
 
 /* After the first frame's step: its clock is that of the particles. */
@@ -168,12 +171,14 @@ static int link_time_step(struct table_write *s, const struct packing *p, struct
 
 int frame_write_moment(struct table_write *s, const struct frame *f, struct failure *failure)
 {
-    if (f->packed && (write_motion(s, &f->packing, failure) || cell_tables_write(s, &f->packing, failure) ||
-                      write_particles_clock(s, false, &f->packing, failure) ||
-                      write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure)))
+    if (f->packed &&
+        (write_motion(s, &f->packing, failure) || cell_tables_write(s, &f->packing, failure) ||
+         write_particles_clock(s, false, &f->packing, failure) ||
+         write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure)))
         return failure->status;
     if (f->packed &&
-        (boundary_tables_write(s, &f->packing, failure) || pair_law_tables_write(s, &f->packing, failure) ||
+        (boundary_tables_write(s, &f->packing, failure) ||
+         pair_law_tables_write(s, &f->packing, failure) ||
          memory_rows_write(s, &f->packing, failure) || sum_tables_write(s, &f->packing, failure) ||
          external_force_tables_write(s, f, failure)))
         return failure->status;
@@ -188,5 +193,7 @@ int frame_write_step(struct table_write *s, const struct frame *f, struct failur
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (write_particles_clock(s, true, &f->packing, failure)) return failure->status;
     if (!first) return 0;
-    return link_time_step(s, &f->packing, failure) || flow_link(s, &f->packing, failure) ? failure->status : 0;
+    return link_time_step(s, &f->packing, failure) || flow_link(s, &f->packing, failure)
+               ? failure->status
+               : 0;
 }

@@ -51,7 +51,8 @@ static int make_parents(hid_t place, const char *path, struct failure *failure)
     const char *slash = strrchr(path, '/');
     if (!slash || slash == path) return 0;
     char *parent = strndup(path, (size_t)(slash - path));
-    int e = parent ? h5_group(place, parent, failure) : failure_set(failure, EX_SOFTWARE, "out of memory");
+    int e = parent ? h5_group(place, parent, failure)
+                   : failure_set(failure, EX_SOFTWARE, "out of memory");
     free(parent);
     return e;
 }
@@ -94,7 +95,8 @@ static hid_t space_of(const struct h5_data *data)
     return data->rank ? H5Screate_simple(data->rank, data->shape, NULL) : H5Screate(H5S_SCALAR);
 }
 
-int h5_write(hid_t place, const char *path, struct h5_data data, const char *units, struct failure *failure)
+int h5_write(hid_t place, const char *path, struct h5_data data, const char *units,
+             struct failure *failure)
 {
     if (make_parents(place, path, failure)) return failure->status;
     hid_t disk = disk_type(&data), space = space_of(&data), plist = h5_dataset_plist();
@@ -123,7 +125,8 @@ static hid_t make_attr(hid_t place, const char *path, const char *name, hid_t di
     return H5Acreate_by_name(place, path, name, disk, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
 }
 
-int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct failure *failure)
+int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data,
+            struct failure *failure)
 {
     hid_t disk = disk_type(&data), space = space_of(&data);
     hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -136,11 +139,12 @@ int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data
     return bad ? failure_set(failure, EX_IOERR, "%s@%s: cannot be written", path, name) : 0;
 }
 
-int h5_attr_text(hid_t place, const char *path, const char *name, const char *text, struct failure *failure)
+int h5_attr_text(hid_t place, const char *path, const char *name, const char *text,
+                 struct failure *failure)
 {
     if (strlen(text) > ATTRIBUTE_MOST)
-        return failure_set(failure, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d", path,
-                       name, strlen(text), ATTRIBUTE_MOST);
+        return failure_set(failure, EX_DATAERR, "%s@%s: %zu bytes, and a document has room for %d",
+                           path, name, strlen(text), ATTRIBUTE_MOST);
     hid_t type = text_type(text);
     int e = h5_attr(place, path, name, h5_scalar(type, text), failure);
     H5Tclose(type);

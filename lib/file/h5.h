@@ -65,7 +65,8 @@ int h5_write_text(hid_t place, const char *path, const char *text, struct failur
 int h5_group(hid_t place, const char *path, struct failure *failure);
 
 /* An attribute, in place of one of this name */
-int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data, struct failure *failure);
+int h5_attr(hid_t place, const char *path, const char *name, struct h5_data data,
+            struct failure *failure);
 /* A text; EX_DATAERR: longer than HDF5 has room for */
 int h5_attr_text(hid_t place, const char *path, const char *name, const char *text,
                  struct failure *failure);

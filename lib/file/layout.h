@@ -5,8 +5,8 @@
 #ifndef NSD_LAYOUT_H
 #define NSD_LAYOUT_H
 
-#include "file/h5.h"
 #include "file/frame.h"
+#include "file/h5.h"
 
 #include <stddef.h>
 #include <stdio.h>

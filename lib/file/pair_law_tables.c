@@ -17,13 +17,13 @@ static int check_symmetric(const struct packing *p, const struct column *c, cons
     for (int32_t a = 0; a < p->kinds; a++)
         for (int32_t b = 0; b < a; b++)
             if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
-                return failure_set(failure, EX_DATAERR, "%s/%s: %s and %s have two values", law, c->name,
-                               p->kind_name[b], p->kind_name[a]);
+                return failure_set(failure, EX_DATAERR, "%s/%s: %s and %s have two values", law,
+                                   c->name, p->kind_name[b], p->kind_name[a]);
     return 0;
 }
 
-static int pair_law_tables_read_columns(struct source *s, const struct column *columns, struct packing *p,
-                        struct failure *failure)
+static int pair_law_tables_read_columns(struct source *s, const struct column *columns,
+                                        struct packing *p, struct failure *failure)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
     double *table = malloc((size_t)n * sizeof *table + 1);
@@ -42,8 +42,11 @@ static int pair_law_tables_read_columns(struct source *s, const struct column *c
 
 static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct failure *failure)
 {
-    if (packing_alloc_laws(p, failure) || pair_law_tables_read_columns(s, layout_law, p, failure)) return failure->status;
-    return source_has(s, "/nsd/law/impact") ? pair_law_tables_read_columns(s, layout_impact, p, failure) : 0;
+    if (packing_alloc_laws(p, failure) || pair_law_tables_read_columns(s, layout_law, p, failure))
+        return failure->status;
+    return source_has(s, "/nsd/law/impact")
+               ? pair_law_tables_read_columns(s, layout_impact, p, failure)
+               : 0;
 }
 
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct failure *failure)
@@ -55,7 +58,8 @@ static int read_bonds(struct source *s, int64_t k, struct packing *p, struct fai
     p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
     if (!p->bonds.bond) return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     p->bonds.n = count, p->bonds.room = count + 1;
-    if (table_read_columns(s, bonds, "", start, RECORDS(layout_bonds, count, p->bonds.bond), failure) ||
+    if (table_read_columns(s, bonds, "", start, RECORDS(layout_bonds, count, p->bonds.bond),
+                           failure) ||
         !source_has(s, "/nsd/bonds/area"))
         return failure->status;
     return table_read_columns(s, bonds, "", start, RECORDS(layout_anchors, count, p->bonds.bond),

@@ -10,10 +10,12 @@
 
 /* The laws, and the bonds of frame k; nothing where there is no such group. packing_check() looks at
    the numbers. */
-int pair_law_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
+int pair_law_tables_read(struct source *source, int64_t k, struct packing *p,
+                         struct failure *failure);
 
 int pair_law_tables_write_static(hid_t file, const struct packing *p, struct failure *failure);
 /* A frame's bonds; nothing where there are no laws */
-int pair_law_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
+int pair_law_tables_write(struct table_write *tables, const struct packing *p,
+                          struct failure *failure);
 
 #endif

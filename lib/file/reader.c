@@ -188,7 +188,8 @@ int reader_last(struct reader *r, struct frame *f, bool *more, struct failure *f
         if (reader_document(r, &frames, failure)) return failure->status;
         if (frames < 0) return 0;
         if (!frames) continue;
-        if (reader_frame(r, frames - 1, f, failure) || release(r, f, failure)) return failure->status;
+        if (reader_frame(r, frames - 1, f, failure) || release(r, f, failure))
+            return failure->status;
         *more = true;
     }
 }

@@ -6,8 +6,8 @@
 #define NSD_READER_H
 
 #include "base/option.h"
-#include "file/source.h"
 #include "file/frame.h"
+#include "file/source.h"
 
 struct reader;
 
@@ -47,7 +47,8 @@ bool reader_has(const struct reader *reader, int64_t k, const struct range *step
  * Goes to the next frame of these steps (NULL: of all), across documents. *more becomes false when there
  * is none.
  */
-int reader_find(struct reader *reader, const struct range *steps, bool *more, struct failure *failure);
+int reader_find(struct reader *reader, const struct range *steps, bool *more,
+                struct failure *failure);
 /* Reads it. */
 int reader_take(struct reader *reader, struct frame *frame, struct failure *failure);
 /*

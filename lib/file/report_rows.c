@@ -49,7 +49,8 @@ int report_rows_open(struct report_rows *r, struct source *source, struct failur
     char path[80];
     r->group = source_has(r->source, LAYOUT_REPORT) ? LAYOUT_REPORT : LAYOUT_REPORT_0_1;
     snprintf(path, sizeof path, "%s/step", r->group);
-    if (source_has(r->source, path)) r->solved = table_read_steps(r->source, path, &r->solves, failure);
+    if (source_has(r->source, path))
+        r->solved = table_read_steps(r->source, path, &r->solves, failure);
     uint64_t shape[4];
     snprintf(path, sizeof path, "%s/time", r->group);
     if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
@@ -71,13 +72,16 @@ static int check_report(const struct report *rep, const char *group, struct fail
     if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
         rep->safeguarded < 0 || rep->gave_up < 0)
         return failure_set(failure, EX_DATAERR, "%s: a number of things is negative", group);
-    if (converged > 1) return failure_set(failure, EX_DATAERR, "%s/converged: is %d", group, converged);
+    if (converged > 1)
+        return failure_set(failure, EX_DATAERR, "%s/converged: is %d", group, converged);
     if (converged && !isfinite(rep->err.paper.eps_glob))
-        return failure_set(failure, EX_DATAERR, "%s: has converged with errors that are not finite", group);
+        return failure_set(failure, EX_DATAERR, "%s: has converged with errors that are not finite",
+                           group);
     return 0;
 }
 
-static int read_history(struct source *doc, const char *group, struct report *rep, struct failure *failure)
+static int read_history(struct source *doc, const char *group, struct report *rep,
+                        struct failure *failure)
 {
     uint64_t n;
     char path[80];
@@ -93,7 +97,7 @@ static int read_history(struct source *doc, const char *group, struct report *re
 
 /* Numbers of a step are finite, else it is not made; a solve of a problem without bodies may end with any errors. */
 static int report_rows_read_table(const struct report_rows *r, int64_t at, struct records records,
-                      struct failure *failure)
+                                  struct failure *failure)
 {
     return (source_has(r->source, "/particles/all") ? table_read_finite : table_read_columns)(
         r->source, r->group, "/value", at, records, failure);
@@ -113,7 +117,8 @@ static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure
         return failure_set(failure, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
     if (report_rows_read_table(r, at, RECORDS(layout_report, n, r->ahead.row), failure) ||
-        source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time, failure) ||
+        source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time,
+                    failure) ||
         account_rows_read(r->source, at, n, r->ahead.account, failure))
         return failure->status;
     for (int64_t i = 0; i < n; i++)
@@ -121,19 +126,22 @@ static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure
             return failure_set(failure, EX_DATAERR, "%s: a time is not finite", time);
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
-    if (velocity && report_rows_read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), failure))
+    if (velocity &&
+        report_rows_read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), failure))
         return failure->status;
     for (int64_t i = 0; i < n && !velocity; i++)
         r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
-    if (balanced && report_rows_read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), failure))
+    if (balanced &&
+        report_rows_read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), failure))
         return failure->status;
     bool has[PARTS];
     for (int k = 0; k < PARTS; k++) {
         snprintf(time, sizeof time, "%s/%s/value", r->group, parts[k].columns[0].name);
         has[k] = balanced && source_has(r->source, time);
-        if (has[k] && report_rows_read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), failure))
+        if (has[k] &&
+            report_rows_read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), failure))
             return failure->status;
     }
     for (int64_t i = 0; i < n; i++) {
@@ -165,7 +173,7 @@ int report_rows_read(struct report_rows *r, int64_t step, struct report *rep,
         if (!strcmp(criterion, criterion_name[c])) rep->criterion = c;
     free(method), free(criterion);
     if (failure->status || source_attribute(r->source, group, "eps",
-                                        (struct numbers){ COLUMN_F64, -1, &rep->eps }, failure))
+                                            (struct numbers){ COLUMN_F64, -1, &rep->eps }, failure))
         return failure->status;
     if (!(rep->eps >= 0 && isfinite(rep->eps)))
         return failure_set(failure, EX_DATAERR, "%s@eps: neither 0 nor a positive number", group);
@@ -239,7 +247,8 @@ struct report_rows_columns {
 
 static struct report_rows_columns columns(void)
 {
-    struct report_rows_columns t = { { { "steps", "1", COLUMN_I64, 1, offsetof(struct account, steps) } } };
+    struct report_rows_columns t = { { { "steps", "1", COLUMN_I64, 1,
+                                         offsetof(struct account, steps) } } };
     for (int k = 0; k < ACCOUNT_ROWS; k++)
         t.c[1 + k] = (struct column){ account_watched[k].name, account_watched[k].units, COLUMN_F64,
                                       4, offsetof(struct account, worst[k]) };
@@ -257,7 +266,7 @@ static int report_rows_check(const struct account *a, struct failure *failure)
                     fabs(e->bodies[0]) <= most && fabs(e->bodies[1]) <= most;
         if (!good)
             return failure_set(failure, EX_DATAERR, "%s/%s: a number is out of range", home,
-                           account_watched[k].name);
+                               account_watched[k].name);
     }
     return 0;
 }
@@ -291,7 +300,8 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
     return 0;
 }
 
-int account_rows_write(struct table_write *s, const struct account *account, struct failure *failure)
+int account_rows_write(struct table_write *s, const struct account *account,
+                       struct failure *failure)
 {
     struct report_rows_columns t = columns();
     bool first = !table_write_grows(s, "/nsd/account/steps/value");

@@ -33,7 +33,8 @@ int report_rows_read(struct report_rows *rows, int64_t step, struct report *repo
                      struct account *account, bool *there, struct failure *failure);
 
 /* The next row; texts and history are written with the first. */
-int report_rows_write(struct table_write *tables, const struct report *report, struct failure *failure);
+int report_rows_write(struct table_write *tables, const struct report *report,
+                      struct failure *failure);
 
 /*
  * The account of a run in a document, /nsd/account [nsd-format(5)]: a row for
@@ -49,6 +50,7 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
                       struct failure *failure);
 
 /* The next row, after that of the report */
-int account_rows_write(struct table_write *tables, const struct account *account, struct failure *failure);
+int account_rows_write(struct table_write *tables, const struct account *account,
+                       struct failure *failure);
 
 #endif

@@ -28,19 +28,21 @@ static int taker_begin(struct sink *sink, const struct reply *reply)
     struct taker *t = (struct taker *)sink;
     t->reply = *reply;
     t->reply.text[sizeof t->reply.text - 1] = 0;
-    if (t->budget &&
-        (budget_draw(t->budget, ANSWER, t->failure) || budget_draw(t->budget, reply->work, t->failure) ||
-         (!t->pour && budget_draw(t->budget, reply->size, t->failure))))
+    if (t->budget && (budget_draw(t->budget, ANSWER, t->failure) ||
+                      budget_draw(t->budget, reply->work, t->failure) ||
+                      (!t->pour && budget_draw(t->budget, reply->size, t->failure))))
         return t->failure->status;
     if (t->pour) t->size = reply->size;
     if (!t->out && !t->pour) {
         t->size = reply->size;
         if (reply->size > SIZE_MAX / 2 || !(t->out = malloc((size_t)reply->size + 8)))
             return failure_set(t->failure, EX_SOFTWARE, "no memory for %llu bytes of a document",
-                           (unsigned long long)reply->size);
+                               (unsigned long long)reply->size);
         memset((char *)t->out + reply->size, 0, 8);
     }
-    return reply->size == t->size ? 0 : failure_set(t->failure, EX_DATAERR, "an answer of another size");
+    return reply->size == t->size
+               ? 0
+               : failure_set(t->failure, EX_DATAERR, "an answer of another size");
 }
 
 static void *taker_room(struct sink *sink, size_t *most)

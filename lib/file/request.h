@@ -5,9 +5,9 @@
 #ifndef NSD_REQUEST_H
 #define NSD_REQUEST_H
 
-#include "file/served.h"
 #include "file/h5.h"
 #include "file/object.h"
+#include "file/served.h"
 
 #include <sys/types.h>
 

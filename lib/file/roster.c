@@ -53,14 +53,15 @@ static int roster_grow(struct roster *r, struct failure *failure)
     if (radius) r->radius = radius;
     double *mass = realloc(r->mass, room * sizeof *mass);
     if (mass) r->mass = mass;
-    if (!id || !radius || !mass) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
+    if (!id || !radius || !mass)
+        return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     r->room = (int64_t)room;
     return 0;
 }
 
 /* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
 static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t i, int64_t from,
-                      struct failure *failure)
+                             struct failure *failure)
 {
     while (from < r->rows && r->id[from] != p->id[i]) from++;
     if (from < r->rows) {
@@ -70,7 +71,9 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
     if (roster_grow(r, failure)) return -1;
     for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
         if (r->id[k] == p->id[i])
-            return failure_set(failure, EX_DATAERR, "bodies in another order than the trajectory's"), -1;
+            return failure_set(failure, EX_DATAERR,
+                               "bodies in another order than the trajectory's"),
+                   -1;
     r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
     return r->rows++;
 }
@@ -82,7 +85,8 @@ static bool roster_moves(const struct body_column *b)
 }
 
 /* The tables of bodies go on with those from `first` on, the last ones of the packing. */
-static int write_new(struct table_write *s, const struct packing *p, int64_t first, struct failure *failure)
+static int write_new(struct table_write *s, const struct packing *p, int64_t first,
+                     struct failure *failure)
 {
     const hsize_t n = (hsize_t)(p->n - first);
     for (const struct body_column *b = body_columns; b->column.name; b++) {
@@ -113,11 +117,12 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
         at = (*row)[i] + 1;
     }
     if (r->rows > (int64_t)s->most_bodies)
-        return failure_set(failure, EX_DATAERR,
-                       "the trajectory has rows for %lld bodies, and more were poured: give the "
-                       "pour a count, or "
-                       "begin a new trajectory",
-                       (long long)s->most_bodies);
+        return failure_set(
+            failure, EX_DATAERR,
+            "the trajectory has rows for %lld bodies, and more were poured: give the "
+            "pour a count, or "
+            "begin a new trajectory",
+            (long long)s->most_bodies);
     int64_t chunk = (int64_t)s->chunk_bodies;
     while (r->width < r->rows || !r->width) r->width += chunk;
     if (first < p->n || !had) return write_new(s, p, first, failure);
@@ -149,7 +154,8 @@ static int write_spread(struct roster *r, struct table_write *s, const struct bo
         memcpy(all + (size_t)row[i] * bytes, data + (size_t)i * bytes, bytes);
     const hsize_t shape[3] = { 1, (hsize_t)r->width, (hsize_t)c->width };
     int e = table_write_rows(
-        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units }, failure);
+        s, (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape, 1, all, c->units },
+        failure);
     free(all);
     return e;
 }
@@ -166,7 +172,8 @@ int roster_write(struct roster *r, struct table_write *s, const struct packing *
 
 /* ---- from a document ---- */
 
-int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure)
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n,
+                struct failure *failure)
 {
     uint64_t shape[4];
     const char *ids = "/particles/all/id/value";
@@ -207,15 +214,17 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
     const bool moving = roster_moves(b);
-    if (rank < 1 + moving) return failure_set(failure, EX_DATAERR, "%s: no dataset of bodies", path);
+    if (rank < 1 + moving)
+        return failure_set(failure, EX_DATAERR, "%s: no dataset of bodies", path);
     int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)
         return failure_set(failure, EX_DATAERR, "%s: fewer rows than bodies", path);
     size_t bytes = (size_t)c->width * column_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
     if (!all) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
-    int e = moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, failure)
-                   : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, failure);
+    int e =
+        moving ? source_rows(s, path, (struct slab){ c->type, k, 1, rows * c->width }, all, failure)
+               : source_rows(s, path, (struct slab){ c->type, 0, rows, c->width }, all, failure);
     for (int64_t i = 0; !e && i < n; i++)
         memcpy(out + (size_t)i * bytes, all + (size_t)row[i] * bytes, bytes);
     free(all);
@@ -245,7 +254,8 @@ static int write_passages(struct table_write *s, const struct column *c, int32_t
         column_gather(c, n, from, sizeof *from, data);
         const hsize_t shape[2] = { 1, (hsize_t)n };
         if (table_write_rows(
-                s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units }, failure))
+                s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units },
+                failure))
             return failure->status;
     }
     return 0;
@@ -257,7 +267,8 @@ static int write_passages(struct table_write *s, const struct column *c, int32_t
 static int write_numbers(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     if (p->first_id == s->first_id) return 0;
-    if (table_write_number(s, NUMBERS "/step", COLUMN_I64, &p->step, NULL, failure)) return failure->status;
+    if (table_write_number(s, NUMBERS "/step", COLUMN_I64, &p->step, NULL, failure))
+        return failure->status;
     return table_write_number(s, NUMBERS "/first_id", COLUMN_I32, &p->first_id, NULL, failure);
 }
 
@@ -305,7 +316,8 @@ static int32_t roster_count_of(struct source *s, const char *path, struct failur
     int rank = source_shape(s, path, shape);
     if (rank < 0 && !source_has(s, path)) return 0;
     if (rank == 2 && shape[1] <= 1000) return (int32_t)shape[1];
-    return failure_set(failure, EX_DATAERR, "%s: not of shape frames x pours or removals", path), -1;
+    return failure_set(failure, EX_DATAERR, "%s: not of shape frames x pours or removals", path),
+           -1;
 }
 
 static int read_passages(struct source *s, int64_t k, const struct column *c, int32_t n,
@@ -315,12 +327,14 @@ static int read_passages(struct source *s, int64_t k, const struct column *c, in
         char path[80];
         int64_t data[1000];
         snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, failure)) return failure->status;
+        if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, failure))
+            return failure->status;
         column_scatter(c, n, data, to, sizeof *to);
     }
     for (int32_t i = 0; i < n; i++)
         if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))
-            return failure_set(failure, EX_DATAERR, "%s: a number or mass of bodies is out of range", flow);
+            return failure_set(failure, EX_DATAERR,
+                               "%s: a number or mass of bodies is out of range", flow);
     return 0;
 }
 
@@ -341,7 +355,8 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct fa
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return failure_set(failure, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;
-    if (table_read_columns(s, events, "", start, RECORDS(layout_events, count, p->events.e), failure))
+    if (table_read_columns(s, events, "", start, RECORDS(layout_events, count, p->events.e),
+                           failure))
         return failure->status;
     for (int64_t i = 0; i < count; i++)
         if (check_event(&p->events.e[i], failure)) return failure->status;

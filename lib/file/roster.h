@@ -35,7 +35,8 @@ void roster_free(struct roster *r);
 
 /* How many bodies frame k of a document has, and which rows they are; *row is to be freed. NULL: no
    body comes or goes, the frame has them all. */
-int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n, struct failure *failure);
+int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n,
+                struct failure *failure);
 /* The bodies in these rows of frame k, into the packing's arrays of as many */
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
                 struct failure *failure);

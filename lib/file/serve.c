@@ -7,8 +7,8 @@
 #include <string.h>
 
 /* A block of a dataset, in pieces that are whole in its last dimensions. */
-static int serve_put_block(hid_t set, hid_t type, int rank, const hsize_t *first, const hsize_t *count,
-                     struct sink *sink)
+static int serve_put_block(hid_t set, hid_t type, int rank, const hsize_t *first,
+                           const hsize_t *count, struct sink *sink)
 {
     size_t most, element = H5Tget_size(type);
     hsize_t at[OBJECT_RANK] = { 0 }, n[OBJECT_RANK] = { 0 }, inner = 1, total = 1;
@@ -52,7 +52,7 @@ static const struct served_entry *find_numbers(const struct served *s, const str
     const struct served_entry *e = served_find(s, q->path, failure);
     if (!e || element_suits(&e->object, q->type)) return e;
     failure_set(failure, EX_DATAERR, "%s: %s are needed, and it holds something else", q->path,
-            element_wanted(q->type));
+                element_wanted(q->type));
     return NULL;
 }
 
@@ -76,7 +76,7 @@ static int answer_block(struct served *s, const struct served_entry *e, const st
               serve_put_block(set, column_native(q->type), (int)o->rank, b->first, b->count, sink);
     if (set != e->set) H5Dclose(set);
     return bad ? failure_set(failure, EX_DATAERR, "%s: cannot be read as %s (damaged?)", q->path,
-                         element_wanted(q->type))
+                             element_wanted(q->type))
                : 0;
 }
 
@@ -96,7 +96,7 @@ static int answer_rows(struct served *s, const struct request *q, struct sink *s
     if (!all && (!o->rank || q->start < 0 || rows < (hsize_t)q->start ||
                  rows - (hsize_t)q->start < (hsize_t)q->n || row != (hsize_t)q->width))
         return failure_set(failure, EX_DATAERR, "%s: not of %lld rows of %lld numbers", q->path,
-                       (long long)(q->start + q->n), (long long)q->width);
+                           (long long)(q->start + q->n), (long long)q->width);
     if (!all) b.first[0] = (hsize_t)q->start, b.count[0] = (hsize_t)q->n, rows = b.count[0];
     b.stored = rows * row;
     return answer_block(s, e, q, &b, sink, failure);
@@ -155,8 +155,9 @@ static int answer_text(struct served *s, const struct request *q, struct sink *s
     if (failure->status) return free(text), failure->status;
     if (!text)
         return failure_set(failure, EX_DATAERR, "%s%s%s: %s", path, q->name[0] ? "@" : "", q->name,
-                       is_text ? "cannot be read as a text (damaged?)" : "a text is needed");
-    if (sink_bytes(sink, &reply, text, length)) failure_set(failure, EX_SOFTWARE, "%s: not sent", path);
+                           is_text ? "cannot be read as a text (damaged?)" : "a text is needed");
+    if (sink_bytes(sink, &reply, text, length))
+        failure_set(failure, EX_SOFTWARE, "%s: not sent", path);
     free(text);
     return failure->status;
 }
@@ -166,7 +167,8 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
 {
     const char *path = *q->path ? q->path : "/";
     hid_t attr = H5Aopen_by_name(s->file, path, q->name, H5P_DEFAULT, H5P_DEFAULT);
-    if (attr < 0) return failure_set(failure, EX_DATAERR, "%s@%s: no such attribute", path, q->name);
+    if (attr < 0)
+        return failure_set(failure, EX_DATAERR, "%s@%s: no such attribute", path, q->name);
     hid_t disk = H5Aget_type(attr), space = H5Aget_space(attr);
     hssize_t points = space < 0 ? -1 : H5Sget_simple_extent_npoints(space),
              want = q->n < 0 ? 1 : q->n;
@@ -175,10 +177,11 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
     struct reply reply = { 0 };
     if (disk >= 0) element_describe(disk, &o);
     if (!element_suits(&o, q->type))
-        failure_set(failure, EX_DATAERR, "%s@%s: %s are needed", path, q->name, element_wanted(q->type));
+        failure_set(failure, EX_DATAERR, "%s@%s: %s are needed", path, q->name,
+                    element_wanted(q->type));
     else if (points != want || want > 16)
         failure_set(failure, EX_DATAERR, "%s@%s: %lld values, %lld are needed", path, q->name,
-                (long long)points, (long long)want);
+                    (long long)points, (long long)want);
     else if (want && H5Aread(attr, column_native(q->type), numbers) < 0)
         failure_set(failure, EX_DATAERR, "%s@%s: cannot be read", path, q->name);
     else if (sink_bytes(sink, &reply, numbers, (size_t)want * column_size(q->type)))
@@ -189,7 +192,8 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
     return failure->status;
 }
 
-static int answer_raw(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
+static int answer_raw(struct served *s, const struct request *q, struct sink *sink,
+                      struct failure *failure)
 {
     const struct served_entry *e = served_find(s, q->path, failure);
     if (!e) return failure->status;
@@ -198,21 +202,23 @@ static int answer_raw(struct served *s, const struct request *q, struct sink *si
     for (uint32_t k = 0; k < o->rank && o->rank <= OBJECT_RANK; k++) points *= e->shape[k];
     if (o->rank > OBJECT_RANK || !o->size || o->size > REQUEST_PIECE ||
         (o->kind != OBJECT_NUMBERS && o->kind != OBJECT_TEXT))
-        return failure_set(failure, EX_DATAERR, "%s: holds something that cannot be copied", q->path);
+        return failure_set(failure, EX_DATAERR, "%s: holds something that cannot be copied",
+                           q->path);
     if (served_stored(e, points * o->size, failure)) return failure->status;
     hid_t set = served_set(s, e, failure), type = element_type(o);
     if (set < 0) return failure->status;
     struct reply reply = { .there = true, .size = points * o->size };
     hid_t disk = o->class == 's' ? H5Dget_type(set) : -1;
     if (disk >= 0) H5Tset_cset(type, H5Tget_cset(disk)), H5Tclose(disk);
-    int bad =
-        sink->begin(sink, &reply) || serve_put_block(set, type, (int)o->rank, first, e->shape, sink);
+    int bad = sink->begin(sink, &reply) ||
+              serve_put_block(set, type, (int)o->rank, first, e->shape, sink);
     if (o->class == 's') H5Tclose(type);
     if (set != e->set) H5Dclose(set);
     return bad ? failure_set(failure, EX_DATAERR, "%s: cannot be read (damaged?)", q->path) : 0;
 }
 
-int serve_answer(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
+int serve_answer(struct served *s, const struct request *q, struct sink *sink,
+                 struct failure *failure)
 {
     switch (q->op) {
     case REQUEST_ROWS:
@@ -286,9 +292,9 @@ static int serve_gather(struct serve_gathered *g, const char *name, hid_t attr)
     const void *from = text ? text : data;
     if (disk < 0 || space < 0 || (!from && o.kind != OBJECT_OTHER)) {
         free(text), free(data);
-        return no_memory
-                   ? failure_set(g->failure, EX_SOFTWARE, "no memory for attributes")
-                   : failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be read (damaged?)", g->path, name);
+        return no_memory ? failure_set(g->failure, EX_SOFTWARE, "no memory for attributes")
+                         : failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be read (damaged?)",
+                                       g->path, name);
     }
     char under[OBJECT_PATH + OBJECT_NAME];
     snprintf(under, sizeof under, "%s@%s", g->path, name);
@@ -304,17 +310,21 @@ static herr_t gather_attribute(hid_t from, const char *name, const H5A_info_t *i
     (void)info;
     struct serve_gathered *g = data;
     if (g->count++ == MOST_ATTRIBUTES)
-        return failure_set(g->failure, EX_DATAERR, "%s: more than %d attributes", g->path, MOST_ATTRIBUTES),
+        return failure_set(g->failure, EX_DATAERR, "%s: more than %d attributes", g->path,
+                           MOST_ATTRIBUTES),
                -1;
     hid_t attr = H5Aopen(from, name, H5P_DEFAULT);
     if (attr < 0)
-        return failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path, name), -1;
+        return failure_set(g->failure, EX_DATAERR, "%s@%s: cannot be opened (damaged?)", g->path,
+                           name),
+               -1;
     int e = serve_gather(g, name, attr);
     H5Aclose(attr);
     return e ? -1 : 0;
 }
 
-int serve_attributes(struct served *s, const struct request *q, struct sink *sink, struct failure *failure)
+int serve_attributes(struct served *s, const struct request *q, struct sink *sink,
+                     struct failure *failure)
 {
     struct serve_gathered g = { .path = *q->path ? q->path : "/", .failure = failure };
     struct reply reply = { 0 };

@@ -68,7 +68,8 @@ struct walk {
 static int check_storage(hid_t plist, struct served_entry *e, struct failure *failure)
 {
     if (H5Pget_layout(plist) == H5D_VIRTUAL)
-        return failure_set(failure, EX_DATAERR, "%s: a virtual dataset, of data in other files", e->path);
+        return failure_set(failure, EX_DATAERR, "%s: a virtual dataset, of data in other files",
+                           e->path);
     if (H5Pget_external_count(plist) != 0)
         return failure_set(failure, EX_DATAERR, "%s: its data are in another file", e->path);
     int filters = H5Pget_nfilters(plist);
@@ -79,8 +80,8 @@ static int check_storage(hid_t plist, struct served_entry *e, struct failure *fa
             H5Pget_filter2(plist, (unsigned)k, &flags, &values, NULL, 0, NULL, &config);
         if (f != H5Z_FILTER_DEFLATE && f != H5Z_FILTER_SHUFFLE && f != H5Z_FILTER_FLETCHER32 &&
             f != H5Z_FILTER_SZIP)
-            return failure_set(failure, EX_DATAERR, "%s: packed by a filter (%d) that is not built in",
-                           e->path, (int)f);
+            return failure_set(failure, EX_DATAERR,
+                               "%s: packed by a filter (%d) that is not built in", e->path, (int)f);
         e->packed |= f == H5Z_FILTER_DEFLATE || f == H5Z_FILTER_SZIP;
     }
     return filters < 0 ? failure_set(failure, EX_DATAERR, "%s: damaged filters", e->path) : 0;
@@ -109,12 +110,13 @@ static int count_bytes(struct served *s, const struct served_entry *e, struct fa
     if (__builtin_add_overflow(s->unpacked, e->bytes, &s->unpacked)) s->unpacked = UINT64_MAX;
     if (s->unpacked <= s->limit) return 0;
     return failure_set(failure, EX_DATAERR,
-                   "%s: with it the file declares %llu MB in %llu kB (--unpack allows more)",
-                   e->path, (unsigned long long)(s->unpacked / 1000000),
-                   (unsigned long long)(s->size / 1000 + 1));
+                       "%s: with it the file declares %llu MB in %llu kB (--unpack allows more)",
+                       e->path, (unsigned long long)(s->unpacked / 1000000),
+                       (unsigned long long)(s->size / 1000 + 1));
 }
 
-static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, struct failure *failure)
+static int look_at_shape(struct served *s, hid_t set, struct served_entry *e,
+                         struct failure *failure)
 {
     hid_t disk = H5Dget_type(set), space = H5Dget_space(set);
     hsize_t shape[H5S_MAX_RANK] = { 0 };
@@ -136,16 +138,19 @@ static int look_at_shape(struct served *s, hid_t set, struct served_entry *e, st
     return count_bytes(s, e, failure);
 }
 
-static int look_at_dataset(struct served *s, hid_t set, struct served_entry *e, struct failure *failure)
+static int look_at_dataset(struct served *s, hid_t set, struct served_entry *e,
+                           struct failure *failure)
 {
     hid_t plist = H5Dget_create_plist(set);
-    int status = plist < 0 ? failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
-                           : check_storage(plist, e, failure);
+    int status = plist < 0
+                     ? failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path)
+                     : check_storage(plist, e, failure);
     s->chunked |= plist >= 0 && H5Pget_layout(plist) == H5D_CHUNKED;
     if (!status) status = look_at_shape(s, set, e, failure);
     if (!status) set = open_again(set, plist, e);
     if (plist >= 0) H5Pclose(plist);
-    if (set < 0) return failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
+    if (set < 0)
+        return failure_set(failure, EX_DATAERR, "%s: cannot be opened (damaged?)", e->path);
     e->set = set, e->owner = true;
     if (s->count >= OPEN_SETS) H5Dclose(set), e->set = -1, e->owner = false;
     return status;
@@ -155,19 +160,21 @@ static struct served_entry *add_entry(struct walk *w, const char *name)
 {
     struct served *s = w->served;
     if (s->count == MOST_OBJECTS)
-        return failure_set(w->failure, EX_DATAERR, "%s: more than %d objects (a group in itself?)", w->path,
-                       MOST_OBJECTS),
+        return failure_set(w->failure, EX_DATAERR, "%s: more than %d objects (a group in itself?)",
+                           w->path, MOST_OBJECTS),
                NULL;
     if (s->count == s->room) {
         int64_t room = s->room ? 2 * s->room : 128;
         struct served_entry *more = realloc(s->entry, (size_t)room * sizeof *more);
-        if (!more) return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
+        if (!more)
+            return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
         s->entry = more, s->room = room;
     }
     struct served_entry *e = &s->entry[s->count];
     size_t length = strlen(w->path) + strlen(name) + 2;
     *e = (struct served_entry){ .set = -1, .address = HADDR_UNDEF, .path = malloc(length) };
-    if (!e->path) return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
+    if (!e->path)
+        return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
     snprintf(e->path, length, "%s/%s", w->path, name);
     s->count++;
     if (length > OBJECT_PATH)
@@ -180,7 +187,8 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
 static int look_into_group(struct walk *w, hid_t group, const char *path)
 {
     if (w->depth == MOST_DEPTH)
-        return failure_set(w->failure, EX_DATAERR, "%s: groups more than %d deep", path, MOST_DEPTH);
+        return failure_set(w->failure, EX_DATAERR, "%s: groups more than %d deep", path,
+                           MOST_DEPTH);
     struct walk in = { w->served, path, w->depth + 1, w->failure };
     if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, NULL, look_at_link, &in) < 0)
         failure_set(w->failure, EX_DATAERR, "%s: cannot be listed (damaged?)", *path ? path : "/");
@@ -214,7 +222,8 @@ static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info,
     struct walk *w = data;
     if (is_for_vtk(w, from, name)) return 0;
     if (info->type != H5L_TYPE_HARD && info->type != H5L_TYPE_SOFT)
-        return failure_set(w->failure, EX_DATAERR, "%s/%.200s: a link into another file", w->path, name),
+        return failure_set(w->failure, EX_DATAERR, "%s/%.200s: a link into another file", w->path,
+                           name),
                -1;
     if (!*name || strchr(name, '/') || !strcmp(name, ".") || !strcmp(name, ".."))
         return failure_set(w->failure, EX_DATAERR, "%s/%.200s: not a name", w->path, name), -1;
@@ -254,7 +263,8 @@ static int sort_entries(struct served *s, struct failure *failure)
     return 0;
 }
 
-int served_open(struct served *s, hid_t file, uint64_t size, uint64_t limit, struct failure *failure)
+int served_open(struct served *s, hid_t file, uint64_t size, uint64_t limit,
+                struct failure *failure)
 {
     *s = (struct served){ .file = file, .size = size, .limit = budget_unpacked(size, limit) };
     struct walk root = { s, "", 0, failure };
@@ -300,6 +310,6 @@ int served_stored(const struct served_entry *e, uint64_t bytes, struct failure *
 {
     if (bytes <= FREE_FILL || bytes - FREE_FILL <= e->stored) return 0;
     if (e->packed && e->stored && bytes / 1100 <= e->stored) return 0; // gzip packs 1032 to 1
-    return failure_set(failure, EX_DATAERR, "%s: %llu bytes are declared, and %llu are stored", e->path,
-                   (unsigned long long)bytes, (unsigned long long)e->stored);
+    return failure_set(failure, EX_DATAERR, "%s: %llu bytes are declared, and %llu are stored",
+                       e->path, (unsigned long long)bytes, (unsigned long long)e->stored);
 }

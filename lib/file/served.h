@@ -45,7 +45,6 @@ void budget_open(struct budget *budget, uint64_t size, uint64_t allowed);
 int budget_frame(struct budget *budget, struct failure *failure);
 int budget_draw(struct budget *budget, uint64_t bytes, struct failure *failure);
 
-
 /* What a walk has found under one name. */
 struct served_entry {
     char *path;      /* absolute */
@@ -78,13 +77,16 @@ void served_start(void);
  * Takes the file over, to be closed by served_close even after a failure here, and looks at all that
  * is in it. limit 0: the usual one. EX_DATAERR: it is more than one file, or holds too much.
  */
-int served_open(struct served *served, hid_t file, uint64_t size, uint64_t limit, struct failure *failure);
+int served_open(struct served *served, hid_t file, uint64_t size, uint64_t limit,
+                struct failure *failure);
 void served_close(struct served *served);
 
 /* What is under this name; NULL: nothing. */
-struct served_entry *served_find(const struct served *served, const char *path, struct failure *failure);
+struct served_entry *served_find(const struct served *served, const char *path,
+                                 struct failure *failure);
 /* Its dataset, to be closed unless it is entry->set; -1 on failure. */
-hid_t served_set(const struct served *served, const struct served_entry *entry, struct failure *failure);
+hid_t served_set(const struct served *served, const struct served_entry *entry,
+                 struct failure *failure);
 /* Is as much stored as is wanted of the dataset's first bytes? 0, or EX_DATAERR. */
 int served_stored(const struct served_entry *entry, uint64_t bytes, struct failure *failure);
 

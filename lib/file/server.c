@@ -1,7 +1,7 @@
 #include "file/server.h"
 
-#include "base/embedded.h"
 #include "base/bounded.h"
+#include "base/embedded.h"
 #include "file/serve.h"
 #include "file/stream.h"
 
@@ -138,7 +138,8 @@ static int open_image(struct server *s, const struct image *im, struct failure *
 /* A block that was read while it was being written contradicts its checksum: a moment later it does not. */
 static bool is_torn(const struct server *s, const struct image *im, const struct failure *failure)
 {
-    if (failure->status != EX_DATAERR || !im->unfinished || !stream_changed(s->stream)) return false;
+    if (failure->status != EX_DATAERR || !im->unfinished || !stream_changed(s->stream))
+        return false;
     usleep(PAUSE);
     return true;
 }

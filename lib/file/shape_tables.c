@@ -68,8 +68,9 @@ struct shape_tables_place {
 };
 
 /* The shape of a row, and the lists from `at` on, which moves on; nothing to free where it fails */
-static int shape_tables_make_shape(struct source *r, struct shape *s, const struct shape_tables_row *row, struct shape_tables_place *at,
-                      int dim, struct failure *failure)
+static int shape_tables_make_shape(struct source *r, struct shape *s,
+                                   const struct shape_tables_row *row,
+                                   struct shape_tables_place *at, int dim, struct failure *failure)
 {
     const struct listing *l = at->of;
     if (row->vertices < 0 || row->faces < 0 || row->corners < 0 ||
@@ -102,12 +103,13 @@ static int shape_tables_make_shape(struct source *r, struct shape *s, const stru
 struct shape_tables_table {
     int32_t n;
     const struct shape_tables_row *row; /* [n] */
-    const char *names;     /* a line each */
+    const char *names;                  /* a line each */
     struct listing lists;
 };
 
 /* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
-static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t, struct failure *failure)
+static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t,
+                       struct failure *failure)
 {
     const char *names = t->names;
     struct shape_tables_place at = { .of = &t->lists };
@@ -121,7 +123,8 @@ static int make_shapes(struct source *r, struct packing *p, const struct shape_t
         names = end + 1;
         shape_tables_make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
         if (trouble.status)
-            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name ? name : "", trouble.text);
+            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name ? name : "",
+                        trouble.text);
         if (trouble.status) free(name);
         s.name = trouble.status ? NULL : name;
         bool twice = !failure->status && name && shapes_find(&p->shapes, name) >= 0;
@@ -140,9 +143,11 @@ int shape_tables_read(struct source *r, struct packing *p, struct failure *failu
         return failure_set(failure, EX_DATAERR, SHAPE "/form: not a list of shapes");
     struct shape_tables_row *row = calloc((size_t)n[0], sizeof *row);
     char *names = row ? source_text(r, SHAPE, "names", failure) : NULL;
-    if (!row || (!names && !failure->status)) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    if (!row || (!names && !failure->status))
+        failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     t.n = (int32_t)n[0], t.row = row, t.names = names;
-    if (!failure->status && !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), failure) &&
+    if (!failure->status &&
+        !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), failure) &&
         !read_lists(r, &t.lists, failure))
         make_shapes(r, p, &t, failure);
     listing_drop(&t.lists);
@@ -161,12 +166,12 @@ static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct fa
     for (int32_t k = 1; k < t->n && row && out; k++) {
         const struct shape *s = &t->s[k];
         row[k - 1] = (struct shape_tables_row){ s->form,
-                                   s->vertices,
-                                   s->faces,
-                                   s->corners,
-                                   s->round,
-                                   s->volume,
-                                   { s->moment[0], s->moment[1], s->moment[2] } };
+                                                s->vertices,
+                                                s->faces,
+                                                s->corners,
+                                                s->round,
+                                                s->volume,
+                                                { s->moment[0], s->moment[1], s->moment[2] } };
     }
     for (const struct column *c = layout_rows; c->name && !failure->status; c++) {
         char path[80];
@@ -209,7 +214,8 @@ static int write_lists(hid_t file, const struct shapes *t, struct failure *failu
         h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
                  failure) ||
         h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", failure) ||
-        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1", failure);
+        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1",
+                 failure);
     listing_drop(&l);
     return bad ? failure->status : 0;
 }
@@ -218,7 +224,9 @@ int shape_tables_write(hid_t file, const struct packing *p, struct failure *fail
 {
     size_t length = 1;
     if (p->shapes.n < 2) return 0;
-    if (shape_tables_write_rows(file, &p->shapes, failure) || write_lists(file, &p->shapes, failure)) return failure->status;
+    if (shape_tables_write_rows(file, &p->shapes, failure) ||
+        write_lists(file, &p->shapes, failure))
+        return failure->status;
     for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
     char *names = calloc(length, 1), *at = names;
     if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");

@@ -49,7 +49,8 @@ const char *source_where(const struct source *s)
     return s->where;
 }
 
-static int source_ask(struct source *s, const struct request *q, struct taker *t, struct failure *failure)
+static int source_ask(struct source *s, const struct request *q, struct taker *t,
+                      struct failure *failure)
 {
     void *given = t->out;
     int e;
@@ -157,7 +158,8 @@ int source_pour(struct source *s, source_sink pour, void *to, struct failure *fa
     return source_ask(s, &q, &t, failure);
 }
 
-int source_rows(struct source *s, const char *path, struct slab rows, void *out, struct failure *failure)
+int source_rows(struct source *s, const char *path, struct slab rows, void *out,
+                struct failure *failure)
 {
     const enum column_type type = rows.type;
     const int64_t start = rows.start, n = rows.n, width = rows.width;
@@ -231,7 +233,7 @@ int source_read(struct source *s, const char *path, enum column_type type, uint6
         memcpy(out, data, (size_t)count * column_size(type));
     else
         failure_set(failure, EX_DATAERR, "%s: %llu values, %llu are needed", path,
-                (unsigned long long)found, (unsigned long long)count);
+                    (unsigned long long)found, (unsigned long long)count);
     free(data);
     return failure->status;
 }
@@ -302,7 +304,8 @@ bool source_texts(struct source *s, const char *path, const char *name, int coun
     uint64_t size = 0, at = 0;
     struct listed l;
     bool there = false;
-    unsigned char *bytes = source_attributes(s, path, &size, failure); // the list was too long for it
+    unsigned char *bytes =
+        source_attributes(s, path, &size, failure); // the list was too long for it
     while (bytes && object_unpack(bytes, size, &at, &l))
         if (!strcmp(l.path, name)) there = cut_texts(&l, count, out);
     free(bytes);

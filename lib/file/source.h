@@ -88,7 +88,8 @@ int source_read(struct source *source, const char *path, enum column_type type, 
 void *source_read_all(struct source *source, const char *path, enum column_type type,
                       uint64_t *count, struct failure *failure);
 /* A scalar string, of an attribute unless name is NULL. NULL: there is none, or failure. */
-char *source_text(struct source *source, const char *path, const char *name, struct failure *failure);
+char *source_text(struct source *source, const char *path, const char *name,
+                  struct failure *failure);
 /* A list of strings, each ended by a newline, of a dataset. NULL: there is none, or failure. */
 char *source_lines(struct source *source, const char *path, struct failure *failure);
 /* Numbers that are wanted, and where they go */
@@ -109,6 +110,7 @@ bool source_texts(struct source *source, const char *path, const char *name, int
 /* All of a dataset in its own plain type; to be freed. */
 void *source_raw(struct source *source, const char *path, uint64_t *size, struct failure *failure);
 /* All attributes of an object, as a sequence of struct object; to be freed. */
-void *source_attributes(struct source *source, const char *path, uint64_t *size, struct failure *failure);
+void *source_attributes(struct source *source, const char *path, uint64_t *size,
+                        struct failure *failure);
 
 #endif

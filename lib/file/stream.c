@@ -155,8 +155,8 @@ static int file_open(struct stream *s, struct failure *failure)
     if (s->fd < 0 || fstat(s->fd, &st))
         return failure_set(failure, EX_NOINPUT, "%s: %s", s->name, strerror(errno));
     if (isatty(s->fd))
-        return failure_set(failure, EX_USAGE, "%s is a terminal: give a FILE, or a pipe (see --help)",
-                       s->name);
+        return failure_set(failure, EX_USAGE,
+                           "%s is a terminal: give a FILE, or a pipe (see --help)", s->name);
     if (S_ISDIR(st.st_mode)) return failure_set(failure, EX_NOINPUT, "%s: is a directory", s->name);
     if (S_ISFIFO(st.st_mode)) fcntl(s->fd, F_SETPIPE_SZ, PIPE); // or it stays as it is
     off_t at = S_ISREG(st.st_mode) ? lseek(s->fd, 0, SEEK_CUR) : -1;
@@ -188,7 +188,8 @@ static int stream_fill(struct stream *s, size_t *have, size_t want, struct failu
 }
 
 /* The current document's first bytes: *have of the `want` that are asked for, at *bytes. */
-static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want, struct failure *failure)
+static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t want,
+                struct failure *failure)
 {
     if (s->map) {
         *bytes = s->map + s->at;
@@ -203,8 +204,8 @@ static int peek(struct stream *s, unsigned char **bytes, size_t *have, size_t wa
 static int refuse(const struct stream *s, struct failure *failure, const char *trouble)
 {
     if (s->in_file)
-        return failure_set(failure, EX_DATAERR, "%s: document %lld: %s", s->name, (long long)s->in_file + 1,
-                       trouble);
+        return failure_set(failure, EX_DATAERR, "%s: document %lld: %s", s->name,
+                           (long long)s->in_file + 1, trouble);
     return failure_set(failure, EX_DATAERR, "%s: %s", s->name, trouble);
 }
 
@@ -247,9 +248,10 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct fail
     uint32_t crc = (uint32_t)stream_load(h + AT_CRC, 4);
     if (version > DOCUMENT_VERSION)
         return failure_set(failure, EX_DATAERR, "%s: document format %llu, this nsd reads up to %d",
-                       s->name, (unsigned long long)version, DOCUMENT_VERSION);
+                           s->name, (unsigned long long)version, DOCUMENT_VERSION);
     im->unfinished = stream_load(h + AT_FLAGS, 4) & DOCUMENT_UNFINISHED;
-    if (!im->unfinished && length <= DOCUMENT_USERBLOCK) return refuse(s, failure, "damaged header");
+    if (!im->unfinished && length <= DOCUMENT_USERBLOCK)
+        return refuse(s, failure, "damaged header");
     size_t want = im->unfinished ? SIZE_MAX : length;
     uint32_t is = 0;
     if (im->unfinished ? peek(s, &im->bytes, &have, want, failure)
@@ -259,10 +261,10 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct fail
     if (im->unfinished) return let_grow(s, im), 0;
     if (have < want)
         return failure_set(failure, EX_DATAERR,
-                       "%s: document %lld: %zu bytes, where its header says %zu: truncated, or "
-                       "rewritten (h5repack?): then tail -c +513 makes it readable, see "
-                       "nsd-format(5)",
-                       s->name, (long long)s->in_file + 1, have, want);
+                           "%s: document %lld: %zu bytes, where its header says %zu: truncated, or "
+                           "rewritten (h5repack?): then tail -c +513 makes it readable, see "
+                           "nsd-format(5)",
+                           s->name, (long long)s->in_file + 1, have, want);
     if (is != crc)
         return refuse(s, failure,
                       "damaged: its checksum is wrong (changed on purpose? see nsd-format(5))");
@@ -270,7 +272,8 @@ static int read_own(struct stream *s, struct image *im, size_t have, struct fail
 }
 
 /* A foreign HDF5 file: all that the file or pipe still holds. */
-static int stream_read_foreign(struct stream *s, struct image *im, size_t have, struct failure *failure)
+static int stream_read_foreign(struct stream *s, struct image *im, size_t have,
+                               struct failure *failure)
 {
     im->foreign = true;
     if (peek(s, &im->bytes, &have, SIZE_MAX, failure)) return failure->status;

@@ -13,12 +13,13 @@ static int check_finite(const char *path, const struct column *c, int64_t n, con
 {
     const double *x = data;
     for (int64_t k = 0; c->type == COLUMN_F64 && k < n * c->width; k++)
-        if (!isfinite(x[k])) return failure_set(failure, EX_DATAERR, "%s: a number is not finite", path);
+        if (!isfinite(x[k]))
+            return failure_set(failure, EX_DATAERR, "%s: a number is not finite", path);
     return 0;
 }
 
 static int tables_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
-                        struct records o, bool finite, struct failure *failure)
+                               struct records o, bool finite, struct failure *failure)
 {
     for (const struct column *c = o.columns; c->name; c++) {
         char path[80];
@@ -64,7 +65,8 @@ int table_read_span(struct source *r, struct table_spans table, int64_t k, struc
     return 0;
 }
 
-int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct failure *failure)
+int64_t *table_read_steps(struct source *source, const char *path, int64_t *n,
+                          struct failure *failure)
 {
     uint64_t count = 0;
     int64_t *steps = source_read_all(source, path, COLUMN_I64, &count, failure);
@@ -102,7 +104,7 @@ int64_t table_read_row_at(struct source *s, const char *path, int64_t step, stru
 /* Room for bodies to come, in datasets of [frames][bodies]; in frames before they came, their rows
    say so: their id is -1, their numbers are no numbers. */
 static void tables_make_room(const struct table_write *s, const struct dataset *o, hsize_t most[4],
-                      hsize_t chunk[4], hid_t plist)
+                             hsize_t chunk[4], hid_t plist)
 {
     const double none = NAN;
     const int32_t nobody = -1;
@@ -114,7 +116,8 @@ static void tables_make_room(const struct table_write *s, const struct dataset *
                       o->type == COLUMN_F64 ? (const void *)&none : (const void *)&nobody);
 }
 
-static hid_t tables_create(const struct table_write *s, const struct dataset *o, struct failure *failure)
+static hid_t tables_create(const struct table_write *s, const struct dataset *o,
+                           struct failure *failure)
 {
     const char *path = o->path;
     const hsize_t *shape = o->shape;
@@ -199,8 +202,9 @@ int table_write_rows(struct table_write *s, struct dataset o, struct failure *fa
         snprintf(s->open[s->count].path, sizeof s->open[0].path, "%s", o.path);
         s->open[s->count++].set = set;
     }
-    return tables_append(set, &o) ? failure_set(failure, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
-                           : 0;
+    return tables_append(set, &o)
+               ? failure_set(failure, EX_IOERR, "%s: cannot be written (disk full?)", o.path)
+               : 0;
 }
 
 int table_write_number(struct table_write *s, const char *path, enum column_type type,
@@ -255,7 +259,8 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
     return 0;
 }
 
-int table_write_bodies(struct table_write *s, bool moving, const struct packing *p, struct failure *failure)
+int table_write_bodies(struct table_write *s, bool moving, const struct packing *p,
+                       struct failure *failure)
 {
     for (const struct body_column *b = body_columns; b->column.name; b++)
         if (column_array(&b->column, p) && !(b->traits & BODY_MOVES) == !moving &&
@@ -323,7 +328,8 @@ int table_write_clocks(struct table_write *s, const char *where, const struct co
     const struct dataset times = {
         .path = "time", .type = COLUMN_F64, .data = &time, .units = "s"
     };
-    return write_clock(s, where, columns, steps, failure) || write_clock(s, where, columns, times, failure)
+    return write_clock(s, where, columns, steps, failure) ||
+                   write_clock(s, where, columns, times, failure)
                ? failure->status
                : 0;
 }

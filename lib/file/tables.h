@@ -31,13 +31,15 @@ int table_read_span(struct source *source, struct table_spans table, int64_t k, 
                     struct failure *failure);
 
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
-int64_t *table_read_steps(struct source *source, const char *path, int64_t *n, struct failure *failure);
+int64_t *table_read_steps(struct source *source, const char *path, int64_t *n,
+                          struct failure *failure);
 /* How many of n steps rise, from the first on: a killed writer may have made room for one without setting it. */
 int64_t table_read_rising(const int64_t *steps, int64_t n);
 /* The row of a step among n that rise; -1: none */
 int64_t table_read_row(const int64_t *steps, int64_t n, int64_t step);
 /* That of the step in the dataset of steps at `path`; -1: it has none, or does not exist */
-int64_t table_read_row_at(struct source *source, const char *path, int64_t step, struct failure *failure);
+int64_t table_read_row_at(struct source *source, const char *path, int64_t step,
+                          struct failure *failure);
 
 /*
  * The datasets of a document that is being written: in a stream each dataset is

@@ -1,8 +1,8 @@
 #include "file/unknown.h"
 
-#include "state/body_columns.h"
 #include "file/element.h"
 #include "file/source.h"
+#include "state/body_columns.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -75,8 +75,8 @@ static int read_item(struct unknown_item *i, struct source *s, struct failure *f
     uint64_t size;
     if (o->kind == OBJECT_OTHER || o->rank > OBJECT_RANK ||
         (o->rank && o->kind != OBJECT_GROUP && !o->size))
-        return failure_set(failure, EX_DATAERR, "%s: neither numbers nor texts: it cannot be copied",
-                       i->path);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: neither numbers nor texts: it cannot be copied", i->path);
     i->attributes = source_attributes(s, i->path, &i->attributes_size, failure);
     if (o->kind == OBJECT_TEXT && !o->rank)
         i->text = source_text(s, i->path, NULL, failure);
@@ -85,8 +85,8 @@ static int read_item(struct unknown_item *i, struct source *s, struct failure *f
     return failure->status;
 }
 
-static int unknown_add(struct unknown *u, const struct object *o, const char *path, const uint64_t *shape,
-               struct source *s, struct failure *failure)
+static int unknown_add(struct unknown *u, const struct object *o, const char *path,
+                       const uint64_t *shape, struct source *s, struct failure *failure)
 {
     if (u->count == u->room) {
         int64_t room = u->room ? 2 * u->room : 16;
@@ -176,8 +176,9 @@ static int write_attributes(const struct unknown_item *i, hid_t file, struct fai
         const struct object o = l.object;
         const char *name = l.path;
         if (o.kind == OBJECT_OTHER || !o.size)
-            return failure_set(failure, EX_DATAERR, "%s@%s: neither numbers nor texts: it cannot be copied",
-                           i->path, name);
+            return failure_set(failure, EX_DATAERR,
+                               "%s@%s: neither numbers nor texts: it cannot be copied", i->path,
+                               name);
         hsize_t dims[OBJECT_RANK], points = 1;
         for (uint32_t k = 0; k < o.rank; k++) points *= dims[k] = l.shape[k];
         if (points * o.size != o.data)
@@ -221,7 +222,7 @@ int unknown_write(const struct unknown *u, int64_t file, bool stale, struct fail
         struct failure trouble = { 0 };
         if (write_item(i, file, &trouble)) // HDF5 writes not all that it reads
             failure_set(failure, trouble.status == EX_IOERR ? EX_DATAERR : trouble.status,
-                    "%.200s: cannot be copied: %.150s", i->path, trouble.text);
+                        "%.200s: cannot be copied: %.150s", i->path, trouble.text);
     }
     return failure->status;
 }

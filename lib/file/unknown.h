@@ -19,7 +19,8 @@ struct unknown;
  * only what does not depend on time. EX_DATAERR: there is something that is neither numbers nor texts,
  * and would be lost.
  */
-int unknown_read(struct unknown **unknown, struct source *source, bool whole, struct failure *failure);
+int unknown_read(struct unknown **unknown, struct source *source, bool whole,
+                 struct failure *failure);
 /* The path of the first object that unknown_read leaves out unless `whole`, or NULL. */
 const char *unknown_timed(struct source *source);
 /* One more owner, who frees it too. */

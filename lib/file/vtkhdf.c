@@ -102,7 +102,8 @@ int vtkhdf_group(hid_t file, const char *path, struct failure *failure)
 }
 
 /* VTK takes texts in ASCII, of just their length. */
-static int ascii(hid_t file, const char *path, const char *name, const char *text, struct failure *failure)
+static int ascii(hid_t file, const char *path, const char *name, const char *text,
+                 struct failure *failure)
 {
     hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
     H5Tset_size(type, strlen(text)), H5Tset_strpad(type, H5T_STR_NULLPAD);
@@ -129,7 +130,8 @@ static int make_parent(hid_t file, const char *path, struct failure *failure)
     return h5_group(file, parent, failure);
 }
 
-static hid_t make_growing(hid_t file, const char *path, hid_t disk, int width, struct failure *failure)
+static hid_t make_growing(hid_t file, const char *path, hid_t disk, int width,
+                          struct failure *failure)
 {
     const hsize_t none[2] = { 0, (hsize_t)width }, most[2] = { H5S_UNLIMITED, (hsize_t)width },
                   chunk[2] = { CHUNK_ROWS, (hsize_t)width };
@@ -152,7 +154,8 @@ struct added {
 };
 
 /* Rows at the end of a dataset of rows, which is made, of type `disk`, where there is none */
-static int vtkhdf_append(hid_t file, const char *path, hid_t disk, struct added o, struct failure *failure)
+static int vtkhdf_append(hid_t file, const char *path, hid_t disk, struct added o,
+                         struct failure *failure)
 {
     const int width = o.width;
     const int64_t n = o.n;
@@ -207,7 +210,7 @@ static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct failure
 }
 
 static int vtkhdf_add_part(struct vtkhdf_block *b, int64_t points, int64_t cells, int64_t corners,
-                    struct failure *failure)
+                           struct failure *failure)
 {
     if (b->parts == b->parts_room) {
         int64_t room = b->parts_room ? 2 * b->parts_room : 64;
@@ -220,8 +223,8 @@ static int vtkhdf_add_part(struct vtkhdf_block *b, int64_t points, int64_t cells
 }
 
 /* Offsets of the cells: from 0, one more than there are cells; and one 0 of the other kinds of cells */
-static int append_offsets(const struct vtkhdf_block *b, hid_t file, int64_t cells, const int64_t *end,
-                          struct failure *failure)
+static int append_offsets(const struct vtkhdf_block *b, hid_t file, int64_t cells,
+                          const int64_t *end, struct failure *failure)
 {
     const int64_t zero = 0;
     for (int k = 0; k < TOPOLOGIES; k++) {
@@ -246,7 +249,8 @@ static bool single_will_do(const struct packing *p)
     return p->n && 6e-8 * (far + least) < 1e-3 * least;
 }
 
-static int append_points(struct vtkhdf_block *b, hid_t file, int64_t n, const vec3 *x, struct failure *failure)
+static int append_points(struct vtkhdf_block *b, hid_t file, int64_t n, const vec3 *x,
+                         struct failure *failure)
 {
     char path[120];
     snprintf(path, sizeof path, "%s/Points", b->name);
@@ -277,7 +281,8 @@ static int end_nothing(struct vtkhdf_block *b, hid_t file, struct failure *failu
 }
 
 /* The moment's cells; where they are those of the moment before, only their points */
-static int add_cells(struct vtkhdf_block *b, hid_t file, const struct vtkhdf_cells *c, struct failure *failure)
+static int add_cells(struct vtkhdf_block *b, hid_t file, const struct vtkhdf_cells *c,
+                     struct failure *failure)
 {
     uint64_t hash = hash_more(0xcbf29ce484222325, c->corner, (size_t)c->corners * 8);
     hash = hash_more(hash, c->end, (size_t)c->cells * 8);
@@ -302,7 +307,8 @@ static int add_cells(struct vtkhdf_block *b, hid_t file, const struct vtkhdf_cel
         for (int k = 0; k < c->columns; k++) {
             snprintf(name, sizeof name, "CellData/%s", c->column[k].name);
             if (append_to(b, file, name,
-                          (struct added){ H5T_NATIVE_INT32, 1, c->cells, c->column[k].value }, failure))
+                          (struct added){ H5T_NATIVE_INT32, 1, c->cells, c->column[k].value },
+                          failure))
                 return failure->status;
         }
         b->cells += c->cells, b->corners += c->corners;
@@ -313,7 +319,8 @@ static int add_cells(struct vtkhdf_block *b, hid_t file, const struct vtkhdf_cel
 }
 
 /* The grains of a frame where they come and go: a part each */
-static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *p, struct failure *failure)
+static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *p,
+                      struct failure *failure)
 {
     b->topology = VERTICES;
     if (!p->n) return add_nothing(b, failure);
@@ -343,11 +350,13 @@ static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *
 
 static const char grains_alone[] = "/VTKHDF", grains_block[] = "/VTKHDF/grains";
 
-static int begin_blocks(struct vtkhdf *v, hid_t file, const struct packing *p, struct failure *failure)
+static int begin_blocks(struct vtkhdf *v, hid_t file, const struct packing *p,
+                        struct failure *failure)
 {
     v->varies = packing_varies(p), v->bodies = p->n, v->shapes = p->shape != NULL;
     v->block[0].name = v->parts ? grains_block : grains_alone;
-    if (vtkhdf_group(file, "/VTKHDF", failure) || (v->parts && vtkhdf_group(file, grains_block, failure)))
+    if (vtkhdf_group(file, "/VTKHDF", failure) ||
+        (v->parts && vtkhdf_group(file, grains_block, failure)))
         return failure->status;
     for (int k = 0; v->parts && k < v->parts->count; k++) {
         v->block[1 + k].name = v->parts->name[k];
@@ -366,7 +375,8 @@ int vtkhdf_frame(struct vtkhdf *v, hid_t file, const struct packing *p, struct f
     for (int k = 0; v->parts && k < v->parts->count; k++) {
         struct vtkhdf_cells c = { 0 };
         void *made = NULL;
-        if (!v->parts->make(&c, p, k, &made, failure)) add_cells(&v->block[1 + k], file, &c, failure);
+        if (!v->parts->make(&c, p, k, &made, failure))
+            add_cells(&v->block[1 + k], file, &c, failure);
         v->parts->done(made);
         if (failure->status) return failure->status;
     }
@@ -389,7 +399,7 @@ static struct h5_data table(int64_t n, int width, const int64_t *value)
 
 /* A dataset of the block */
 static int vtkhdf_put(hid_t file, const char *block, const char *name, struct h5_data data,
-               struct failure *failure)
+                      struct failure *failure)
 {
     char path[160];
     snprintf(path, sizeof path, "%s/%s", block, name);
@@ -447,7 +457,8 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct failure *failu
             *number = calloc((size_t)room + 1, sizeof *number);
     if (!zero || !number) failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     for (int64_t i = 0; !failure->status && i <= room; i++) number[i] = i;
-    int bad = failure->status || vtkhdf_put(file, block, "NumberOfPoints", vtkhdf_numbers(1, &N), failure);
+    int bad = failure->status ||
+              vtkhdf_put(file, block, "NumberOfPoints", vtkhdf_numbers(1, &N), failure);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         const int64_t cells = k == VERTICES ? N : 0;
@@ -460,20 +471,22 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct failure *failu
             bad = vtkhdf_put(file, block, name, vtkhdf_numbers(rows[j], value[j]), failure);
         }
     }
-    bad = bad || make_virtual(v, file, "position", "Points", 3, failure) ||
-          put_values(file, block, F, failure) ||
-          vtkhdf_put(file, block, "Steps/PartOffsets", vtkhdf_numbers(F, zero), failure) ||
-          vtkhdf_put(file, block, "Steps/CellOffsets", table(F, TOPOLOGIES, zero), failure) ||
-          vtkhdf_put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), failure);
+    bad =
+        bad || make_virtual(v, file, "position", "Points", 3, failure) ||
+        put_values(file, block, F, failure) ||
+        vtkhdf_put(file, block, "Steps/PartOffsets", vtkhdf_numbers(F, zero), failure) ||
+        vtkhdf_put(file, block, "Steps/CellOffsets", table(F, TOPOLOGIES, zero), failure) ||
+        vtkhdf_put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), failure);
     for (int k = 0; k < VTK_COLUMNS && !bad; k++) {
         char name[60], from[60], offsets[80];
         if (!v->shapes && columns[k].at == offsetof(struct packing, shape)) continue;
         snprintf(name, sizeof name, "PointData/%s", columns[k].name);
         snprintf(from, sizeof from, "/particles/all/%s", columns[k].from);
         snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", columns[k].name);
-        bad = columns[k].moves ? make_virtual(v, file, columns[k].from, name, columns[k].width, failure)
-                               : link_to(file, from, block, name, failure) ||
-                                     vtkhdf_put(file, block, offsets, vtkhdf_numbers(F, zero), failure);
+        bad = columns[k].moves
+                  ? make_virtual(v, file, columns[k].from, name, columns[k].width, failure)
+                  : link_to(file, from, block, name, failure) ||
+                        vtkhdf_put(file, block, offsets, vtkhdf_numbers(F, zero), failure);
     }
     for (int64_t f = 0; !bad && f < F; f++) zero[f] = 1;
     bad = bad || vtkhdf_put(file, block, "Steps/NumberOfParts", vtkhdf_numbers(F, zero), failure);
@@ -518,7 +531,8 @@ static int end_block(struct vtkhdf_block *b, hid_t file, struct failure *failure
             *value = malloc(((size_t)room + 1) * sizeof *value);
     if (!value) return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     const struct ending o = { b, file, value };
-    int bad = put_parts(&o, "NumberOfPoints", offsetof(struct vtkhdf_extent, points), true, failure);
+    int bad =
+        put_parts(&o, "NumberOfPoints", offsetof(struct vtkhdf_extent, points), true, failure);
     for (int k = 0; k < TOPOLOGIES && !bad; k++) {
         char name[60];
         bool there = k == b->topology;
@@ -527,7 +541,8 @@ static int end_block(struct vtkhdf_block *b, hid_t file, struct failure *failure
         snprintf(name, sizeof name, "%s/NumberOfConnectivityIds", topology_name[k]);
         bad = bad || put_parts(&o, name, offsetof(struct vtkhdf_extent, corners), there, failure);
         snprintf(name, sizeof name, "%s/Connectivity", topology_name[k]);
-        if (!bad && !there) bad = vtkhdf_put(file, b->name, name, vtkhdf_numbers(0, value), failure);
+        if (!bad && !there)
+            bad = vtkhdf_put(file, b->name, name, vtkhdf_numbers(0, value), failure);
     }
     bad = bad || put_values(file, b->name, b->steps, failure) ||
           put_step_column(&o, "Steps/PartOffsets", offsetof(struct step, part), 1, 0, failure) ||
@@ -537,7 +552,8 @@ static int end_block(struct vtkhdf_block *b, hid_t file, struct failure *failure
           put_step_column(&o, "Steps/ConnectivityIdOffsets", offsetof(struct step, corner),
                           TOPOLOGIES, b->topology, failure);
     for (int64_t f = 0; !bad && f < b->steps; f++) value[f] = 1;
-    if (!bad) vtkhdf_put(file, b->name, "Steps/NumberOfParts", vtkhdf_numbers(b->steps, value), failure);
+    if (!bad)
+        vtkhdf_put(file, b->name, "Steps/NumberOfParts", vtkhdf_numbers(b->steps, value), failure);
     free(value);
     return failure->status;
 }
@@ -563,7 +579,8 @@ static int collect(const struct vtkhdf *v, hid_t file, struct failure *failure)
 int vtkhdf_end(struct vtkhdf *v, hid_t file, struct failure *failure)
 {
     if (v->frames) {
-        int bad = v->varies ? end_block(&v->block[0], file, failure) : link_grains(v, file, failure);
+        int bad =
+            v->varies ? end_block(&v->block[0], file, failure) : link_grains(v, file, failure);
         for (int k = 1; !bad && v->parts && k <= v->parts->count; k++)
             bad = end_block(&v->block[k], file, failure);
         if (!bad && v->parts)

@@ -11,8 +11,8 @@
 #ifndef NSD_VTKHDF_H
 #define NSD_VTKHDF_H
 
-#include "state/packing.h"
 #include "file/h5.h"
+#include "state/packing.h"
 
 enum { VTKHDF_COLUMNS = 4 };
 

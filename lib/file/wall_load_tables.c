@@ -1,8 +1,8 @@
 #include "file/wall_load_tables.h"
 
-#include "state/wall_faces.h"
 #include "file/h5.h"
 #include "file/layout.h"
+#include "state/wall_faces.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,8 @@ int sum_tables_write_static(struct table_write *s, const struct packing *p, stru
     if (!p->sums.n) return 0;
     s->sums_since = p->sums.since;
     if (h5_group(s->file, SUMS_HOME, failure)) return failure->status;
-    return h5_attr(s->file, SUMS_HOME, "since", h5_scalar(H5T_NATIVE_DOUBLE, &p->sums.since), failure);
+    return h5_attr(s->file, SUMS_HOME, "since", h5_scalar(H5T_NATIVE_DOUBLE, &p->sums.since),
+                   failure);
 }
 
 /* May the trajectory take a frame with sums, or without? They are there from its first frame on, or in none. */
@@ -59,7 +60,8 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct fail
                          failure);
         free(row);
     }
-    return failure->status ? failure->status : table_write_clocks(s, SUMS_HOME, layout_sums, p->step, p->t, failure);
+    return failure->status ? failure->status
+                           : table_write_clocks(s, SUMS_HOME, layout_sums, p->step, p->t, failure);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
@@ -90,6 +92,6 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failu
     }
     free(row);
     if (failure->status) return failure->status;
-    return source_attribute(r, SUMS_HOME, "since", (struct numbers){ COLUMN_F64, -1, &p->sums.since },
-                            failure);
+    return source_attribute(r, SUMS_HOME, "since",
+                            (struct numbers){ COLUMN_F64, -1, &p->sums.since }, failure);
 }

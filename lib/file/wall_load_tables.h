@@ -11,7 +11,8 @@
 /* Those of frame k, into a packing that has its boundaries. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int sum_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
 /* What all frames share, and a frame's part */
-int sum_tables_write_static(struct table_write *tables, const struct packing *p, struct failure *failure);
+int sum_tables_write_static(struct table_write *tables, const struct packing *p,
+                            struct failure *failure);
 int sum_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 #endif

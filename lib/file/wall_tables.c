@@ -38,7 +38,8 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
 }
 
 /* The number of rows of a dataset of so many dimensions */
-static int wall_tables_count_rows(struct source *r, const char *path, int rank, int32_t *n, struct failure *failure)
+static int wall_tables_count_rows(struct source *r, const char *path, int rank, int32_t *n,
+                                  struct failure *failure)
 {
     uint64_t shape[4];
     if (source_shape(r, path, shape) != rank || shape[0] > 1 << 24)
@@ -71,15 +72,16 @@ static int read_signals(struct source *r, const struct signals *of, struct packi
     snprintf(boundary, sizeof boundary, "%s/boundary", group);
     snprintf(rows, sizeof rows, "%s/row", group);
     if (!source_has(r, group)) return 0;
-    if (wall_tables_count_rows(r, boundary, 1, &n, failure) || wall_tables_count_rows(r, rows, 2, &m, failure) ||
-        drives_alloc(d, n, m, failure) ||
+    if (wall_tables_count_rows(r, boundary, 1, &n, failure) ||
+        wall_tables_count_rows(r, rows, 2, &m, failure) || drives_alloc(d, n, m, failure) ||
         table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), failure) ||
         source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, failure))
         return failure->status;
     for (int32_t k = 0; k < n; k++) {
         int32_t w = d->drive[k].boundary;
         if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
-            return failure_set(failure, EX_DATAERR, "%s: not in the order of the boundaries", boundary);
+            return failure_set(failure, EX_DATAERR, "%s: not in the order of the boundaries",
+                               boundary);
         int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
         if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + of->first) = k;
     }
@@ -98,8 +100,8 @@ static int wall_tables_read_mesh(struct source *r, struct packing *p, struct fai
     const char *vertex = BOUNDARY "/mesh/vertex", *element = BOUNDARY "/mesh/element";
     int32_t n = 0, m = 0;
     if (!source_has(r, BOUNDARY "/mesh")) return 0;
-    if (wall_tables_count_rows(r, vertex, 2, &n, failure) || wall_tables_count_rows(r, element, 2, &m, failure) ||
-        mesh_alloc(&p->mesh, n, m, failure) ||
+    if (wall_tables_count_rows(r, vertex, 2, &n, failure) ||
+        wall_tables_count_rows(r, element, 2, &m, failure) || mesh_alloc(&p->mesh, n, m, failure) ||
         source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, failure) ||
         source_rows(r, element, (struct slab){ COLUMN_I32, 0, m, 3 }, p->mesh.element, failure))
         return failure->status;
@@ -111,7 +113,8 @@ static int read_planes(struct source *r, int64_t k, struct packing *p, struct fa
 {
     int32_t n = 0;
     if (!source_has(r, "/walls/plane")) return 0;
-    if (wall_tables_count_rows(r, "/walls/plane/point", 2, &n, failure) || packing_alloc_walls(p, n, failure) ||
+    if (wall_tables_count_rows(r, "/walls/plane/point", 2, &n, failure) ||
+        packing_alloc_walls(p, n, failure) ||
         table_read_columns(r, "/walls/plane", "", 0, RECORDS(layout_plane, n, p->wall), failure))
         return failure->status;
     return read_loads(r, "/walls/load", k, p, failure);
@@ -122,7 +125,8 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
     const char *body = BOUNDARY "/body";
     int32_t n = 0;
     if (!source_has(r, body)) return read_planes(r, k, p, failure);
-    if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, failure) || packing_alloc_walls(p, n, failure) ||
+    if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, failure) ||
+        packing_alloc_walls(p, n, failure) ||
         table_read_columns(r, body, "", 0, RECORDS(layout_plane, n, p->wall), failure) ||
         (source_has(r, BOUNDARY "/body/shape") &&
          table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), failure)) ||
@@ -231,7 +235,8 @@ static int write_signals(struct table_write *s, const char *group, const struct 
 
 static int write_drives(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (write_signals(s, BOUNDARY "/drive", &p->drives, "s; m, rad", failure)) return failure->status;
+    if (write_signals(s, BOUNDARY "/drive", &p->drives, "s; m, rad", failure))
+        return failure->status;
     return write_signals(s, BOUNDARY "/push", &p->pushes, "s; N, N m", failure);
 }
 
@@ -247,7 +252,8 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct fai
                     h5_array(H5T_NATIVE_INT32, 2, elements, p->mesh.element), NULL, failure);
 }
 
-int boundary_tables_write_static(struct table_write *s, const struct packing *p, struct failure *failure)
+int boundary_tables_write_static(struct table_write *s, const struct packing *p,
+                                 struct failure *failure)
 {
     bool growing = s->growing;
     struct boundary_motion *m = NULL;
@@ -255,7 +261,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
     s->growing = false;
     if (!table_write_columns(s, body, "", RECORDS(layout_plane, p->walls, p->wall), 0, failure) &&
         !(any_shapes(p) &&
-          table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0, failure)) &&
+          table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0,
+                              failure)) &&
         !(any_welds(p) &&
           table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, failure)) &&
         !(any_wear(p) &&
@@ -273,7 +280,8 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
                             failure);
     s->at_rest = !any_may_move(p);
     if (!failure->status && s->at_rest && (m = motions(p, failure)))
-        table_write_columns(s, BOUNDARY, "", RECORDS(layout_boundary_motion, p->walls, m), 0, failure);
+        table_write_columns(s, BOUNDARY, "", RECORDS(layout_boundary_motion, p->walls, m), 0,
+                            failure);
     free(m);
     s->growing = growing;
     return failure->status;
@@ -296,7 +304,8 @@ static int write_row(struct table_write *s, const char *group, struct records o,
                          failure);
         free(row);
     }
-    return failure->status ? failure->status : table_write_clocks(s, group, o.columns, p->step, p->t, failure);
+    return failure->status ? failure->status
+                           : table_write_clocks(s, group, o.columns, p->step, p->t, failure);
 }
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -332,7 +341,8 @@ int name_tables_write(struct table_write *s, const struct packing *p, struct fai
     }
     s->growing = false;
     if (!h5_write_text(s->file, text_path, text, failure) && names->rows)
-        table_write_columns(s, NAMES_HOME, "", RECORDS(layout_names, names->rows, names->row), 0, failure);
+        table_write_columns(s, NAMES_HOME, "", RECORDS(layout_names, names->rows, names->row), 0,
+                            failure);
     s->growing = growing;
     free(text);
     return failure->status;
@@ -344,13 +354,13 @@ static int read_rows(struct source *r, struct packing *p, struct failure *failur
     uint64_t shape[4];
     if (!source_has(r, path)) return 0;
     if (source_shape(r, path, shape) != 1 || shape[0] > NAMED_MOST)
-        return failure_set(failure, EX_DATAERR, "%s: not of one dimension, or of more than %d rows", path,
-                       NAMED_MOST);
+        return failure_set(failure, EX_DATAERR, "%s: not of one dimension, or of more than %d rows",
+                           path, NAMED_MOST);
     p->names.row = calloc((size_t)shape[0] + 1, sizeof *p->names.row);
     if (!p->names.row) return failure_set(failure, EX_SOFTWARE, "no memory for the names");
     p->names.rows = (int32_t)shape[0];
-    return table_read_columns(r, NAMES_HOME, "", 0, RECORDS(layout_names, p->names.rows, p->names.row),
-                              failure);
+    return table_read_columns(r, NAMES_HOME, "", 0,
+                              RECORDS(layout_names, p->names.rows, p->names.row), failure);
 }
 
 int name_tables_read(struct source *r, struct packing *p, struct failure *failure)

@@ -9,7 +9,8 @@
 #include "file/tables.h"
 
 /* Those of frame k, whose time p has */
-int boundary_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
+int boundary_tables_read(struct source *source, int64_t k, struct packing *p,
+                         struct failure *failure);
 
 /* Does any boundary move? A trajectory whose first frame has none that does, and none that may, takes none later. */
 bool boundary_tables_move(const struct packing *p);
@@ -17,7 +18,8 @@ bool boundary_tables_move(const struct packing *p);
 int boundary_tables_write_static(struct table_write *tables, const struct packing *p,
                                  struct failure *failure);
 /* A frame's part: nothing where nothing moves */
-int boundary_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
+int boundary_tables_write(struct table_write *tables, const struct packing *p,
+                          struct failure *failure);
 
 /*
  * Names of boundaries, of parts of their surfaces and of groups of bodies [state/names.h] in a

@@ -3,10 +3,10 @@
 
 #include "base/embedded.h"
 #include "base/output.h"
-#include "file/h5.h"
-#include "file/stream.h"
 #include "file/frame_write.h"
+#include "file/h5.h"
 #include "file/roster.h"
+#include "file/stream.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -125,7 +125,7 @@ static int writer_look_at(struct writer *s, enum writer_kind kind, struct failur
     if (!s->append && output_lock(s->fd, F_OFD_SETLK, s->name, failure)) return failure->status;
     if (isatty(s->fd))
         return failure_set(failure, EX_USAGE,
-                       "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
+                           "%s is a terminal: documents are binary, use > FILE or a pipe", s->name);
     snprintf(again, sizeof again, "/proc/self/fd/%d", s->fd);
     if (regular && !st.st_size && !s->append && kind != WRITER_STREAM)
         s->disk = open(again, O_RDWR | O_CLOEXEC);
@@ -133,7 +133,8 @@ static int writer_look_at(struct writer *s, enum writer_kind kind, struct failur
     return 0;
 }
 
-int writer_open(struct writer **out, const char *path, enum writer_kind kind, struct failure *failure)
+int writer_open(struct writer **out, const char *path, enum writer_kind kind,
+                struct failure *failure)
 {
     struct writer *s = *out = calloc(1, sizeof *s);
     if (!s) return failure_set(failure, EX_SOFTWARE, "no memory");
@@ -245,9 +246,11 @@ static int document_end(struct writer *s, struct failure *failure)
     return 0;
 }
 
-static int writer_write_all(struct writer *s, const unsigned char *bytes, size_t size, struct failure *failure)
+static int writer_write_all(struct writer *s, const unsigned char *bytes, size_t size,
+                            struct failure *failure)
 {
-    return document_begin(s, failure) || document_bytes(s, bytes, size, failure) || document_end(s, failure)
+    return document_begin(s, failure) || document_bytes(s, bytes, size, failure) ||
+                   document_end(s, failure)
                ? failure->status
                : 0;
 }
@@ -269,13 +272,15 @@ int writer_vtk(struct writer *s, const struct vtkhdf_parts *parts, struct failur
 }
 
 /* What VTK finds of a frame that the document has, which is its last where no others follow */
-static int for_vtk(struct writer *s, hid_t file, const struct frame *f, bool last, struct failure *failure)
+static int for_vtk(struct writer *s, hid_t file, const struct frame *f, bool last,
+                   struct failure *failure)
 {
     if (!s->vtk || !f->packed) return 0;
     if (f->distributed)
         return failure_set(failure, EX_USAGE,
-                       "several processes make no /VTKHDF: nsd-cat --vtk does, after");
-    return vtkhdf_frame(s->vtk, file, &f->packing, failure) || (last && vtkhdf_end(s->vtk, file, failure));
+                           "several processes make no /VTKHDF: nsd-cat --vtk does, after");
+    return vtkhdf_frame(s->vtk, file, &f->packing, failure) ||
+           (last && vtkhdf_end(s->vtk, file, failure));
 }
 
 int writer_pass(struct writer *s, struct reader *from, struct failure *failure)
@@ -309,7 +314,8 @@ static int stream_frame(struct writer *s, const struct frame *f, struct failure 
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     size_t step = (size_t)bodies_of(f) * 32;
     H5Pset_fapl_core(access, step < 1 << 16 ? 1 << 16 : step, false);
-    struct table_write doc = { .file = writer_create("document", access), .distributed = f->distributed };
+    struct table_write doc = { .file = writer_create("document", access),
+                               .distributed = f->distributed };
     H5Pclose(access);
     if (doc.file < 0) return failure_set(failure, EX_SOFTWARE, "no memory for the document");
     int e = frame_write_static(&doc, f, failure) || frame_write_moment(&doc, f, failure) ||
@@ -385,7 +391,8 @@ static int write_header(struct writer *s, uint64_t length, uint32_t crc, struct 
 static int reserve(struct writer *s, const struct frame *f, struct failure *failure)
 {
     hsize_t size = 0, n = (hsize_t)bodies_of(f), rows = 0;
-    if (H5Fget_filesize(s->doc.file, &size) < 0) return output_failed(s, failure, "cannot be written");
+    if (H5Fget_filesize(s->doc.file, &size) < 0)
+        return output_failed(s, failure, "cannot be written");
     if (n > CHUNK_BODIES) n += CHUNK_BODIES; // chunks are whole
     if (s->doc.roster) // bodies that were there before, and what their rows are rounded up to
         n += (hsize_t)s->roster.rows + 2 * s->doc.chunk_bodies;
@@ -459,23 +466,26 @@ static int writer_check_same(const struct writer *s, const struct frame *f, stru
     if (p.pours != q.pours || p.removals != q.removals)
         return failure_set(failure, EX_DATAERR, "other pours or removals than the trajectory's");
     if (p.n != q.n)
-        return failure_set(failure, EX_DATAERR, "%lld bodies, and the trajectory has %lld", (long long)q.n,
-                       (long long)p.n);
+        return failure_set(failure, EX_DATAERR, "%lld bodies, and the trajectory has %lld",
+                           (long long)q.n, (long long)p.n);
     if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
         return failure_set(failure, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
     if (p.adapts != q.adapts)
         return failure_set(failure, EX_DATAERR,
-                       "frames with a time step of their own and others in one trajectory");
+                           "frames with a time step of their own and others in one trajectory");
     if (p.tolerance != q.tolerance)
         return failure_set(failure, EX_DATAERR,
-                       "frames with an automatic time step and others in one trajectory");
+                           "frames with an automatic time step and others in one trajectory");
     if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
         return failure_set(failure, EX_DATAERR, "overlap differs from the trajectory's");
-    if (p.crc != q.crc) return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's");
-    if (p.cell != q.cell) return failure_set(failure, EX_DATAERR, "another cell than the trajectory's");
+    if (p.crc != q.crc)
+        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's");
+    if (p.cell != q.cell)
+        return failure_set(failure, EX_DATAERR, "another cell than the trajectory's");
     if (f->packing.step <= s->step)
-        return failure_set(failure, EX_DATAERR, "step %lld after step %lld: a trajectory's steps increase",
-                       (long long)f->packing.step, (long long)s->step);
+        return failure_set(failure, EX_DATAERR,
+                           "step %lld after step %lld: a trajectory's steps increase",
+                           (long long)f->packing.step, (long long)s->step);
     if (f->detected && s->contacts && (!f->contacts.found == s->solved || f->moved != s->moved))
         return failure_set(failure, EX_DATAERR, "contacts solved and unsolved in one trajectory");
     return 0;
@@ -493,7 +503,8 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct fail
     H5Pclose(access);
     if (s->doc.file < 0) return output_failed(s, failure, "cannot be written");
     s->library = descriptor_of(s->doc.file);
-    if (embedded_is() && s->library < 0) return output_failed(s, failure, "cannot be kept from children");
+    if (embedded_is() && s->library < 0)
+        return output_failed(s, failure, "cannot be kept from children");
     if (H5Fset_libver_bounds(s->doc.file, H5F_LIBVER_V110, H5F_LIBVER_V110) < 0)
         return output_failed(s, failure, "cannot be written (full?)");
     if (packing_varies(&f->packing)) {
@@ -506,7 +517,9 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct fail
     s->first = shared_of(f);
     s->step = f->packing.step - 1;
     s->doc.distributed = f->distributed;
-    return write_header(s, 0, 0, failure) || frame_write_static(&s->doc, f, failure) ? failure->status : 0;
+    return write_header(s, 0, 0, failure) || frame_write_static(&s->doc, f, failure)
+               ? failure->status
+               : 0;
 }
 
 /* Processes that write together give the reserve back. */
@@ -514,8 +527,9 @@ static int fill_frame(struct writer *s, const struct frame *f, struct failure *f
 {
     char path[PATH_MAX];
     if (!f->distributed) return 0;
-    return writer_fill(&s->doc, find_path(s, path) ? path : NULL, failure) || reserve(s, f, failure) ? failure->status
-                                                                                      : 0;
+    return writer_fill(&s->doc, find_path(s, path) ? path : NULL, failure) || reserve(s, f, failure)
+               ? failure->status
+               : 0;
 }
 
 static int trajectory_frame(struct writer *s, const struct frame *f, struct failure *failure)

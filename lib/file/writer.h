@@ -24,7 +24,8 @@ enum writer_kind {
  * empty regular file there; elsewhere, and under >>, it becomes a stream. EX_USAGE: standard
  * output is a terminal; EX_IOERR: the output cannot be written.
  */
-int writer_open(struct writer **writer, const char *path, enum writer_kind kind, struct failure *failure);
+int writer_open(struct writer **writer, const char *path, enum writer_kind kind,
+                struct failure *failure);
 
 /*
  * A trajectory of WRITER_IN_PLACE takes its place now, in one stroke, and grows on. Killed before, it has left

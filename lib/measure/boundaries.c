@@ -1,7 +1,7 @@
 /* measure/boundaries.c: what pushes boundaries. */
-#include "state/face_of.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
+#include "state/face_of.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +33,8 @@ static double name_row(const struct packing *p, int32_t wall)
     return name ? names_find(&p->names, name, strlen(name)) : NAN;
 }
 
-static void boundaries_add(struct boundaries_push *to, const struct snapshot *s, int64_t i, double sign)
+static void boundaries_add(struct boundaries_push *to, const struct snapshot *s, int64_t i,
+                           double sign)
 {
     const double *r = s->s->found[i].r;
     to->contacts += branch_counts(s->s, i);
@@ -119,7 +120,8 @@ static int boundaries_names_rows(struct table *t, const struct snapshot *s, stru
         const struct contact *c = &s->s->c[i];
         int32_t face = face_of_contact(&faces, p, c, 0);
         for (int32_t k = 0; k < p->names.n; k++)
-            if (any[k] && is_named(&p->names, k, -1 - c->a, face)) boundaries_add(&push[k], s, i, -1);
+            if (any[k] && is_named(&p->names, k, -1 - c->a, face))
+                boundaries_add(&push[k], s, i, -1);
     }
     for (int32_t k = 0; k < p->names.n; k++) {
         if (!any[k] || (s->only.walls && !s->only.name[k])) continue;

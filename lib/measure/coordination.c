@@ -114,7 +114,8 @@ static const struct quantity numbers[] = {
     { 0 },
 };
 
-static int coordination_number_rows(struct table *t, const struct snapshot *s, struct failure *failure)
+static int coordination_number_rows(struct table *t, const struct snapshot *s,
+                                    struct failure *failure)
 {
     int32_t *count = counts_of(s), most = 0;
     int64_t all = 0;

@@ -38,7 +38,7 @@ static struct tensor *moments(const struct snapshot *s)
 }
 
 static void each_grain_fill(double *at, const struct packing *p, int64_t i, const int32_t *count,
-                 struct tensor *T)
+                            struct tensor *T)
 {
     put(&at, p->id[i]), put(&at, p->radius[i]), put_vec(&at, p->x[i]);
     put(&at, v3_norm(p->v[i])), put(&at, v3_norm(p->w[i]));

@@ -29,7 +29,8 @@ int step_start_init(struct step_start *m, const struct snapshot *s, struct failu
     *m = (struct step_start){ .p = s->p };
     if (s->moved) {
         m->p = &m->back;
-        if (packing_copy(&m->back, s->p, failure) || move_back(&m->back, s->s, failure)) return failure->status;
+        if (packing_copy(&m->back, s->p, failure) || move_back(&m->back, s->s, failure))
+            return failure->status;
     }
     return impulses_init(&m->sum, m->p, s->s, false, failure);
 }
@@ -56,7 +57,8 @@ static const struct quantity quantities[] = {
 };
 
 /* What contacts take in the step, and what boundaries give, by the motion at each contact [step/contact_motion.h] */
-static int energies_add_step(double **at, const struct snapshot *s, double *stored, struct failure *failure)
+static int energies_add_step(double **at, const struct snapshot *s, double *stored,
+                             struct failure *failure)
 {
     struct step_start m;
     double impact = 0, friction = 0, boundaries = 0, kept = 0;

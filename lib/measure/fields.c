@@ -41,7 +41,8 @@ static double fields_mean_diameter(const struct packing *p)
     return sum;
 }
 
-static int grid_init(struct fields *f, const struct snapshot *s, double spacing, struct failure *failure)
+static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
+                     struct failure *failure)
 {
     const struct region *r = &s->region;
     double origin[3] = { 0, 0, 0 }, step[3] = { 1, 1, 1 }, points = 1;
@@ -54,10 +55,11 @@ static int grid_init(struct fields *f, const struct snapshot *s, double spacing,
         if (!(size > 0)) return failure_set(failure, EX_DATAERR, "no volume to lay a grid over");
         points *= cells;
         if (!(points <= (double)MOST_POINTS))
-            return failure_set(failure, EX_DATAERR,
-                           "a grid of more than %lld points: a larger --spacing or a smaller --box "
-                           "has fewer",
-                           (long long)MOST_POINTS);
+            return failure_set(
+                failure, EX_DATAERR,
+                "a grid of more than %lld points: a larger --spacing or a smaller --box "
+                "has fewer",
+                (long long)MOST_POINTS);
         f->n[k] = (int64_t)cells, step[k] = size / cells, origin[k] = r->lo[k] + 0.5 * step[k];
     }
     f->origin = v3(origin[0], origin[1], origin[2]), f->step = v3(step[0], step[1], step[2]);
@@ -245,7 +247,8 @@ static void finish_gradient(struct fields *f, int dim, int64_t i)
         C[k] = sum[MOMENT_VD + k] - v[k / 3] * sum[MOMENT_D + k % 3];
         M[k] = sum[MOMENT_DD + k] - sum[MOMENT_D + k / 3] * sum[MOMENT_D + k % 3] / density;
     }
-    if (!(density > 0) || !fields_invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
+    if (!(density > 0) ||
+        !fields_invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
         for (int k = 0; k < 9; k++) G[k] = D[k] = NAN;
         f->x[FIELD_SHEAR_RATE][i] = f->x[FIELD_TEMPERATURE][i] = f->x[FIELD_INERTIAL][i] = NAN;
         return;
@@ -320,7 +323,7 @@ int fields_set(struct fields *f, const struct snapshot *s, struct failure *failu
         struct region_walk w = region_walk(&r, x, CUT * f->width + v3_norm(l));
         for (vec3 y; region_next(&w, &r, x, &y);)
             fields_add_contact(f, p->dim, v3_axpy(y, ahead, region_rate(&w, &r)), l,
-                        branch_force(p, s->s, i));
+                               branch_force(p, s->s, i));
     }
     for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
     fields_finish(f);

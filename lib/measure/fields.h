@@ -13,8 +13,8 @@
 #ifndef NSD_FIELDS_H
 #define NSD_FIELDS_H
 
-#include "measure/table.h"
 #include "measure/snapshot.h"
+#include "measure/table.h"
 
 enum field {
     FIELD_DENSITY,

@@ -12,7 +12,8 @@ static struct frame_memory_body *frame_memory_of(struct frame_memory *now, int32
 
 void follow_chosen(struct frame_memory *now, const struct snapshot *s)
 {
-    for (int64_t i = 0; i < s->p->n; i++) frame_memory_of(now, s->p->id[i])->chosen = snapshot_body(s, i);
+    for (int64_t i = 0; i < s->p->n; i++)
+        frame_memory_of(now, s->p->id[i])->chosen = snapshot_body(s, i);
 }
 
 /* Since when each body is in the region: as before, or now. Of those in the first frame nobody knows. */
@@ -21,7 +22,8 @@ static void follow_bodies(struct frame_memory *now, const struct snapshot *s)
     const struct packing *p = s->p;
     for (int64_t i = 0; i < p->n; i++) {
         struct frame_memory_body *b = frame_memory_of(now, p->id[i]);
-        const struct frame_memory_body *then = s->before ? frame_memory_find(s->before, p->id[i]) : NULL;
+        const struct frame_memory_body *then =
+            s->before ? frame_memory_find(s->before, p->id[i]) : NULL;
         if (!counts_body(s, i)) continue;
         b->entered = p->t, b->whole = s->before;
         if (then && follow_in(then)) b->entered = then->entered, b->whole = then->whole;

@@ -30,7 +30,8 @@ static void tenths(struct piece *s, const struct packing *p, int axis, double *l
 {
     double all = 0, below = 0;
     for (int64_t i = 0; i < p->n; i++)
-        s[i] = (struct piece){ inside_along(p->x[i], axis), grain_volume(p, i) }, all += s[i].volume;
+        s[i] = (struct piece){ inside_along(p->x[i], axis), grain_volume(p, i) },
+        all += s[i].volume;
     qsort(s, (size_t)p->n, sizeof *s, inside_by_place);
     *lo = *hi = s[0].x;
     for (int64_t i = 0; i < p->n; i++) {

@@ -21,7 +21,8 @@ static int lifetimes_rows(struct table *t, const struct snapshot *s, struct fail
     double made = 0, ended = 0, age = 0, life = 0, whole = 0, *at = table_row(t, failure);
     if (!at || follow(&now, s, true, failure)) return failure->status;
     for (int64_t k = 0; k < now.pairs; k++)
-        made += !frame_memory_pair_find(s->before, &now.pair[k]), age += s->p->t - now.pair[k].began;
+        made += !frame_memory_pair_find(s->before, &now.pair[k]),
+            age += s->p->t - now.pair[k].began;
     for (int64_t k = 0; k < s->before->pairs; k++) {
         const struct frame_memory_pair *c = &s->before->pair[k];
         if (frame_memory_pair_find(&now, c)) continue;

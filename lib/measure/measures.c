@@ -72,7 +72,8 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
     return NULL;
 }
 
-int measure_run(struct table *t, const struct measure *m, const struct snapshot *s, struct failure *failure)
+int measure_run(struct table *t, const struct measure *m, const struct snapshot *s,
+                struct failure *failure)
 {
     table_init(t, m->quantity);
     t->names = &s->p->names;
@@ -94,7 +95,7 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
 
 /* As many finite numbers as there are, from `least` to `most`, by commas; how many, or 0 with the reason */
 static int measures_numbers(const char *name, const char *text, double *x, int least, int most,
-                   struct failure *failure)
+                            struct failure *failure)
 {
     const char *s = text;
     char *end;
@@ -104,18 +105,21 @@ static int measures_numbers(const char *name, const char *text, double *x, int l
         if (!*end && k + 1 >= least) return k + 1;
         if (*end != ',') break;
     }
-    failure_set(failure, EX_USAGE, "--%s: '%s' is not %d numbers with commas between", name, text, most);
+    failure_set(failure, EX_USAGE, "--%s: '%s' is not %d numbers with commas between", name, text,
+                most);
     return 0;
 }
 
-static int measures_set_box(struct asked *a, const char *name, const char *text, struct failure *failure)
+static int measures_set_box(struct asked *a, const char *name, const char *text,
+                            struct failure *failure)
 {
     double b[6] = { 0, 0, 0, 0, -INFINITY, INFINITY };
     int n = measures_numbers(name, text, b, 4, 6, failure);
     if (!n) return failure->status;
     if (n == 5) return failure_set(failure, EX_USAGE, "--box: '%s' has five numbers", text);
     for (int k = 0; k < n / 2; k++)
-        if (!(b[2 * k] < b[2 * k + 1])) return failure_set(failure, EX_USAGE, "--box: '%s' is empty", text);
+        if (!(b[2 * k] < b[2 * k + 1]))
+            return failure_set(failure, EX_USAGE, "--box: '%s' is empty", text);
     for (int k = 0; k < 3; k++) a->lo[k] = b[2 * k], a->hi[k] = b[2 * k + 1];
     a->boxed = true;
     return 0;
@@ -153,7 +157,8 @@ static int set_plane(struct asked *a, const char *name, const char *text, struct
 }
 
 /* Above 0 */
-static int measures_set_number(double *to, const char *name, const char *text, struct failure *failure)
+static int measures_set_number(double *to, const char *name, const char *text,
+                               struct failure *failure)
 {
     char *end;
     double x = number_read(text, &end);
@@ -168,7 +173,8 @@ static int set_radius(struct asked *a, const char *name, const char *text, struc
     return measures_set_number(&a->radius, name, text, failure);
 }
 
-static int set_distance(struct asked *a, const char *name, const char *text, struct failure *failure)
+static int set_distance(struct asked *a, const char *name, const char *text,
+                        struct failure *failure)
 {
     double x = 0;
     if (measures_set_number(&x, name, text, failure)) return failure->status;
@@ -182,7 +188,8 @@ static int set_bins(struct asked *a, const char *name, const char *text, struct 
     double x = 0;
     if (measures_set_number(&x, name, text, failure)) return failure->status;
     if (x != floor(x) || x > 1e6)
-        return failure_set(failure, EX_USAGE, "--%s: %s must be a whole number, 1 to 1e6", name, text);
+        return failure_set(failure, EX_USAGE, "--%s: %s must be a whole number, 1 to 1e6", name,
+                           text);
     a->bins = (int64_t)x;
     return 0;
 }
@@ -192,7 +199,7 @@ static int set_only(struct asked *a, const char *name, const char *text, struct 
     size_t n = strlen(text);
     if (!n || n >= sizeof a->only)
         return failure_set(failure, EX_USAGE, "--%s: needs names, at most %zu bytes", name,
-                       sizeof a->only - 1);
+                           sizeof a->only - 1);
     memcpy(a->only, text, n + 1);
     return 0;
 }
@@ -201,7 +208,8 @@ static int set_finite(double *x, const char *name, const char *text, struct fail
 {
     double given = 0;
     if (measures_set_number(&given, name, text, failure)) return failure->status;
-    if (!isfinite(given)) return failure_set(failure, EX_USAGE, "--%s: %s must be finite", name, text);
+    if (!isfinite(given))
+        return failure_set(failure, EX_USAGE, "--%s: %s must be finite", name, text);
     *x = given;
     return 0;
 }
@@ -219,8 +227,8 @@ static int set_sample(struct asked *a, const char *name, const char *text, struc
 static int set_tracer(struct asked *a, const char *name, const char *text, struct failure *failure)
 {
     if (!*text || strlen(text) >= sizeof a->tracer)
-        return failure_set(failure, EX_USAGE, "--%s: '%.40s' is not the name of a kind, or large", name,
-                       text);
+        return failure_set(failure, EX_USAGE, "--%s: '%.40s' is not the name of a kind, or large",
+                           name, text);
     memcpy(a->tracer, text, strlen(text) + 1);
     return 0;
 }
@@ -229,7 +237,7 @@ static const struct {
     const char *name;
     int (*set)(struct asked *, const char *name, const char *text, struct failure *);
 } settings[] = {
-    { "box", measures_set_box },           { "layers", set_layers }, { "point", set_point },
+    { "box", measures_set_box },  { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
     { "distance", set_distance }, { "only", set_only },     { "wear", set_wear },
     { "sample", set_sample },     { "tracer", set_tracer },
@@ -266,8 +274,8 @@ int measured_choose(const struct measure **chosen, const char *names, struct fai
         if (n == 3 && !strncmp(s, "all", n))
             for (int k = 0; measure_at(k); k++) measured_choose_one(chosen, measure_at(k));
         else if (!m)
-            return failure_set(failure, EX_USAGE, "--measures: no '%.*s' (nsd-stat --list names them)",
-                           (int)n, s);
+            return failure_set(failure, EX_USAGE,
+                               "--measures: no '%.*s' (nsd-stat --list names them)", (int)n, s);
         else
             measured_choose_one(chosen, m);
         s += n;
@@ -284,8 +292,8 @@ bool measured_remember(const struct measure *const *chosen)
     return false;
 }
 
-int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct frame_memory *first,
-                  struct frame_memory *before, struct failure *failure)
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
+                  struct frame_memory *first, struct frame_memory *before, struct failure *failure)
 {
     bool pairs = false;
     struct frame_memory now;
@@ -306,15 +314,15 @@ static int check_only(const struct measure *const *chosen, const struct snapshot
         const enum keeps_to to = chosen[k]->keeps_to;
         if (to == KEEPS_TO_NOTHING && s->only.bodies)
             return failure_set(failure, EX_DATAERR,
-                           "--only: %s is measured of all bodies, not of a group or kind",
-                           chosen[k]->name);
+                               "--only: %s is measured of all bodies, not of a group or kind",
+                               chosen[k]->name);
         used = used || (to == KEEPS_TO_WALLS && s->only.walls) ||
                (to == KEEPS_TO_BODIES && s->only.bodies);
     }
     const char *of = s->only.walls ? "walls" : "bodies";
     if (used) return 0;
     return failure_set(failure, EX_DATAERR, "--only: '%s' names %s, and no measure of %s is chosen",
-                   s->asked->only, of, of);
+                       s->asked->only, of, of);
 }
 
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,

@@ -86,8 +86,8 @@ int measured_choose(const struct measure **chosen, const char *names, struct fai
 bool measured_remember(const struct measure *const *chosen);
 /* first, before = what they look back to from the next frame on; first only where the snapshot has none. Returns 0 or
    EX_SOFTWARE. */
-int measured_keep(const struct measure *const *chosen, const struct snapshot *s, struct frame_memory *first,
-                  struct frame_memory *before, struct failure *failure);
+int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
+                  struct frame_memory *first, struct frame_memory *before, struct failure *failure);
 /* t[MOST_MEASURES] = the chosen ones, none where snapshot_init() has failed with this `why`; to be freed by measured_free in any case. Returns 0, EX_SOFTWARE, or EX_DATAERR where
    one of them cannot keep to what --only names. */
 int measured_run(struct table *t, const struct measure *const *chosen, const struct snapshot *s,

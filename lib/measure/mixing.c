@@ -183,7 +183,7 @@ static int nearest(const struct packing *p)
 
 /* The centres that count, and in a cell their images within `reach`; of[] are rows of the mixture. */
 static bool mixing_gather(struct scatter *a, struct near *g, const struct snapshot *s,
-                   const struct mixture *m, double reach)
+                          const struct mixture *m, double reach)
 {
     bool room = true;
     *a = (struct scatter){ 0 };

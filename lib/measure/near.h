@@ -26,7 +26,6 @@ vec3 period_shortest(const struct period *period, vec3 way);
 /* m/s: the velocity of the cell's flow at x: what the rates of its edges make of a uniform flow */
 vec3 period_flow(const struct period *period, vec3 x);
 
-
 struct near_point {
     vec3 x;
     int32_t cell[3];

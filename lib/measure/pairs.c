@@ -49,7 +49,8 @@ static double expected(const struct scatter *a, int dim, double r)
 }
 
 /* Counts by distance, each pair twice; false: bodies crowd */
-static bool pairs_count(const struct scatter *a, const struct near *g, int64_t *counts, int64_t bins)
+static bool pairs_count(const struct scatter *a, const struct near *g, int64_t *counts,
+                        int64_t bins)
 {
     int64_t looked = 0, most = ((int64_t)1 << 26) + 20000 * a->seekers;
     for (int64_t i = 0; i < a->seekers && looked <= most; i++)
@@ -57,8 +58,8 @@ static bool pairs_count(const struct scatter *a, const struct near *g, int64_t *
     return looked <= most;
 }
 
-static void pairs_fill(struct table *t, const struct snapshot *s, const struct scatter *a, double reach,
-                 const int64_t *counts, struct failure *failure)
+static void pairs_fill(struct table *t, const struct snapshot *s, const struct scatter *a,
+                       double reach, const int64_t *counts, struct failure *failure)
 {
     double bins = (double)s->asked->bins, n = (double)a->seekers, least = INFINITY;
     for (int k = 0; k < 3 && k < s->p->dim; k++) least = fmin(least, a->size[k]);
@@ -113,7 +114,8 @@ static int pairs_rows(struct table *t, const struct snapshot *s, struct failure 
     else if (room)
         pairs_fill(t, s, &a, reach, counts, failure);
     near_free(&g), scatter_free(&a), free(counts);
-    return room ? failure->status : failure_set(failure, EX_SOFTWARE, "no memory for pairs of bodies");
+    return room ? failure->status
+                : failure_set(failure, EX_SOFTWARE, "no memory for pairs of bodies");
 }
 
 const struct measure measure_pairs = {

@@ -38,8 +38,8 @@ static vec3 velocity(const struct snapshot *s, const struct region *r, double ma
     return v3_scale(1 / mass, sum);
 }
 
-static void profile_add_layer(struct table *t, const struct snapshot *s, const struct region *r, double *at,
-                      const void *none)
+static void profile_add_layer(struct table *t, const struct snapshot *s, const struct region *r,
+                              double *at, const void *none)
 {
     struct moving m;
     (void)none;

@@ -41,7 +41,8 @@ struct region_walk region_walk(const struct region *r, vec3 x, double margin)
             most += fmax(w[j] * r->lo[j], w[j] * r->hi[j]);
         }
         least = ceil(least - more - at), most = floor(most + more - at);
-        if (bounded && !(most - least < far)) least = 0, most = far; // region_check_images() refuses it
+        if (bounded && !(most - least < far))
+            least = 0, most = far; // region_check_images() refuses it
         if (bounded && fabs(least) <= far && fabs(most) <= far)
             s.from[k] = (int64_t)least, s.to[k] = (int64_t)most;
         s.at[k] = s.from[k];
@@ -65,8 +66,8 @@ int region_check_images(const struct region *r, int64_t n, double margin, const 
         region_walk(r, v3(r->lo[0], r->lo[1], r->dim == 3 ? r->lo[2] : 0), margin);
     for (int k = 0; k < 3; k++) images *= (double)(w.to[k] - w.from[k] + 1);
     if (images <= few || images * (double)n <= most) return 0;
-    return failure_set(failure, EX_DATAERR, "%s %.3g images of each body in the periodic cell", what,
-                   images);
+    return failure_set(failure, EX_DATAERR, "%s %.3g images of each body in the periodic cell",
+                       what, images);
 }
 
 bool region_next(struct region_walk *w, const struct region *r, vec3 x, vec3 *image)
@@ -273,7 +274,8 @@ double region_ball(const struct region *r, vec3 x, double radius)
 }
 
 /* The s in [*from, *to] with |x + s l - centre| < R, both across z: what is left of them */
-static double region_within(const struct region *r, vec3 x, vec3 l, double R, double from, double to)
+static double region_within(const struct region *r, vec3 x, vec3 l, double R, double from,
+                            double to)
 {
     double dx = x.x - r->centre.x, dy = x.y - r->centre.y;
     double a = l.x * l.x + l.y * l.y, b = dx * l.x + dy * l.y, c = dx * dx + dy * dy - R * R;
@@ -299,7 +301,8 @@ static double one_way(const struct region *r, vec3 x, vec3 l)
     }
     if (!(to > from)) return 0;
     if (r->outer > 0)
-        return region_within(r, x, l, r->outer, from, to) - region_within(r, x, l, r->inner, from, to);
+        return region_within(r, x, l, r->outer, from, to) -
+               region_within(r, x, l, r->inner, from, to);
     return to - from;
 }
 

@@ -18,7 +18,6 @@
 /* Narrows [lo, hi] (m) to what walls upright to the axis leave of it, where they are now. */
 void reach_of_planes(const struct packing *p, int axis, double *lo, double *hi);
 
-
 struct region {
     int dim;
     bool all;            /* everything is in it, wherever it is */

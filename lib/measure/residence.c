@@ -34,7 +34,8 @@ static int residence_rows(struct table *t, const struct snapshot *s, struct fail
     double *at = table_row(t, failure);
     if (!at || follow(&now, s, false, failure)) return failure->status;
     for (int64_t k = 0; k < now.n; k++) {
-        const struct frame_memory_body *b = &now.body[k], *then = frame_memory_find(s->before, b->id);
+        const struct frame_memory_body *b = &now.body[k],
+                                       *then = frame_memory_find(s->before, b->id);
         if (!follow_in(b)) continue;
         bodies++, age += s->p->t - b->entered, entered += !then || !follow_in(then);
     }

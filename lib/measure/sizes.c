@@ -26,7 +26,7 @@ static double sizes_mean_radius(const struct snapshot *s)
 }
 
 static void sizes_add_layer(struct table *t, const struct snapshot *s, const struct region *layer,
-                      double *at, const void *with)
+                            double *at, const void *with)
 {
     double n = 0, sum = 0, least = INFINITY, most = 0, volume = 0, large = 0,
            mean = *(const double *)with;

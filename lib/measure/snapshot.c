@@ -70,7 +70,8 @@ static void snapshot_look(struct deformed *d, const struct packing *p)
 static bool recut(const struct deformed *then, const struct deformed *now, struct tensor *N)
 {
     double half = (now->t - then->t) / 2;
-    struct tensor ahead = snapshot_grown(then, half), back = snapshot_grown(now, -half), E = of_columns(then->span);
+    struct tensor ahead = snapshot_grown(then, half), back = snapshot_grown(now, -half),
+                  E = of_columns(then->span);
     struct tensor to = of_columns(now->span), from = snapshot_times(&ahead, &E);
     // the rates say how far the edges have gone by half a span of time from either end
     to = snapshot_times(&back, &to);
@@ -91,7 +92,8 @@ void deformed_follow(struct deformed *d, const struct packing *p)
     } else if (!recut(d, &now, &N)) {
         now.lost = true, now.F = d->F;
     } else {
-        struct tensor E = of_columns(d->span), EN = snapshot_times(&E, &N), to = of_columns(now.span);
+        struct tensor E = of_columns(d->span), EN = snapshot_times(&E, &N),
+                      to = of_columns(now.span);
         EN = inverse_of(&EN);
         struct tensor step = snapshot_times(&to, &EN);
         now.F = snapshot_times(&step, &d->F);
@@ -113,7 +115,8 @@ int frame_memory_set(struct frame_memory *k, const struct packing *p, struct fai
     k->body = body, k->n = p->n, k->step = p->step, k->t = p->t;
     bool sorted = true;
     for (int64_t i = 0; i < p->n; i++) {
-        body[i] = (struct frame_memory_body){ p->id[i], p->mass[i], frame_memory_place(p, i), NAN, false, false };
+        body[i] = (struct frame_memory_body){ p->id[i], p->mass[i], frame_memory_place(p, i),
+                                              NAN,      false,      false };
         sorted = sorted && (!i || body[i - 1].id < body[i].id);
     }
     sums_free(&k->sums);
@@ -142,7 +145,8 @@ int frame_memory_pair_order(const void *a, const void *b)
     return x->b < y->b ? -1 : x->b > y->b;
 }
 
-const struct frame_memory_pair *frame_memory_pair_find(const struct frame_memory *k, const struct frame_memory_pair *pair)
+const struct frame_memory_pair *frame_memory_pair_find(const struct frame_memory *k,
+                                                       const struct frame_memory_pair *pair)
 {
     if (!k || !k->pair) return NULL;
     return bsearch(pair, k->pair, (size_t)k->pairs, sizeof *pair, frame_memory_pair_order);
@@ -172,8 +176,8 @@ static int check_tracer(const struct packing *p, const char *tracer, struct fail
         if (at < sizeof kinds)
             at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
     }
-    return failure_set(failure, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer, kinds,
-                   at < sizeof kinds ? "" : "...");
+    return failure_set(failure, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer,
+                       kinds, at < sizeof kinds ? "" : "...");
 }
 
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,

@@ -67,13 +67,13 @@ void frame_memory_free(struct frame_memory *k);
 const struct frame_memory_body *frame_memory_find(const struct frame_memory *k, int32_t id);
 /* For qsort: of kept pairs; and the pair of the same bodies, NULL: it did not touch, or k is NULL. */
 int frame_memory_pair_order(const void *a, const void *b);
-const struct frame_memory_pair *frame_memory_pair_find(const struct frame_memory *k, const struct frame_memory_pair *pair);
+const struct frame_memory_pair *frame_memory_pair_find(const struct frame_memory *k,
+                                                       const struct frame_memory_pair *pair);
 
 /* m: where body i is, with the edges added that were taken off it */
 vec3 frame_memory_place(const struct packing *p, int64_t i);
 /* m: from the kept place to the present one, the shortest among images where the cell repeats */
 vec3 frame_memory_way(const struct packing *p, vec3 from, vec3 to);
-
 
 /* What the user asks for in addition to the measures' names; the same for all frames */
 struct asked {
@@ -102,9 +102,9 @@ struct snapshot {
     double
         unconverged; /* steps since the frame before, or of the first all, that have not converged; NaN: not known */
     const struct frame_memory *first, *before; /* frames before this one; NULL: it is the first */
-    struct region whole;               /* all there is, and its volume */
-    struct region region;              /* the box, or else the whole */
-    struct selection only;                /* of this frame, what asked->only names */
+    struct region whole;                       /* all there is, and its volume */
+    struct region region;                      /* the box, or else the whole */
+    struct selection only;                     /* of this frame, what asked->only names */
 };
 
 /* s = a frame. Regions and names are found; the rest is borrowed. Returns 0, EX_DATAERR where a name of `asked` is not

@@ -1,6 +1,6 @@
 /* measure/strain.c: the logarithmic strain since the first frame. */
-#include "measure/snapshot.h"
 #include "measure/measures.h"
+#include "measure/snapshot.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 /* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [state/wall_load.h]. */
 
-#include "state/face_of.h"
 #include "measure/measures.h"
+#include "state/face_of.h"
 
 #include <math.h>
 #include <string.h>
@@ -86,7 +86,7 @@ static void sums_add(struct sum *to, const struct look *l, int32_t wall, int32_t
 }
 
 static void sums_add_faces(struct sum *to, const struct look *l, int32_t wall, int32_t first,
-                      int32_t count)
+                           int32_t count)
 {
     for (int32_t k = first; k < first + count; k++) sums_add(to, l, wall, k);
 }
@@ -118,8 +118,10 @@ static void explain(struct table *t, const struct look *l)
     }
     if (!(l->span > 0)) table_null(t, "no time has passed since the sums began");
     if (area || wear)
-        table_null(t, "%s%s%s", area ? "a wall without ends has no area, unless it is a plane between "
-                          "others upright to it or across a periodic cell" : "",
+        table_null(t, "%s%s%s",
+                   area ? "a wall without ends has no area, unless it is a plane between "
+                          "others upright to it or across a periodic cell"
+                        : "",
                    area && wear ? ", and " : "",
                    wear ? "wear needs a coefficient: --wear, or the key wear of the wall" : "");
 }
@@ -158,7 +160,7 @@ static int sums_names_rows(struct table *t, const struct snapshot *s, struct fai
         for (end = k; end < names->rows && names->row[end].name == names->row[k].name; end++) {
             const struct named *r = &names->row[end];
             sums_add_faces(&sum, &l, r->boundary, r->first,
-                      r->count ? r->count : sums_count_of(&l, r->boundary));
+                           r->count ? r->count : sums_count_of(&l, r->boundary));
         }
         if (s->only.walls && !s->only.name[names->row[k].name]) continue;
         double *at = table_row(t, failure);
@@ -181,7 +183,8 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct failure 
             double *at = table_row(t, failure);
             if (!at) break;
             sums_add(&sum, &l, w, k);
-            put(&at, w), put(&at, sums_row_of(s->p, names_of_face(&s->p->names, w, k))), put(&at, k);
+            put(&at, w), put(&at, sums_row_of(s->p, names_of_face(&s->p->names, w, k))),
+                put(&at, k);
             put_sum(&at, &l, &sum);
         }
     explain(t, &l);

@@ -61,8 +61,9 @@ static int64_t tops(struct rotation *top, const struct snapshot *s, const struct
     for (int64_t i = 0; i < p->n; i++) {
         if (!counts_body(s, i) || (count && !count[i])) continue;
         vec3 x = p->x[i];
-        top[n++] = (struct rotation){ floor(v3_dot(x, e->a) / width), floor(v3_dot(x, e->b) / width),
-                                 v3_dot(x, e->up) + p->radius[i], i };
+        top[n++] =
+            (struct rotation){ floor(v3_dot(x, e->a) / width), floor(v3_dot(x, e->b) / width),
+                               v3_dot(x, e->up) + p->radius[i], i };
     }
     qsort(top, (size_t)n, sizeof *top, by_square);
     for (int64_t k = 0; k < n; k++)
@@ -144,8 +145,8 @@ static double degrees(double slope)
     return 180 / M_PI * atan(slope);
 }
 
-static void surface_fill(double *at, struct table *t, const struct snapshot *s, const struct basis *e,
-                 const struct rotation *top, int64_t n)
+static void surface_fill(double *at, struct table *t, const struct snapshot *s,
+                         const struct basis *e, const struct rotation *top, int64_t n)
 {
     double slope[2], spread, steep;
     int64_t apex = 0;

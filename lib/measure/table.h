@@ -30,7 +30,6 @@ static inline bool quantity_is_name(const struct quantity *q)
     return !strcmp(q->unit, "name");
 }
 
-
 struct table {
     const struct quantity *quantity; /* up to one without a name */
     int width;                       /* numbers in a row */

@@ -1,12 +1,12 @@
 /* mpi/blocks.c: every rank its own contacts, an exchange a sweep [mpi/blocks.h]. */
 #include "mpi/blocks.h"
 
-#include "state/rotation.h"
 #include "mpi/halo.h"
+#include "state/rotation.h"
 
+#include "solve/mass_splitting.h"
 #include "step/move.h"
 #include "step/project.h"
-#include "solve/mass_splitting.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -302,7 +302,8 @@ static void project_here(struct blocks *b, const struct contacts *s, const bool 
     struct failure failure = { 0 };
     struct apart a = { b, letters(t, b->touched, 3) };
     const struct project_share share = { &a, own, b->slower, in_any, after_sweep };
-    if (project_shared(&b->part->p, s, &share, did, &failure)) comm_fail(t, failure.status, failure.text);
+    if (project_shared(&b->part->p, s, &share, did, &failure))
+        comm_fail(t, failure.status, failure.text);
     letters_free(t, a.since);
     subdomain_refresh(b->part);
 }
@@ -314,7 +315,9 @@ void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projec
     subdomain_refresh(b->part);
     if (overlap_projects(p->overlap)) project_here(b, s, own, did);
     if (did && energy_has_peculiar(p)) did->peculiar = energy_peculiar(p, own);
-    if (did) blocks_add(&b->exchange, (double *)did, sizeof *did / sizeof(double)); // it has nothing else
+    if (did)
+        blocks_add(&b->exchange, (double *)did,
+                   sizeof *did / sizeof(double)); // it has nothing else
     free(own);
 }
 
@@ -324,7 +327,8 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
     struct subdomain *y = b->part;
     struct failure failure = { 0 };
     bool *own = blocks_own_of(y);
-    if (balance_step(told, &y->p, s, sum, own, &failure)) comm_fail(y->comm, failure.status, failure.text);
+    if (balance_step(told, &y->p, s, sum, own, &failure))
+        comm_fail(y->comm, failure.status, failure.text);
     free(own);
     blocks_add(&b->exchange, (double *)told, sizeof *told / sizeof(double)); // it has nothing else
 }

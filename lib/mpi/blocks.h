@@ -13,12 +13,12 @@
 #ifndef NSD_BLOCKS_H
 #define NSD_BLOCKS_H
 
-#include "step/balance.h"
-#include "step/project.h"
+#include "mpi/halo.h"
+#include "mpi/subdomain.h"
 #include "solve/exchange.h"
 #include "solve/problem.h"
-#include "mpi/subdomain.h"
-#include "mpi/halo.h"
+#include "step/balance.h"
+#include "step/project.h"
 
 struct blocks {
     struct exchange exchange; /* first: what solvers are given leads back here */

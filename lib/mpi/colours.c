@@ -102,7 +102,7 @@ static int by_walk(const void *a, const void *b)
 }
 
 static void colours_lay_plan(struct colours *c, const struct comm *t, int64_t groups, int64_t n,
-                     struct stop *stop)
+                             struct stop *stop)
 {
     struct schedule *plan = &c->plan;
     int64_t bundles = 0;

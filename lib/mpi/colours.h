@@ -14,10 +14,10 @@
 #ifndef NSD_COLOURS_H
 #define NSD_COLOURS_H
 
-#include "solve/exchange.h"
-#include "solve/problem.h"
 #include "mpi/contact_list.h"
 #include "mpi/halo.h"
+#include "solve/exchange.h"
+#include "solve/problem.h"
 
 struct colours {
     struct exchange exchange; /* first: what solvers are given leads back here */

@@ -10,7 +10,8 @@ static bool comes_first(const struct contact *a, const struct contact *b)
 }
 
 /* Merges what the ranks have sent: contacts of one pair are all of one rank. */
-static void contact_list_merge(struct contact_list *l, struct comm *t, struct parcel *in, struct contacts *all)
+static void contact_list_merge(struct contact_list *l, struct comm *t, struct parcel *in,
+                               struct contacts *all)
 {
     const size_t size = sizeof(struct contact);
     struct contact **c = comm_new(t, t->n, sizeof(struct contact *));
@@ -184,7 +185,8 @@ static int contact_list_by_place(const void *a, const void *b)
 }
 
 /* owner[chunks]: the rank that has most of a chunk */
-static int *chunk_owners(struct comm *t, const struct contact_list_item *item, int64_t n, int64_t chunks)
+static int *chunk_owners(struct comm *t, const struct contact_list_item *item, int64_t n,
+                         int64_t chunks)
 {
     struct {
         int n, rank;

@@ -69,8 +69,8 @@ static int bisection_count(void *arg, int *error)
     return (int)y->n;
 }
 
-static void bisection_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
-                 float *weight, int *error)
+static void bisection_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid,
+                           int weights, float *weight, int *error)
 {
     const struct bisection *y = arg;
     (void)gids, (void)lids, (void)weights;
@@ -110,7 +110,8 @@ static void *bisection_begin(struct comm *t)
                                           { "REDUCE_DIMENSIONS", "0" }, { NULL, NULL } };
     struct bisection *y = comm_new(t, 1, sizeof *y);
     y->comm = t, y->zz = decomposition_zoltan(t, set);
-    Zoltan_Set_Num_Obj_Fn(y->zz, bisection_count, y), Zoltan_Set_Obj_List_Fn(y->zz, bisection_list, y);
+    Zoltan_Set_Num_Obj_Fn(y->zz, bisection_count, y),
+        Zoltan_Set_Obj_List_Fn(y->zz, bisection_list, y);
     Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
     return y;
 }
@@ -154,4 +155,5 @@ static int bisection_meets(const void *made, vec3 lo, vec3 hi, int *rank)
     return n;
 }
 
-const struct cuts cuts_bisection = { bisection_begin, bisection_end, bisection_cut, bisection_owner, bisection_meets };
+const struct cuts cuts_bisection = { bisection_begin, bisection_end, bisection_cut, bisection_owner,
+                                     bisection_meets };

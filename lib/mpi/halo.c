@@ -51,7 +51,7 @@ static void take_list(struct halo *w, const struct subdomain *y, struct parcel *
 }
 
 void halo_lay(struct halo *w, const struct subdomain *y, int64_t groups, int64_t n,
-               const struct halo_item *errand)
+              const struct halo_item *errand)
 {
     struct comm *t = y->comm;
     struct parcel *out = parcels_new(t), *in = parcels_new(t);

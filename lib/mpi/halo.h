@@ -36,7 +36,7 @@ struct halo_item {
 /* Collective. errand[n], in the order of groups for each rank, of bodies that this rank owns; the others learn
    from it what will come. */
 void halo_lay(struct halo *w, const struct subdomain *y, int64_t groups, int64_t n,
-               const struct halo_item *errand);
+              const struct halo_item *errand);
 void halo_free(struct halo *w);
 /* Sends what goes after group g, and waits for what comes: between them there is time for other work. */
 void halo_send(struct halo *w, const struct problem *p, int64_t g);

@@ -82,8 +82,8 @@ static int hypergraph_count(void *arg, int *error)
     return n;
 }
 
-static void hypergraph_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid, int weights,
-                 float *weight, int *error)
+static void hypergraph_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid,
+                            int weights, float *weight, int *error)
 {
     const struct hypergraph_cells *c = arg;
     int n = 0;
@@ -165,7 +165,8 @@ static void *hypergraph_begin(struct comm *t)
                                           { NULL, NULL } };
     struct hypergraph_cells *c = comm_new(t, 1, sizeof *c);
     c->comm = t, c->zz = decomposition_zoltan(t, set);
-    Zoltan_Set_Num_Obj_Fn(c->zz, hypergraph_count, c), Zoltan_Set_Obj_List_Fn(c->zz, hypergraph_list, c);
+    Zoltan_Set_Num_Obj_Fn(c->zz, hypergraph_count, c),
+        Zoltan_Set_Obj_List_Fn(c->zz, hypergraph_list, c);
     Zoltan_Set_HG_Size_CS_Fn(c->zz, edge_sizes, c), Zoltan_Set_HG_CS_Fn(c->zz, edges, c);
     Zoltan_Set_HG_Size_Edge_Wts_Fn(c->zz, weight_sizes, c);
     Zoltan_Set_HG_Edge_Wts_Fn(c->zz, edge_weights, c);
@@ -218,7 +219,8 @@ static void lay_grid(struct hypergraph_cells *c, int64_t n, const vec3 *x)
 }
 
 /* What is in each cell, of all ranks */
-static void hypergraph_weigh(struct hypergraph_cells *c, int64_t n, const vec3 *x, const float *weight)
+static void hypergraph_weigh(struct hypergraph_cells *c, int64_t n, const vec3 *x,
+                             const float *weight)
 {
     struct comm *t = c->comm;
     c->work = comm_new(t, c->n, sizeof *c->work), c->count = comm_new(t, c->n, sizeof *c->count);
@@ -311,4 +313,5 @@ static int hypergraph_meets(const void *made, vec3 lo, vec3 hi, int *rank)
     return n;
 }
 
-const struct cuts cuts_hypergraph = { hypergraph_begin, hypergraph_end, hypergraph_cut, hypergraph_owner, hypergraph_meets };
+const struct cuts cuts_hypergraph = { hypergraph_begin, hypergraph_end, hypergraph_cut,
+                                      hypergraph_owner, hypergraph_meets };

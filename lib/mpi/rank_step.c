@@ -1,19 +1,19 @@
 /* mpi/rank_step.c: one time step of all ranks [mpi/rank_step.h]. */
-#include "contact/depth.h"
 #include "mpi/rank_step.h"
+#include "contact/depth.h"
 
-#include "state/freedom.h"
-#include "state/placement.h"
-#include "contact/time_of_impact.h"
 #include "contact/detect.h"
-#include "contact/tunnelling.h"
+#include "contact/time_of_impact.h"
 #include "contact/touching.h"
-#include "solve/prepare.h"
+#include "contact/tunnelling.h"
 #include "mpi/blocks.h"
 #include "mpi/colours.h"
 #include "mpi/contact_list.h"
 #include "mpi/settings.h"
+#include "solve/prepare.h"
 #include "state/account.h"
+#include "state/freedom.h"
+#include "state/placement.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -89,12 +89,13 @@ static void find_contacts(struct rank_step *y, double gap, double reach, struct 
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_has(part, &s->c[i]);
     rank_step_sift(s, keep);
     free(keep);
-    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &failure)) rank_step_fail(y, &failure);
+    if (!part->p.law && detect_choose(s, &part->p, gap, reach, &failure))
+        rank_step_fail(y, &failure);
 }
 
 /* Which of `before` laws have left in `all`, into of[before->n]; `added`: what they have put there besides */
-static void rank_step_compare(struct comm *t, const struct contacts *before, const struct contacts *all,
-                    struct verdict *of, struct parcel *added)
+static void rank_step_compare(struct comm *t, const struct contacts *before,
+                              const struct contacts *all, struct verdict *of, struct parcel *added)
 {
     int64_t k = 0;
     for (int64_t i = 0; i <= before->n; i++) {
@@ -160,8 +161,8 @@ struct rank_step_gathered {
 
 /* The first rank chooses by the laws which of all are contacts, and adds others; then all ranks have these. */
 static int choose_by_laws(struct rank_step *y, const struct packing *whole,
-                          const struct rank_step_gathered *g, const struct step_opt *o, double reach,
-                          struct failure *failure)
+                          const struct rank_step_gathered *g, const struct step_opt *o,
+                          double reach, struct failure *failure)
 {
     struct contact_list *list = g->list;
     struct contacts *s = g->here, *all = g->all;
@@ -172,8 +173,10 @@ static int choose_by_laws(struct rank_step *y, const struct packing *whole,
                    *mine = comm_new(t, s->n, sizeof *mine);
     if (!t->me) {
         if (contacts_copy(&before, all))
-            return free(of), free(mine), failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
-        if (detect_choose(all, whole, o->gap, reach, failure)) return free(of), free(mine), failure->status;
+            return free(of), free(mine),
+                   failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
+        if (detect_choose(all, whole, o->gap, reach, failure))
+            return free(of), free(mine), failure->status;
         rank_step_compare(t, &before, all, of, &added);
     }
     contact_list_tell(list, &y->part, s, of, mine);
@@ -233,7 +236,7 @@ static double mean_mass(const struct rank_step *y, const struct packing *whole)
 
 /* Prepared, solved and stored, by all ranks */
 static void rank_step_solve(struct rank_step *y, struct problem *p, struct contacts *s,
-                  const struct step_opt *o, struct report *rep)
+                            const struct step_opt *o, struct report *rep)
 {
     int64_t bytes = y->part.comm->bytes, messages = y->part.comm->messages;
     double since = comm_busy() - y->part.comm->waited;
@@ -247,8 +250,8 @@ static void rank_step_solve(struct rank_step *y, struct problem *p, struct conta
 
 /* In the order of all; returns whether it is solved: else one process has to have all of it. */
 static bool solve_in_order(struct rank_step *y, const struct packing *whole,
-                           const struct rank_step_gathered *g, const struct step_opt *o, struct report *rep,
-                           struct failure *failure)
+                           const struct rank_step_gathered *g, const struct step_opt *o,
+                           struct report *rep, struct failure *failure)
 {
     const struct contact_list *list = g->list;
     struct contacts *s = g->here;
@@ -333,8 +336,9 @@ static void detect_here(struct rank_step *y, const struct packing *whole, struct
 }
 
 /* The contacts, and what they start from */
-static int rank_step_detect(struct rank_step *y, struct packing *whole, const struct rank_step_gathered *g,
-                  const struct step_opt *o, struct failure *failure)
+static int rank_step_detect(struct rank_step *y, struct packing *whole,
+                            const struct rank_step_gathered *g, const struct step_opt *o,
+                            struct failure *failure)
 {
     struct contact_list *list = g->list;
     struct contacts *s = g->here, *all = g->all;
@@ -345,7 +349,8 @@ static int rank_step_detect(struct rank_step *y, struct packing *whole, const st
     detect_here(y, whole, s, o, &reach);
     contact_list_gather(list, &y->part, s, all);
     int e = y->part.p.law ? choose_by_laws(y, whole, g, o, reach, failure) : 0;
-    if (!e && !t->me && o->warm) e = memory_give(&whole->memory, all, packing_rolls(whole), failure);
+    if (!e && !t->me && o->warm)
+        e = memory_give(&whole->memory, all, packing_rolls(whole), failure);
     if (!e && (y->part.p.law || o->warm)) contact_list_tell_laws(list, &y->part, s, all);
     return e;
 }
@@ -377,7 +382,8 @@ static int detect_by_first(struct step_makers *m, struct packing *whole, struct 
                            const struct step_opt *o, struct failure *failure)
 {
     struct by_first *f = (struct by_first *)m;
-    return rank_step_detect(f->y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, failure);
+    return rank_step_detect(f->y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o,
+                            failure);
 }
 
 static int solve_by_first(struct step_makers *m, const struct packing *whole, struct contacts *all,
@@ -390,8 +396,8 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
     if (blocks)
         solve_in_blocks(y, &b, whole, &f->here, o, rep), blocks_free(&b);
     else if (solved)
-        solved =
-            solve_in_order(y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list }, o, rep, failure);
+        solved = solve_in_order(y, whole, &(struct rank_step_gathered){ &f->here, all, &f->list },
+                                o, rep, failure);
     if (solved) contact_list_found(&f->list, &y->part, &f->here, all);
     y->alone += !solved;
     if (m->helps) return 0;
@@ -412,8 +418,8 @@ struct rank_step_turn {
 };
 
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
-                         const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
-                         struct failure *failure)
+                         const struct step_opt *o, const struct rank_step_turn *turn,
+                         struct report *rep, struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct by_first f = { .makers = { .helps = t->me,
@@ -510,7 +516,8 @@ static void watch_here(struct rank_step *y, struct windows watch, struct report 
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
     if (watch.fixed.length > 0) tunnelling_passed(&here, p, own, y->near.surface, watch.fixed);
-    if (tunnelling_count(&here, p, own, &fast, watch.bodies, watch.beyond, &failure)) rank_step_fail(y, &failure);
+    if (tunnelling_count(&here, p, own, &fast, watch.bodies, watch.beyond, &failure))
+        rank_step_fail(y, &failure);
     free(fast.of), free(own);
     all.n = comm_sum(t, here.n);
     double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
@@ -618,8 +625,8 @@ static int watch_by_all(struct step_makers *m, const struct packing *p, struct w
 }
 
 static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
-                       const struct step_opt *o, const struct rank_step_turn *turn, struct report *rep,
-                       struct failure *failure)
+                       const struct step_opt *o, const struct rank_step_turn *turn,
+                       struct report *rep, struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct contacts s = { 0 };
@@ -665,7 +672,8 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
     packing_wrap(p, NULL);
     bool *own = own_bodies(y);
     struct fast_list fast = fast_of_all(y, own);
-    if (fast.n && time_of_impact_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &failure))
+    if (fast.n &&
+        time_of_impact_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &failure))
         rank_step_fail(y, &failure);
     if (fast.n) c->length = -comm_most(t, -c->length);
     for (bool passes = fast.n > 0; passes && c->length > substeps_least(s);) {
@@ -678,8 +686,9 @@ static void choose_here(struct rank_step *y, struct substep_choice *c, const str
 }
 
 /* Collective */
-static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank_step_turn *turn, struct packing *whole,
-                  bool by_all, const struct step_opt *o, struct failure *failure)
+static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank_step_turn *turn,
+                            struct packing *whole, bool by_all, const struct step_opt *o,
+                            struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct substep_choice c = step_substep(s, o);

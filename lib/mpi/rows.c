@@ -25,12 +25,14 @@ static void rows_make_room(struct rows *r, const struct rows_block *b)
     rows_free(r);
     *r = (struct rows){ .comm = t, .all = b->all, .first = rows_begin(b->all, t->n, t->me) };
     int64_t n = rows_begin(b->all, t->n, t->me + 1) - r->first;
-    if (packing_init(&r->p, b->dim, n, &failure) || packing_alloc_optional(&r->p, b->optional, &failure))
+    if (packing_init(&r->p, b->dim, n, &failure) ||
+        packing_alloc_optional(&r->p, b->optional, &failure))
         rows_fail(t, &failure);
 }
 
 /* Rows first .. end - 1 that a block and rank k both have; false: none */
-static bool common(const struct rows_block *b, const struct comm *t, int k, int64_t *first, int64_t *end)
+static bool common(const struct rows_block *b, const struct comm *t, int k, int64_t *first,
+                   int64_t *end)
 {
     *first = rows_begin(b->all, t->n, k), *end = rows_begin(b->all, t->n, k + 1);
     if (*first < b->first) *first = b->first;
@@ -45,7 +47,8 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
     struct parcel *out = parcels_new(t), mine = { 0 };
     int64_t from, end;
     const struct column *c;
-    if (!t->me) b = (struct rows_block){ first, block->n, all, block->dim, packing_optional(block) };
+    if (!t->me)
+        b = (struct rows_block){ first, block->n, all, block->dim, packing_optional(block) };
     MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->mpi);
     r->comm = t;
     if (!b.first) rows_make_room(r, &b);
@@ -181,8 +184,8 @@ static hid_t select_rows(hid_t set, const struct target *o, int64_t first, int64
     return -1;
 }
 
-static bool rows_write_rows(hid_t file, const struct target *o, int64_t first, int64_t n, hid_t transfer,
-                       const void *data)
+static bool rows_write_rows(hid_t file, const struct target *o, int64_t first, int64_t n,
+                            hid_t transfer, const void *data)
 {
     const hsize_t numbers = (hsize_t)(n * o->width);
     hid_t set = H5Dopen2(file, o->path, H5P_DEFAULT);

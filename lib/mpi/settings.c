@@ -87,7 +87,8 @@ static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes
         s.faces -= s.faces > 0;
         s.corners = (int32_t)parcel_take_array(t, o, &s.corner, sizeof *s.corner);
         const double volume = s.volume, moment[3] = { s.moment[0], s.moment[1], s.moment[2] };
-        if (shape_finish(&s, dim, &failure) || shapes_add(list, dim, &s, &failure)) settings_fail(t, &failure);
+        if (shape_finish(&s, dim, &failure) || shapes_add(list, dim, &s, &failure))
+            settings_fail(t, &failure);
         struct shape *made = &list->s[list->n - 1];
         made->volume = volume;
         for (int j = 0; j < 3; j++) made->moment[j] = moment[j];
@@ -152,7 +153,8 @@ static void settings_take(struct comm *t, struct parcel *o, struct packing *p)
     struct failure failure = { 0 };
     parcel_take(t, o, &n, sizeof n);
     packing_free(p);
-    if (packing_init(p, n.dim, 0, &failure) || packing_alloc_kinds(p, n.kinds, &failure)) settings_fail(t, &failure);
+    if (packing_init(p, n.dim, 0, &failure) || packing_alloc_kinds(p, n.kinds, &failure))
+        settings_fail(t, &failure);
     p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
     p->pulls_most = n.pulls_most;
     p->t0 = n.t0, p->step0 = n.step0;

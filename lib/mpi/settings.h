@@ -5,8 +5,8 @@
 #ifndef NSD_SETTINGS_H
 #define NSD_SETTINGS_H
 
-#include "state/packing.h"
 #include "mpi/comm.h"
+#include "state/packing.h"
 
 /* Collective. Of the first rank's packing; in the others *p is made, with no bodies: freed before. */
 void settings_spread(struct comm *t, struct packing *p);

@@ -118,7 +118,7 @@ static void take_all(struct subdomain *y, const struct packing *whole)
 }
 
 static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct decomposition *space,
-                  const struct packing *settings)
+                                  const struct packing *settings)
 {
     struct failure failure = { 0 };
     *y = (struct subdomain){ .comm = t, .territory = space };

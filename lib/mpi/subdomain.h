@@ -6,9 +6,9 @@
 #ifndef NSD_SUBDOMAIN_H
 #define NSD_SUBDOMAIN_H
 
+#include "mpi/decomposition.h"
 #include "state/contact.h"
 #include "state/packing.h"
-#include "mpi/decomposition.h"
 
 /* Bodies that are here and at another rank too, in the order of rows */
 struct border {

@@ -27,7 +27,7 @@ int nsd_force(struct nsd_run *r, int32_t id, const double force[3], const double
     enum control_lasting t = failure ? term_of(term, failure) : CONTROL_TERMS;
     if (t == CONTROL_TERMS) return NSD_USAGE;
     return control_force(&r->acts, &r->f.packing, id, (struct wrench){ of(force), of(torque) }, t,
-                      failure);
+                         failure);
 }
 
 int nsd_boundary_force(struct nsd_run *r, int32_t boundary, double force, enum nsd_term term)
@@ -56,7 +56,8 @@ int nsd_velocity(struct nsd_run *r, int32_t id, const double velocity[3],
     if (i < 0) return failure_set(failure, NSD_DATA, "there is no body %d", id);
     const vec3 had = p->v[i];
     if (velocity && control_motion(p, i, false, of(velocity), failure)) return failure->status;
-    if (angular_velocity && control_motion(p, i, true, of(angular_velocity), failure)) p->v[i] = had;
+    if (angular_velocity && control_motion(p, i, true, of(angular_velocity), failure))
+        p->v[i] = had;
     return failure->status;
 }
 
@@ -131,8 +132,9 @@ static int act_check(const struct nsd_run *r, const struct nsd_bodies *b, struct
     if (!b || b->size < sizeof *b)
         return failure_set(failure, NSD_USAGE, "bodies: size is not that of struct nsd_bodies");
     if (b->n < 0 || b->n > INT32_MAX - next_id(r))
-        return failure_set(failure, NSD_DATA, "bodies: %lld of them, and there are numbers for %lld",
-                       (long long)b->n, (long long)(INT32_MAX - next_id(r)));
+        return failure_set(failure, NSD_DATA,
+                           "bodies: %lld of them, and there are numbers for %lld", (long long)b->n,
+                           (long long)(INT32_MAX - next_id(r)));
     if (b->n && (!b->position || !b->radius))
         return failure_set(failure, NSD_USAGE, "bodies: they have no position or no radius");
     if (b->n && !b->mass && !(b->density > 0 && isfinite(b->density)))
@@ -145,7 +147,8 @@ int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct f
     struct packing p;
     struct contacts s;
     const int64_t had = r->f.packing.n, first = next_id(r);
-    if (act_check(r, b, failure) || packing_copy(&p, &r->f.packing, failure)) return failure->status;
+    if (act_check(r, b, failure) || packing_copy(&p, &r->f.packing, failure))
+        return failure->status;
     if (contacts_copy(&s, &r->f.contacts)) {
         packing_free(&p);
         return failure_set(failure, NSD_SOFTWARE, "no memory for the contacts");
@@ -174,7 +177,7 @@ int nsd_add(struct nsd_run *r, const struct nsd_bodies *bodies, int32_t *id)
 
 /* row[i]: where body i goes, -1: it is among those that are removed */
 static int act_find_rows(const struct packing *p, int64_t n, const int32_t *id, int32_t *row,
-                     struct failure *failure)
+                         struct failure *failure)
 {
     int32_t kept = 0;
     for (int64_t i = 0; i < p->n; i++) row[i] = 0;
@@ -195,14 +198,16 @@ int nsd_remove(struct nsd_run *r, int64_t n, const int32_t *id)
     struct packing p;
     struct contacts s = { 0 };
     if (!failure) return NSD_USAGE;
-    if (n < 0 || (n && !id)) return failure_set(failure, NSD_USAGE, "there are no numbers of bodies");
+    if (n < 0 || (n && !id))
+        return failure_set(failure, NSD_USAGE, "there are no numbers of bodies");
     if (!n) return 0;
     if (n > r->f.packing.n)
-        return failure_set(failure, NSD_DATA, "%lld bodies cannot be removed: there are %lld", (long long)n,
-                       (long long)r->f.packing.n);
+        return failure_set(failure, NSD_DATA, "%lld bodies cannot be removed: there are %lld",
+                           (long long)n, (long long)r->f.packing.n);
     int32_t *row = malloc(((size_t)r->f.packing.n + 1) * sizeof *row);
     if (!row) return failure_set(failure, NSD_SOFTWARE, "no memory to remove bodies");
-    if (!act_find_rows(&r->f.packing, n, id, row, failure) && !packing_copy(&p, &r->f.packing, failure)) {
+    if (!act_find_rows(&r->f.packing, n, id, row, failure) &&
+        !packing_copy(&p, &r->f.packing, failure)) {
         if (contacts_copy(&s, &r->f.contacts))
             failure_set(failure, NSD_SOFTWARE, "no memory for the contacts");
         else

@@ -40,7 +40,8 @@ static bool make_push(double **push, int32_t walls)
     return *push;
 }
 
-int control_copy(struct control *to, const struct control *from, int32_t walls, struct failure *failure)
+int control_copy(struct control *to, const struct control *from, int32_t walls,
+                 struct failure *failure)
 {
     size_t n = (size_t)from->n;
     *to = (struct control){ 0 };
@@ -114,7 +115,8 @@ static bool add_both(vec3 *sum, const vec3 *lasting, const vec3 *once, int64_t n
 
 /* sum[n] = x, whose squares over those of mass[n] are at most *most^2; are all squares finite? In one pass: it costs what
    memory takes */
-static bool control_copy_first(vec3 *sum, const vec3 *x, const double *mass, int64_t n, double *most)
+static bool control_copy_first(vec3 *sum, const vec3 *x, const double *mass, int64_t n,
+                               double *most)
 {
     int bad = 0;
     double most2 = 0;
@@ -144,9 +146,11 @@ static int sum_terms(vec3 **sum, vec3 *const term[CONTROL_TERMS], const bool may
     for (int t = 0; t < CONTROL_TERMS; t++) is[t] = may[t] && any_number(term[t], 3 * n);
     if (!is[CONTROL_LASTING] && !is[CONTROL_ONCE]) return free(*sum), *sum = NULL, 0;
     if (external_force_alloc(sum, n, failure)) return failure->status;
-    const vec3 *x = term[is[CONTROL_LASTING] ? CONTROL_LASTING : CONTROL_ONCE], *y = term[CONTROL_ONCE];
+    const vec3 *x = term[is[CONTROL_LASTING] ? CONTROL_LASTING : CONTROL_ONCE],
+               *y = term[CONTROL_ONCE];
     const bool both = is[CONTROL_LASTING] && is[CONTROL_ONCE];
-    of->finite = both ? add_both(*sum, x, y, n) : control_copy_first(*sum, x, p->mass, n, &of->most);
+    of->finite =
+        both ? add_both(*sum, x, y, n) : control_copy_first(*sum, x, p->mass, n, &of->most);
     if (both) of->most = -1;
     return 0;
 }
@@ -164,11 +168,11 @@ static int sum_forces(const struct control *a, struct packing *p, struct failure
         vec3 f = o->force ? o->force[i] : v3(0, 0, 0), m = o->torque ? o->torque[i] : v3(0, 0, 0);
         if (!v3_finite(f) || !v3_finite(m))
             return failure_set(failure, EX_DATAERR, "the force or torque of body %d is not finite",
-                           p->id[i]);
+                               p->id[i]);
         if (p->dim == 2 && (f.z != 0 || m.x != 0 || m.y != 0))
             return failure_set(failure, EX_DATAERR,
-                           "the force or torque of body %d leaves the plane, and dim is 2",
-                           p->id[i]);
+                               "the force or torque of body %d leaves the plane, and dim is 2",
+                               p->id[i]);
     }
     o->most = force.most;
     if (force.most < 0) external_force_measure(o, p->mass, p->n);
@@ -179,7 +183,8 @@ int control_begin(struct control *a, struct packing *p, struct failure *failure)
 {
     struct external_force *o = &p->outside;
     bool pushes = a->push[CONTROL_LASTING] || a->push[CONTROL_ONCE];
-    if (a->id && (control_arrays(a, p, failure) || sum_forces(a, p, failure))) return failure->status;
+    if (a->id && (control_arrays(a, p, failure) || sum_forces(a, p, failure)))
+        return failure->status;
     if (pushes && external_force_alloc_push(o, p->walls, failure)) return failure->status;
     for (int32_t w = 0; pushes && w < p->walls; w++) {
         o->push[w] = 0;
@@ -235,7 +240,7 @@ bool control_any(const struct control *a)
 }
 
 int control_force(struct control *a, const struct packing *p, int32_t id, struct wrench w,
-               enum control_lasting term, struct failure *failure)
+                  enum control_lasting term, struct failure *failure)
 {
     const vec3 force = w.force, torque = w.torque;
     int64_t i = control_row(p, id);
@@ -244,7 +249,7 @@ int control_force(struct control *a, const struct packing *p, int32_t id, struct
         return failure_set(failure, EX_DATAERR, "the force or torque of body %d is not finite", id);
     if (p->dim == 2 && (force.z != 0 || torque.x != 0 || torque.y != 0))
         return failure_set(failure, EX_DATAERR,
-                       "the force or torque of body %d leaves the plane, and dim is 2", id);
+                           "the force or torque of body %d leaves the plane, and dim is 2", id);
     if (control_arrays(a, p, failure)) return failure->status;
     a->force[term][i] = force, a->torque[term][i] = torque;
     a->pushes[term] = true, a->twists[term] = a->twists[term] || v3_norm(torque) > 0;
@@ -256,22 +261,22 @@ static struct wall *wall_of(const struct packing *p, int64_t wall, struct failur
 {
     if (wall >= 0 && wall < p->walls) return &p->wall[wall];
     failure_set(failure, EX_DATAERR, "there is no boundary %lld: they are numbered from 0 to %d",
-            (long long)wall, p->walls - 1);
+                (long long)wall, p->walls - 1);
     return NULL;
 }
 
 int control_push(struct control *a, const struct packing *p, int64_t wall, double force,
-              enum control_lasting term, struct failure *failure)
+                 enum control_lasting term, struct failure *failure)
 {
     const struct wall *w = wall_of(p, wall, failure);
     if (!w) return failure->status;
     if (w->load.way == LOAD_NONE || (w->load.way == LOAD_ROOM && !(servo_box_mass(p) > 0)))
         return failure_set(failure, EX_DATAERR,
-                       "boundary %lld is not load-controlled: give it a load in the scene",
-                       (long long)wall);
+                           "boundary %lld is not load-controlled: give it a load in the scene",
+                           (long long)wall);
     if (!isfinite(force))
         return failure_set(failure, EX_DATAERR, "the force of boundary %lld is not finite",
-                       (long long)wall);
+                           (long long)wall);
     if (!make_push(&a->push[term], p->walls)) return control_no_memory(failure);
     a->push[term][wall] = force;
     return 0;
@@ -290,17 +295,18 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
     if (!w) return failure->status;
     if (!v3_finite(v) || (p->dim == 2 && v.z != 0))
         return failure_set(failure, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
-                       (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
+                           (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
     if (turns(p, w))
-        return failure_set(failure, EX_DATAERR, "boundary %lld rotates, so no velocity can be prescribed",
-                       (long long)wall);
+        return failure_set(failure, EX_DATAERR,
+                           "boundary %lld rotates, so no velocity can be prescribed",
+                           (long long)wall);
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
     w->v = v;
     if (!v3_finite(w->x)) {
         *w = was;
-        return failure_set(failure, EX_DATAERR, "boundary %lld would be beyond the range of numbers",
-                       (long long)wall);
+        return failure_set(failure, EX_DATAERR,
+                           "boundary %lld would be beyond the range of numbers", (long long)wall);
     }
     p->outside.steered = true;
     return 0;
@@ -311,8 +317,8 @@ int control_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct fail
     bool leaves = p->dim == 2 && (turns ? v.x != 0 || v.y != 0 : v.z != 0);
     if (!v3_finite(v) || leaves)
         return failure_set(failure, EX_DATAERR, "the %s of body %d %s",
-                       turns ? "angular velocity" : "velocity", p->id[i],
-                       leaves ? "leaves the plane, and dim is 2" : "is not finite");
+                           turns ? "angular velocity" : "velocity", p->id[i],
+                           leaves ? "leaves the plane, and dim is 2" : "is not finite");
     (turns ? p->w : p->v)[i] = v;
     return 0;
 }
@@ -321,7 +327,7 @@ int control_gravity(struct packing *p, vec3 g, struct failure *failure)
 {
     if (!v3_finite(g) || (p->dim == 2 && g.z != 0))
         return failure_set(failure, EX_DATAERR, "gravity is not finite%s",
-                       p->dim == 2 ? ", or leaves the plane" : "");
+                           p->dim == 2 ? ", or leaves the plane" : "");
     p->g = g;
     p->outside.steered = true;
     return 0;
@@ -335,13 +341,14 @@ static int32_t control_kind_of(const struct packing *p, const char *name, struct
     return -1;
 }
 
-int control_friction(struct packing *p, const char *a, const char *b, double mu, struct failure *failure)
+int control_friction(struct packing *p, const char *a, const char *b, double mu,
+                     struct failure *failure)
 {
     int32_t k = control_kind_of(p, a, failure), l = k < 0 ? -1 : control_kind_of(p, b, failure);
     if (l < 0) return failure->status;
     if (!(mu >= 0 && isfinite(mu)))
-        return failure_set(failure, EX_DATAERR, "a friction of %g is not a finite number of at least 0",
-                       mu);
+        return failure_set(failure, EX_DATAERR,
+                           "a friction of %g is not a finite number of at least 0", mu);
     p->mu[k * p->kinds + l] = p->mu[l * p->kinds + k] = mu;
     p->outside.steered = true;
     return 0;

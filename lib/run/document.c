@@ -34,7 +34,8 @@ static void name_memory(struct failure *failure, const char *path)
     size_t n = strlen(path);
     char *at = strstr(failure->text, path);
     if (!at) return;
-    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - failure->text), failure->text, at + n);
+    snprintf(text, sizeof text, "%.*sthe document%s", (int)(at - failure->text), failure->text,
+             at + n);
     snprintf(failure->text, sizeof failure->text, "%s", text);
 }
 

@@ -1,14 +1,14 @@
 #include "run/loop.h"
 
-#include "run/reply.h"
-#include "run/document.h"
 #include "base/text.h"
-#include "state/selection.h"
-#include "run/partner.h"
-#include "file/stream.h"
 #include "file/reader.h"
 #include "file/report_json.h"
+#include "file/stream.h"
 #include "measure/measures.h"
+#include "run/document.h"
+#include "run/partner.h"
+#include "run/reply.h"
+#include "state/selection.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -16,11 +16,11 @@
 #include <string.h>
 
 enum {
-    ANSWER_LEAST = 1 << 20,   /* bytes that an answer may have, at least, */
-    ANSWER_BODY = 512,        /* and for each body: four vectors with all their digits have 320 */
-    DOCUMENT_LEAST = 1 << 24, /* bytes that an answered document may have, at least, */
-    DOCUMENT_BODY = 4096,     /* and for each body: with ten contacts it has 3000 */
-    FRAME_MEMORY_MOST = 1 << 30       /* bytes of answers between two frames, which are kept in memory */
+    ANSWER_LEAST = 1 << 20,     /* bytes that an answer may have, at least, */
+    ANSWER_BODY = 512,          /* and for each body: four vectors with all their digits have 320 */
+    DOCUMENT_LEAST = 1 << 24,   /* bytes that an answered document may have, at least, */
+    DOCUMENT_BODY = 4096,       /* and for each body: with ten contacts it has 3000 */
+    FRAME_MEMORY_MOST = 1 << 30 /* bytes of answers between two frames, which are kept in memory */
 };
 
 static const char *command, *replay, *boundaries, *measures;
@@ -260,7 +260,8 @@ static void put_report(FILE *out, const struct frame *f)
     json_decref(j);
 }
 
-static int put_measures(FILE *out, const struct frame *f, const struct contacts *s, struct failure *failure)
+static int put_measures(FILE *out, const struct frame *f, const struct contacts *s,
+                        struct failure *failure)
 {
     struct snapshot look;
     struct table t[MOST_MEASURES];
@@ -282,7 +283,7 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
 
 /* The line, and the document behind it; to be freed */
 static char *loop_message(const struct frame *f, const struct contacts *s, struct control *acts,
-                     size_t *length, struct failure *failure)
+                          size_t *length, struct failure *failure)
 {
     const struct packing *p = &f->packing;
     struct text written;
@@ -325,8 +326,8 @@ static int loop_keep(struct packing *p, const json_t *answer, struct failure *fa
     text[n] = '\n'; // in place of its end
     if (p->outside.length + (int64_t)n > FRAME_MEMORY_MOST)
         failure_set(failure, EX_UNAVAILABLE,
-                "more than %d MiB of answers since the last frame: keep more frames (--every)",
-                FRAME_MEMORY_MOST >> 20);
+                    "more than %d MiB of answers since the last frame: keep more frames (--every)",
+                    FRAME_MEMORY_MOST >> 20);
     else
         external_force_say(&p->outside, text, (int64_t)n + 1, failure);
     free(text);
@@ -382,7 +383,8 @@ static json_t *take_line(const struct packing *p, struct failure *failure)
     return whole;
 }
 
-static json_t *loop_ask(const struct frame *f, struct control *acts, bool first, struct failure *failure)
+static json_t *loop_ask(const struct frame *f, struct control *acts, bool first,
+                        struct failure *failure)
 {
     static const unsigned char document_begins = 0x89; // no JSON does
     size_t length = 0;
@@ -433,7 +435,7 @@ bool loop_before_step(struct frame *f, struct control *acts, bool first, struct 
     loop.failed = !*loop.stop;
     if (*loop.stop) return false;
     failure_set(failure, trouble.status == EX_SOFTWARE ? EX_SOFTWARE : EX_UNAVAILABLE,
-            "step %lld: --%s: %s", (long long)p->step + 1, command ? "with" : "replay",
-            trouble.text);
+                "step %lld: --%s: %s", (long long)p->step + 1, command ? "with" : "replay",
+                trouble.text);
     return false;
 }

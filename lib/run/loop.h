@@ -5,9 +5,9 @@
 #ifndef NSD_LOOP_H
 #define NSD_LOOP_H
 
-#include "run/control.h"
-#include "run/cli.h"
 #include "file/frame.h"
+#include "run/cli.h"
+#include "run/control.h"
 
 #include <signal.h>
 

@@ -1,9 +1,9 @@
 /* run/mpi_processes.c: the ranks of a run [run/processes.h]. The leader tells the others what is next, and all do it. */
 #include "run/processes.h"
 
-#include "run/options.h"
-#include "mpi/rows.h"
 #include "mpi/rank_step.h"
+#include "mpi/rows.h"
+#include "run/options.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -69,8 +69,8 @@ static void mpi_processes_begin(enum mpi_processes_word w, const struct packing 
     self.begun = true;
 }
 
-static int mpi_processes_fill(hid_t file, const char *path, const struct unfilled *place, int places,
-                struct failure *failure)
+static int mpi_processes_fill(hid_t file, const char *path, const struct unfilled *place,
+                              int places, struct failure *failure)
 {
     const struct files_wish wish = { file, path, place, places, getenv("NSD_GATHER") != NULL };
     return files_fill(&self.rows, self.begun ? &self.step.part : NULL, &wish, failure);
@@ -85,7 +85,8 @@ static bool wants(struct distributed *e, const struct packing *settings, int64_t
     return rank_step_scatters(settings, &o);
 }
 
-static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first, struct failure *failure)
+static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first,
+                              struct failure *failure)
 {
     (void)failure;
     mpi_processes_next(TAKE);
@@ -93,8 +94,8 @@ static int mpi_processes_take(struct distributed *e, const struct packing *block
     return 0;
 }
 
-static int mpi_processes_give(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,
-                int places, struct failure *failure)
+static int mpi_processes_give(struct distributed *e, hid_t file, const char *path,
+                              const struct unfilled *place, int places, struct failure *failure)
 {
     (void)e;
     mpi_processes_next(FILL);
@@ -104,7 +105,9 @@ static int mpi_processes_give(struct distributed *e, hid_t file, const char *pat
 struct distributed *processes_take_bodies(bool contacts)
 {
     self.contacts = contacts;
-    self.distributed = (struct distributed){ .wants = wants, .take = mpi_processes_take, .give = mpi_processes_give };
+    self.distributed = (struct distributed){ .wants = wants,
+                                             .take = mpi_processes_take,
+                                             .give = mpi_processes_give };
     return &self.distributed;
 }
 
@@ -119,7 +122,8 @@ int processes_follow(void)
     for (enum mpi_processes_word w; (w = mpi_processes_next(LEAVE)) != LEAVE;) {
         if (w == BEGIN || w == BEGIN_ROWS) mpi_processes_begin(w, &none);
         if (w == TAKE) rows_take(&self.rows, &self.comm, NULL, 0, 0);
-        if (w == FILL) mpi_processes_fill(-1, NULL, NULL, 0, &failure); // the leader says what was wrong
+        if (w == FILL)
+            mpi_processes_fill(-1, NULL, NULL, 0, &failure); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
         if (w == ACT) rank_step_act(&self.step, &none);
         if (w != STEP) continue;

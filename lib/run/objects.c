@@ -1,6 +1,6 @@
 /* run/objects.c: documents as groups and datasets, checked as the tools check them [file/source.h]. */
-#include "run/run.h"
 #include "file/child.h"
+#include "run/run.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -28,7 +28,8 @@ static struct failure *document_why(const struct nsd_document *d, bool open)
             "%.200s: process %lld reads it, of which this one is a copy by fork(): open it here",
             d->path, (long long)d->maker);
     else if (open && !d->there)
-        failure_set(failure, NSD_USAGE, "%.200s: nsd_next() comes first, or has found the end", d->path);
+        failure_set(failure, NSD_USAGE, "%.200s: nsd_next() comes first, or has found the end",
+                    d->path);
     return failure->status ? NULL : failure;
 }
 
@@ -43,7 +44,8 @@ int nsd_open(struct nsd_document **document, const char *path)
     if (!document) return failure_set(failure, NSD_USAGE, "there is no place for the document");
     *document = NULL;
     if (!path || !*path || !strcmp(path, "-"))
-        return failure_set(failure, NSD_USAGE, "a document has a path; standard input is the program's");
+        return failure_set(failure, NSD_USAGE,
+                           "a document has a path; standard input is the program's");
     struct nsd_document *d = calloc(1, sizeof *d);
     if (!d || !(d->path = strdup(path))) return free(d), objects_no_memory(failure);
     d->maker = process_begin();
@@ -155,11 +157,15 @@ static json_t *objects_values_of(const struct listed *l)
     const bool text = o->kind == OBJECT_TEXT;
     if ((!text && o->kind != OBJECT_NUMBERS) || !o->size) return json_null();
     const uint64_t n = o->data / o->size;
-    if (!o->rank) return !n ? json_null() : text ? objects_text_of(l->data, o->data) : objects_number_of(l, 0);
+    if (!o->rank)
+        return !n     ? json_null()
+               : text ? objects_text_of(l->data, o->data)
+                      : objects_number_of(l, 0);
     json_t *all = json_array();
     for (uint64_t k = 0; all && k < n; k++) {
         const char *at = (const char *)l->data + k * o->size;
-        if (json_array_append_new(all, text ? objects_text_of(at, o->size) : objects_number_of(l, k)))
+        if (json_array_append_new(all,
+                                  text ? objects_text_of(at, o->size) : objects_number_of(l, k)))
             return json_decref(all), NULL;
     }
     return all;
@@ -171,16 +177,18 @@ int nsd_attributes(struct nsd_document *d, const char *path, const char **json)
     uint64_t size = 0, at = 0;
     struct listed l;
     if (!failure) return NSD_USAGE;
-    if (!path || !json) return failure_set(failure, NSD_USAGE, "an object has a path, and JSON a place");
+    if (!path || !json)
+        return failure_set(failure, NSD_USAGE, "an object has a path, and JSON a place");
     if (*path && !source_has(d->source, path))
         return failure_set(failure, NSD_USAGE, "%.200s: there is no object '%.100s'",
-                       source_where(d->source), path);
+                           source_where(d->source), path);
     unsigned char *bytes = source_attributes(d->source, path, &size, failure);
     json_t *all = bytes ? json_object() : NULL;
     if (bytes && !all) objects_no_memory(failure);
     while (all && !failure->status && object_unpack(bytes, size, &at, &l)) {
         json_t *known = json_string(l.path);
-        if (known && json_object_set_new(all, l.path, objects_values_of(&l))) objects_no_memory(failure);
+        if (known && json_object_set_new(all, l.path, objects_values_of(&l)))
+            objects_no_memory(failure);
         json_decref(known);
     }
     free(bytes);
@@ -191,15 +199,15 @@ int nsd_attributes(struct nsd_document *d, const char *path, const char **json)
 
 /* The dataset of that path; NULL with the reason */
 static const struct object *objects_find(const struct nsd_document *d, const char *path,
-                                 const uint64_t **shape, struct failure *failure)
+                                         const uint64_t **shape, struct failure *failure)
 {
     const struct object *o;
     const char *is;
     for (int64_t k = 0; (o = source_object(d->source, k, &is, shape)); k++)
         if (!o->attribute && !strcmp(is, path)) break;
     if (!o || o->kind == OBJECT_GROUP)
-        failure_set(failure, NSD_USAGE, "%.200s: there is no dataset '%.100s'", source_where(d->source),
-                path);
+        failure_set(failure, NSD_USAGE, "%.200s: there is no dataset '%.100s'",
+                    source_where(d->source), path);
     return failure->status ? NULL : o;
 }
 
@@ -234,12 +242,13 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
     const char letter = type_for(o, &type);
     if (o->kind != OBJECT_NUMBERS || o->rank > OBJECT_RANK || large)
         return failure_set(failure, NSD_DATA, "%.200s: %.100s: no numbers that can be read",
-                       source_where(d->source), path);
+                           source_where(d->source), path);
     if (first < 0 || n < 0 || n > rows || first > rows - n)
-        return failure_set(failure, NSD_DATA, "%.200s: %.100s: it has %lld rows, not %lld from %lld",
-                       source_where(d->source), path, (long long)rows, (long long)n,
-                       (long long)first);
-    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32) return objects_no_memory(failure);
+        return failure_set(
+            failure, NSD_DATA, "%.200s: %.100s: it has %lld rows, not %lld from %lld",
+            source_where(d->source), path, (long long)rows, (long long)n, (long long)first);
+    if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32)
+        return objects_no_memory(failure);
     if (source_frame(d->source, failure)) return failure->status;
     void *data = calloc((size_t)bytes + 1, column_size(type));
     if (!data) return objects_no_memory(failure);
@@ -266,11 +275,12 @@ int nsd_text(struct nsd_document *d, const char *path, const char **text)
     struct failure *failure = document_why(d, true);
     const uint64_t *shape = NULL;
     if (!failure) return NSD_USAGE;
-    if (!path || !text) return failure_set(failure, NSD_USAGE, "a dataset has a path, and a text a place");
+    if (!path || !text)
+        return failure_set(failure, NSD_USAGE, "a dataset has a path, and a text a place");
     const struct object *o = objects_find(d, path, &shape, failure);
     if (!o || source_frame(d->source, failure)) return failure->status;
-    char *found =
-        o->rank ? source_lines(d->source, path, failure) : source_text(d->source, path, NULL, failure);
+    char *found = o->rank ? source_lines(d->source, path, failure)
+                          : source_text(d->source, path, NULL, failure);
     if (!found && !failure->status)
         failure_set(failure, NSD_DATA, "%.200s: %.100s: no text", source_where(d->source), path);
     if (failure->status) return free(found), failure->status;

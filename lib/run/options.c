@@ -60,7 +60,8 @@ void options_check(void)
 static void options_open_device(void)
 {
     struct failure failure = { 0 };
-    if (options.device && !device && !(device = device_open(options.device, &failure))) die_why(&failure);
+    if (options.device && !device && !(device = device_open(options.device, &failure)))
+        die_why(&failure);
 }
 
 static struct {

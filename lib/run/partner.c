@@ -91,7 +91,8 @@ int partner_start(struct partner **out, const char *command, const volatile sig_
     p->to = p->from = p->life = -1, p->stop = stop;
     if (pipe2(to, O_CLOEXEC)) return partner_failed(failure, "no pipe to the program");
     p->to = to[1];
-    if (pipe2(from, O_CLOEXEC)) return close(to[0]), partner_failed(failure, "no pipe from the program");
+    if (pipe2(from, O_CLOEXEC))
+        return close(to[0]), partner_failed(failure, "no pipe from the program");
     p->from = from[0];
     p->pid = fork();
     if (p->pid == 0) be_program(to[0], from[1], command);
@@ -155,20 +156,22 @@ static int ended(struct partner *p, const char *pipe, struct failure *failure)
         return failure_set(failure, EX_UNAVAILABLE, "the program has closed its %s%s", pipe, where);
     if (WIFSIGNALED(status))
         return failure_set(failure, EX_UNAVAILABLE, "the program was killed: %s%s",
-                       strsignal(WTERMSIG(status)), where);
+                           strsignal(WTERMSIG(status)), where);
     return failure_set(failure, EX_UNAVAILABLE, "the program has ended, with status %d%s",
-                   WEXITSTATUS(status), where);
+                       WEXITSTATUS(status), where);
 }
 
 /* Nothing could be written or read: why */
-static int waited(const struct partner *p, const char *what, double seconds, struct failure *failure)
+static int waited(const struct partner *p, const char *what, double seconds,
+                  struct failure *failure)
 {
     if (*p->stop) return failure_set(failure, EX_UNAVAILABLE, "a signal has come");
-    return failure_set(failure, EX_UNAVAILABLE, "the program has %s for %g s (--with-timeout)", what,
-                   seconds);
+    return failure_set(failure, EX_UNAVAILABLE, "the program has %s for %g s (--with-timeout)",
+                       what, seconds);
 }
 
-int partner_write(struct partner *p, const void *bytes, size_t n, double seconds, struct failure *failure)
+int partner_write(struct partner *p, const void *bytes, size_t n, double seconds,
+                  struct failure *failure)
 {
     double left = seconds;
     const char *at = bytes;
@@ -235,9 +238,10 @@ int partner_check_silent(struct partner *p, struct failure *failure)
     partner_forget(p);
     if (!p->n && read_piece(p, &got, failure)) return failure->status;
     if (!p->n) return 0;
-    return failure_set(failure, EX_UNAVAILABLE,
-                   "the program has written more than its answer: one line, or one document, for "
-                   "each line that it reads");
+    return failure_set(
+        failure, EX_UNAVAILABLE,
+        "the program has written more than its answer: one line, or one document, for "
+        "each line that it reads");
 }
 
 int partner_peek(struct partner *p, char **bytes, size_t n, struct failure *failure)
@@ -262,8 +266,8 @@ int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct 
     for (size_t looked = 0;;) {
         char *stop = p->n > looked ? memchr(p->text + looked, '\n', p->n - looked) : NULL;
         if ((stop ? (size_t)(stop - p->text) : p->n) > most)
-            return failure_set(failure, EX_UNAVAILABLE, "the program's answer has more than %zu bytes",
-                           most);
+            return failure_set(failure, EX_UNAVAILABLE,
+                               "the program's answer has more than %zu bytes", most);
         if (stop) {
             *stop = 0, *line = p->text, *n = (size_t)(stop - p->text), p->taken = *n + 1;
             return 0;

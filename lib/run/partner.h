@@ -24,7 +24,8 @@ void partner_expect(struct partner *partner, double seconds);
 /* The next n bytes, which stay the next; valid until the next call, as what the others give. */
 int partner_peek(struct partner *partner, char **bytes, size_t n, struct failure *failure);
 /* The next line, of at most `most` bytes; it ends with 0 in place of the end of line. */
-int partner_line(struct partner *partner, char **line, size_t *n, size_t most, struct failure *failure);
+int partner_line(struct partner *partner, char **line, size_t *n, size_t most,
+                 struct failure *failure);
 /* The next n bytes */
 int partner_bytes(struct partner *partner, char **bytes, size_t n, struct failure *failure);
 /* Has it written nothing that was not read? */

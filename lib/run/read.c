@@ -1,9 +1,9 @@
 /* run/read.c: what there is of a run, as arrays, numbers and JSON. */
-#include "run/run.h"
 #include "base/text.h"
 #include "file/report_json.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
+#include "run/run.h"
 #include "solve/err.h"
 
 #include <math.h>
@@ -61,7 +61,8 @@ OF_EACH_CONTACT(contact_frictions, ((double *)out)[i] = s->c[i].mu)
 OF_EACH_CONTACT(contact_forces,
                 read_put3(out, i, s->found ? branch_force(&r->f.packing, s, i) : v3(0, 0, 0)))
 OF_EACH_CONTACT(contact_velocities,
-                read_put3(out, i, s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
+                read_put3(out, i,
+                          s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
 OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].status : 0)
 
 #define OF_EACH_BOUNDARY(name, ...)                                                                \
@@ -206,7 +207,8 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
     if (!out || out->size < sizeof *out)
         return failure_set(failure, NSD_USAGE, "an array's size is not that of struct nsd_array");
     while (k < ROWS && (!name || strcmp(table[k].name, name) != 0)) k++;
-    if (k == ROWS) return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
+    if (k == ROWS)
+        return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
     const struct read_row *t = &table[k];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
@@ -285,7 +287,8 @@ int nsd_report(struct nsd_run *r, const char **json)
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
     if (!json) return failure_set(failure, NSD_USAGE, "there is no place for JSON");
-    if (!r->f.reported) return failure_set(failure, NSD_USAGE, "no step was made, and nothing was solved");
+    if (!r->f.reported)
+        return failure_set(failure, NSD_USAGE, "no step was made, and nothing was solved");
     json_t *j = json_report(&r->f.report);
     json_object_set_new(j, "account", json_account(&r->f.account, &r->f.packing.names));
     char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
@@ -357,7 +360,8 @@ static json_t *names_of(const struct packing *p)
            *groups = json_array(), *named = json_object();
     bool good = kinds && shapes && walls && groups && named;
     for (int32_t k = 0; good && k < p->kinds; k++) good = read_put_name(kinds, p->kind_name[k]);
-    for (int32_t k = 0; good && k < p->shapes.n; k++) good = read_put_name(shapes, p->shapes.s[k].name);
+    for (int32_t k = 0; good && k < p->shapes.n; k++)
+        good = read_put_name(shapes, p->shapes.s[k].name);
     for (int32_t w = 0; good && w < p->walls; w++)
         good = read_put_name(walls, names_of_wall(&p->names, w));
     good = good && put_groups(groups, p) && put_named(named, &p->names);
@@ -392,14 +396,16 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     char *text = NULL;
     size_t size = 0;
     if (!failure) return NSD_USAGE;
-    if (!names || !json) return failure_set(failure, NSD_USAGE, "a measure has a name, and JSON a place");
+    if (!names || !json)
+        return failure_set(failure, NSD_USAGE, "a measure has a name, and JSON a place");
     const struct frame *f = &r->f;
     if (measured_choose(chosen, names, failure)) {
         memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
         return failure->status;
     }
     if (r->asked.boxed && f->packing.dim == 3 && !isfinite(r->asked.lo[2]))
-        return failure_set(failure, NSD_USAGE, "box: it has four numbers, and the bodies are balls");
+        return failure_set(failure, NSD_USAGE,
+                           "box: it has four numbers, and the bodies are balls");
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, failure);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;

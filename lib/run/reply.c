@@ -20,7 +20,7 @@ json_t *reply_parse(const char *line, size_t length, struct failure *failure)
                     : json_loadb(line, length, JSON_REJECT_DUPLICATES, &e);
     if (!j)
         failure_set(failure, EX_DATAERR, "the answer is not JSON: %.100s (column %d)",
-                length == 4 ? "no memory" : e.text, length == 4 ? 0 : e.column);
+                    length == 4 ? "no memory" : e.text, length == 4 ? 0 : e.column);
     else if (!json_is_object(j))
         failure_set(failure, EX_DATAERR, "the answer is neither a JSON object nor the word stop");
     if (!failure->status) return j;
@@ -79,12 +79,13 @@ enum { KEYS = sizeof known / sizeof *known };
 /* What an answer has of each body: the first of them */
 enum reply_part { FORCES, TORQUES, VELOCITIES, SPINS, PARTS };
 
-static int reply_set(struct control *acts, enum reply_part part, struct packing *p, int64_t i, const json_t *j,
-               struct failure *failure)
+static int reply_set(struct control *acts, enum reply_part part, struct packing *p, int64_t i,
+                     const json_t *j, struct failure *failure)
 {
     vec3 x;
     if (!vector(j, p->dim, &x))
-        return failure_set(failure, EX_DATAERR, "the answer's %s are vectors [x, y, z]", known[part].key);
+        return failure_set(failure, EX_DATAERR, "the answer's %s are vectors [x, y, z]",
+                           known[part].key);
     if (part == VELOCITIES || part == SPINS) return control_motion(p, i, part == SPINS, x, failure);
     bool torque = part == TORQUES;
     (torque ? acts->twists : acts->pushes)[CONTROL_LASTING] = true;
@@ -101,16 +102,17 @@ static int set_all(const json_t *j, struct control *acts, enum reply_part part, 
     if (!j) return 0;
     if (json_is_array(j) && json_array_size(j) != (size_t)p->n)
         return failure_set(failure, EX_DATAERR, "the answer has %zu %s, and there are %lld bodies",
-                       json_array_size(j), known[part].key, (long long)p->n);
+                           json_array_size(j), known[part].key, (long long)p->n);
     for (size_t i = 0; json_is_array(j) && i < json_array_size(j); i++)
-        if (reply_set(acts, part, p, (int64_t)i, json_array_get(j, i), failure)) return failure->status;
+        if (reply_set(acts, part, p, (int64_t)i, json_array_get(j, i), failure))
+            return failure->status;
     json_object_foreach((json_t *)j, id, x)
     {
         int64_t number = reply_whole(id), i = number < 0 ? -1 : control_row(p, (int32_t)number);
         if (i < 0)
             return failure_set(failure, EX_DATAERR,
-                           "the answer has %s of body '%.40s', which does not exist",
-                           known[part].key, id);
+                               "the answer has %s of body '%.40s', which does not exist",
+                               known[part].key, id);
         if (reply_set(acts, part, p, i, x, failure)) return failure->status;
     }
     return 0;
@@ -126,7 +128,8 @@ static int set_boundary(const json_t *j, struct control *acts, struct packing *p
     json_object_foreach((json_t *)j, key, x)
     {
         if (!strcmp(key, "velocity")) {
-            if (!vector(x, p->dim, &v)) return reply_wrong(failure, "velocity is a vector [x, y, z]");
+            if (!vector(x, p->dim, &v))
+                return reply_wrong(failure, "velocity is a vector [x, y, z]");
             control_velocity(p, wall, v, failure);
         } else if (!strcmp(key, "force")) {
             if (!json_is_number(x)) return reply_wrong(failure, "force of a boundary is a number");
@@ -139,7 +142,8 @@ static int set_boundary(const json_t *j, struct control *acts, struct packing *p
     return 0;
 }
 
-static int set_boundaries(const json_t *j, struct control *acts, struct packing *p, struct failure *failure)
+static int set_boundaries(const json_t *j, struct control *acts, struct packing *p,
+                          struct failure *failure)
 {
     const char *key;
     json_t *x;
@@ -153,7 +157,8 @@ static int set_boundaries(const json_t *j, struct control *acts, struct packing 
         }
         if (failure->status || (name >= 0 && wall >= 0)) continue;
         if (wall < 0)
-            failure_set(failure, EX_DATAERR, "the answer's boundaries: no wall is named '%.60s'", key);
+            failure_set(failure, EX_DATAERR, "the answer's boundaries: no wall is named '%.60s'",
+                        key);
         else
             set_boundary(x, acts, p, wall, failure);
     }
@@ -170,7 +175,7 @@ static int set_frictions(const json_t *j, struct packing *p, struct failure *fai
             !json_is_number(mu))
             return reply_wrong(failure, "friction is [[KIND, KIND, mu], ...]");
         if (control_friction(p, json_string_value(a), json_string_value(b), json_number_value(mu),
-                          failure))
+                             failure))
             return failure->status;
     }
     return 0;
@@ -186,18 +191,18 @@ int reply_check(const json_t *answer, struct failure *failure)
         while (k < KEYS && strcmp(key, known[k].key) != 0) k++;
         if (k == KEYS)
             return failure_set(failure, EX_DATAERR,
-                           "the answer has no '%.40s': it has forces, torques, velocities, "
-                           "angular_velocities, boundaries, gravity, friction, stop",
-                           key);
+                               "the answer has no '%.40s': it has forces, torques, velocities, "
+                               "angular_velocities, boundaries, gravity, friction, stop",
+                               key);
         if ((known[k].array && json_is_array(x)) || (known[k].object && json_is_object(x)) ||
             (known[k].boolean && json_is_boolean(x)))
             continue;
         if (known[k].boolean) return reply_wrong(failure, "stop is true or false");
         return failure_set(failure, EX_DATAERR, "the answer's %s is %s", key,
-                       k < PARTS         ? "an array, or an object by ids"
-                       : known[k].object ? "an object by their numbers"
-                       : k == KEYS - 2   ? "[[KIND, KIND, mu], ...]"
-                                         : "a vector [x, y, z]");
+                           k < PARTS         ? "an array, or an object by ids"
+                           : known[k].object ? "an object by their numbers"
+                           : k == KEYS - 2   ? "[[KIND, KIND, mu], ...]"
+                                             : "a vector [x, y, z]");
     }
     return 0;
 }
@@ -218,7 +223,8 @@ static void reply_forget(struct reply_before *b)
 }
 
 /* *to = a copy, where the answer has this key; false: no memory */
-static bool reply_copy(void *to, const json_t *answer, const char *key, const void *from, size_t bytes)
+static bool reply_copy(void *to, const json_t *answer, const char *key, const void *from,
+                       size_t bytes)
 {
     void **copy = to;
     if (!json_object_get(answer, key) || !bytes) return true;
@@ -227,7 +233,7 @@ static bool reply_copy(void *to, const json_t *answer, const char *key, const vo
 }
 
 static int reply_remember(struct reply_before *b, const json_t *answer, const struct control *acts,
-                    const struct packing *p, struct failure *failure)
+                          const struct packing *p, struct failure *failure)
 {
     const size_t n = (size_t)p->n, walls = (size_t)p->walls, kinds = (size_t)p->kinds;
     *b = (struct reply_before){ .g = p->g, .steered = p->outside.steered };
@@ -252,7 +258,8 @@ static void reply_restore(struct reply_before *b, struct control *acts, struct p
 }
 
 /* All that the answer has but stop */
-static int reply_apply_keys(const json_t *answer, struct control *acts, struct packing *p, struct failure *failure)
+static int reply_apply_keys(const json_t *answer, struct control *acts, struct packing *p,
+                            struct failure *failure)
 {
     vec3 g;
     const json_t *boundaries = json_object_get(answer, "boundaries");
@@ -265,18 +272,20 @@ static int reply_apply_keys(const json_t *answer, struct control *acts, struct p
         if (set_all(json_object_get(answer, known[k].key), acts, (enum reply_part)k, p, failure))
             return failure->status;
     if (boundaries && set_boundaries(boundaries, acts, p, failure)) return failure->status;
-    if (gravity && !vector(gravity, p->dim, &g)) return reply_wrong(failure, "gravity is a vector [x, y, z]");
+    if (gravity && !vector(gravity, p->dim, &g))
+        return reply_wrong(failure, "gravity is a vector [x, y, z]");
     if (gravity && control_gravity(p, g, failure)) return failure->status;
     return friction ? set_frictions(friction, p, failure) : 0;
 }
 
 int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
-                 struct failure *failure)
+                struct failure *failure)
 {
     struct reply_before b = { 0 };
     *stop = json_is_true(json_object_get(answer, "stop"));
     if (reply_check(answer, failure) || *stop) return failure->status;
-    if (!reply_remember(&b, answer, acts, p, failure) && reply_apply_keys(answer, acts, p, failure)) reply_restore(&b, acts, p);
+    if (!reply_remember(&b, answer, acts, p, failure) && reply_apply_keys(answer, acts, p, failure))
+        reply_restore(&b, acts, p);
     reply_forget(&b);
     return failure->status;
 }
@@ -288,7 +297,8 @@ static int reply_frame_no_memory(struct failure *failure)
 
 static int other(struct failure *failure, const char *what)
 {
-    return failure_set(failure, EX_DATAERR, "the document answered has another %s than the run", what);
+    return failure_set(failure, EX_DATAERR, "the document answered has another %s than the run",
+                       what);
 }
 
 /* ---- what has to be the same ---- */
@@ -303,38 +313,43 @@ static int check_column(const struct body_column *b, const struct packing *q,
     if (!x || !y) return other(failure, b->column.name);
     for (int64_t i = 0; i < p->n; i++)
         if (memcmp(x + (size_t)i * row, y + (size_t)i * row, row) != 0)
-            return failure_set(failure, EX_DATAERR,
-                           "the document answered has another %s of body %d than the run, which "
-                           "cannot be changed",
-                           b->column.name, p->id[i]);
+            return failure_set(
+                failure, EX_DATAERR,
+                "the document answered has another %s of body %d than the run, which "
+                "cannot be changed",
+                b->column.name, p->id[i]);
     return 0;
 }
 
-static int check_boundaries(const struct packing *q, const struct packing *p, struct failure *failure)
+static int check_boundaries(const struct packing *q, const struct packing *p,
+                            struct failure *failure)
 {
     for (int32_t w = 0; w < p->walls; w++) {
         vec3 d = v3_sub(q->wall[w].x, p->wall[w].x), v = v3_sub(q->wall[w].v, p->wall[w].v);
         if (v3_norm(v) == 0 && v3_norm(d) != 0)
-            return failure_set(failure, EX_DATAERR,
-                           "the document answered has another place of boundary %d than the run, "
-                           "which cannot be changed",
-                           w);
+            return failure_set(
+                failure, EX_DATAERR,
+                "the document answered has another place of boundary %d than the run, "
+                "which cannot be changed",
+                w);
     }
     return 0;
 }
 
-static int reply_frame_check_same(const struct frame *f, const struct packing *p, struct failure *failure)
+static int reply_frame_check_same(const struct frame *f, const struct packing *p,
+                                  struct failure *failure)
 {
     const struct packing *q = &f->packing;
     if (q->dim != p->dim) return other(failure, "dim");
     if (q->step != p->step)
         return failure_set(failure, EX_DATAERR,
-                       "the document answered is of step %lld, and the run has made step %lld",
-                       (long long)q->step, (long long)p->step);
+                           "the document answered is of step %lld, and the run has made step %lld",
+                           (long long)q->step, (long long)p->step);
     if (q->t != p->t || q->dt != p->dt) return other(failure, q->t != p->t ? "time" : "dt");
     if (q->n != p->n)
-        return failure_set(failure, EX_DATAERR, "the document answered has %lld bodies, and there are %lld",
-                       (long long)q->n, (long long)p->n);
+        return failure_set(failure, EX_DATAERR,
+                           "the document answered has %lld bodies, and there are %lld",
+                           (long long)q->n, (long long)p->n);
     if (q->walls != p->walls) return other(failure, "number of boundaries");
     bool kinds = q->kinds == p->kinds;
     for (int32_t k = 0; kinds && k < p->kinds; k++)
@@ -368,14 +383,15 @@ static int put_bodies(json_t *answer, const char *name, const struct packing *p,
         if (from ? reply_frame_same(to[i], from[i]) : v3_norm(to[i]) == 0) continue;
         snprintf(id, sizeof id, "%d", p->id[i]);
         if (!all) all = json_object();
-        if (!all || json_object_set_new(all, id, reply_frame_numbers(to[i]))) reply_frame_no_memory(failure);
+        if (!all || json_object_set_new(all, id, reply_frame_numbers(to[i])))
+            reply_frame_no_memory(failure);
     }
     if (failure->status) return json_decref(all), failure->status;
     return all && json_object_set_new(answer, name, all) ? reply_frame_no_memory(failure) : 0;
 }
 
-static int reply_frame_put_boundaries(json_t *answer, const struct packing *q, const struct packing *p,
-                          struct failure *failure)
+static int reply_frame_put_boundaries(json_t *answer, const struct packing *q,
+                                      const struct packing *p, struct failure *failure)
 {
     json_t *all = NULL;
     char number[20];
@@ -384,8 +400,8 @@ static int reply_frame_put_boundaries(json_t *answer, const struct packing *q, c
         const double push = q->outside.lasts.push ? q->outside.lasts.push[w] : 0;
         if (reply_frame_same(v, p->wall[w].v) && push == 0) continue;
         json_t *one = json_object();
-        bool good =
-            one && (reply_frame_same(v, p->wall[w].v) || !json_object_set_new(one, "velocity", reply_frame_numbers(v)));
+        bool good = one && (reply_frame_same(v, p->wall[w].v) ||
+                            !json_object_set_new(one, "velocity", reply_frame_numbers(v)));
         good = good && (push == 0 || !json_object_set_new(one, "force", json_real(push)));
         snprintf(number, sizeof number, "%d", w);
         if (!all) all = json_object();
@@ -397,7 +413,8 @@ static int reply_frame_put_boundaries(json_t *answer, const struct packing *q, c
         }
     }
     if (failure->status) return json_decref(all), failure->status;
-    return all && json_object_set_new(answer, "boundaries", all) ? reply_frame_no_memory(failure) : 0;
+    return all && json_object_set_new(answer, "boundaries", all) ? reply_frame_no_memory(failure)
+                                                                 : 0;
 }
 
 static int put_frictions(json_t *answer, const struct packing *q, const struct packing *p,
@@ -422,12 +439,14 @@ json_t *reply_of_frame(const struct frame *f, const struct packing *p, struct fa
     const struct lasting *s = &q->outside.lasts;
     json_t *answer = json_object();
     if (!answer) return reply_frame_no_memory(failure), NULL;
-    if (!reply_frame_check_same(f, p, failure) && !put_bodies(answer, "forces", p, s->force, NULL, failure) &&
+    if (!reply_frame_check_same(f, p, failure) &&
+        !put_bodies(answer, "forces", p, s->force, NULL, failure) &&
         !put_bodies(answer, "torques", p, s->torque, NULL, failure) &&
         !put_bodies(answer, "velocities", p, q->v, p->v, failure) &&
         !put_bodies(answer, "angular_velocities", p, q->w, p->w, failure) &&
-        !reply_frame_put_boundaries(answer, q, p, failure) && !put_frictions(answer, q, p, failure) &&
-        !reply_frame_same(q->g, p->g) && json_object_set_new(answer, "gravity", reply_frame_numbers(q->g)))
+        !reply_frame_put_boundaries(answer, q, p, failure) &&
+        !put_frictions(answer, q, p, failure) && !reply_frame_same(q->g, p->g) &&
+        json_object_set_new(answer, "gravity", reply_frame_numbers(q->g)))
         reply_frame_no_memory(failure);
     if (!failure->status) return answer;
     json_decref(answer);

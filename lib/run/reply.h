@@ -27,7 +27,7 @@ int reply_check(const json_t *answer, struct failure *failure);
 /* Applies it as the packing's next step is to begin. *stop: the run is to end before the step, and nothing else is applied.
    Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
 int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
-                 struct failure *failure);
+                struct failure *failure);
 
 /*
  * The answer that makes of p what the frame is: its velocities, angular velocities, gravity, friction and velocities of

@@ -45,13 +45,15 @@ static bool changes_more(const struct packing *p)
     return packing_varies(p) || p->law;
 }
 
-int rollback_take(struct rollback *u, const struct packing *p, const struct control *acts, struct failure *failure)
+int rollback_take(struct rollback *u, const struct packing *p, const struct control *acts,
+                  struct failure *failure)
 {
     size_t n = (size_t)p->n;
     if (u->whole) rollback_free(u);
     if (changes_more(p)) {
         rollback_free(u);
-        if (packing_copy(&u->was, p, failure)) return u->was = (struct packing){ 0 }, failure->status;
+        if (packing_copy(&u->was, p, failure))
+            return u->was = (struct packing){ 0 }, failure->status;
         if (packing_varies(p) && control_copy(&u->acts, acts, p->walls, failure))
             return packing_free(&u->was), failure->status;
         u->whole = true;

@@ -23,7 +23,8 @@ struct rollback {
 
 void rollback_free(struct rollback *undo);
 /* Remembers. Returns 0 or EX_SOFTWARE, where the packing may not be stepped. */
-int rollback_take(struct rollback *undo, const struct packing *p, const struct control *acts, struct failure *failure);
+int rollback_take(struct rollback *undo, const struct packing *p, const struct control *acts,
+                  struct failure *failure);
 /* p and acts are what they were. */
 void rollback_back(struct rollback *undo, struct packing *p, struct control *acts);
 

@@ -1,13 +1,13 @@
 /* run/run.c: a run: made, set, stepped and closed. */
 #include "run/run.h"
 
-#include "run/document.h"
 #include "base/number.h"
 #include "base/team.h"
 #include "convert/scene_file.h"
-#include "step/adapt.h"
-#include "solve/err.h"
+#include "run/document.h"
 #include "scene/scene_build.h"
+#include "solve/err.h"
+#include "step/adapt.h"
 
 #include <errno.h>
 #include <float.h>
@@ -32,15 +32,16 @@ struct failure *run_why_of_thread(void)
 struct failure *run_why(struct nsd_run *r)
 {
     if (!r) {
-        failure_set(run_why_of_thread(), NSD_USAGE, "there is no run: it was closed, or never made");
+        failure_set(run_why_of_thread(), NSD_USAGE,
+                    "there is no run: it was closed, or never made");
         return NULL;
     }
     r->failure = (struct failure){ 0 };
     if (!process_owns(r->maker)) {
         failure_set(&r->failure, NSD_USAGE,
-                "the run belongs to process %lld, of which this one is a copy by fork(): make "
-                "another run here",
-                (long long)r->maker);
+                    "the run belongs to process %lld, of which this one is a copy by fork(): make "
+                    "another run here",
+                    (long long)r->maker);
         return NULL;
     }
     team_set_size((int)r->options.threads);
@@ -109,7 +110,8 @@ static int build(struct nsd_run *r, const char *text, size_t n, const char *name
     struct scene scene;
     process_lock(); // a scene may take bodies from documents
     if (!scene_file_parse(&scene, text, n, name, folder, failure)) {
-        if (scene_build(&r->f.packing, &scene, folder, failure)) r->f.packing = (struct packing){ 0 };
+        if (scene_build(&r->f.packing, &scene, folder, failure))
+            r->f.packing = (struct packing){ 0 };
         scene_free(&scene);
     }
     process_unlock();
@@ -148,7 +150,8 @@ int nsd_from_document(struct nsd_run **run, const char *path)
     struct failure *failure = place_for(run);
     if (!failure) return NSD_USAGE;
     if (!path || !strcmp(path, "-"))
-        return failure_set(failure, NSD_USAGE, "a document has a path; standard input is the program's");
+        return failure_set(failure, NSD_USAGE,
+                           "a document has a path; standard input is the program's");
     struct nsd_run *r = new_run(failure);
     process_lock();
     if (r) document_read_file(&r->f, path, failure);
@@ -176,7 +179,8 @@ int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
     if (!failure) return NSD_USAGE;
     if (nsd_from_scene(&r, scene, folder)) return failure->status;
     if (r->f.packing.n)
-        failure_set(failure, NSD_DATA, "the scene has bodies of its own: arrays are for one without");
+        failure_set(failure, NSD_DATA,
+                    "the scene has bodies of its own: arrays are for one without");
     else
         run_add(r, bodies, NULL, failure);
     r->other_bodies = false;
@@ -244,7 +248,8 @@ static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failu
             "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
             "of a radius above 0 and at most 1",
             text);
-    if (r->out) return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
+    if (r->out)
+        return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
     if (adapts) return r->tol = x, p->adapts = true, 0;
     const struct packing was = *p;
     p->halved = 0;
@@ -264,7 +269,8 @@ static int run_set_flag(bool *to, const char *name, const char *value, struct fa
     return option_set(&o, to, value, failure);
 }
 
-static int set_option(struct nsd_run *r, const char *name, const char *value, struct failure *failure)
+static int set_option(struct nsd_run *r, const char *name, const char *value,
+                      struct failure *failure)
 {
     if (!strcmp(name, "dt")) return run_set_dt(r, value, failure);
     if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, failure);
@@ -286,7 +292,8 @@ int nsd_set(struct nsd_run *r, const char *option, const char *value)
 {
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
-    if (!option || !value) return failure_set(failure, NSD_USAGE, "an option has a name and a value");
+    if (!option || !value)
+        return failure_set(failure, NSD_USAGE, "an option has a name and a value");
     if (set_option(r, option, value, failure) && !strncmp(failure->text, "--", 2))
         memmove(failure->text, failure->text + 2, strlen(failure->text + 2) + 1);
     return failure->status;
@@ -335,7 +342,8 @@ static int run_advance(struct nsd_run *r, struct report *rep, struct failure *fa
 {
     struct packing *p = &r->f.packing;
     bool changed = false;
-    if (adapt(r, failure) || flow_step(&r->flow, p, NULL, &changed, failure)) return failure->status;
+    if (adapt(r, failure) || flow_step(&r->flow, p, NULL, &changed, failure))
+        return failure->status;
     if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
     if (control_begin(&r->acts, p, failure)) return failure->status;
     if (step_advance(p, &r->spare, &r->memory, &r->o, rep, failure)) return failure->status;
@@ -405,7 +413,8 @@ int nsd_until(struct nsd_run *r, double t)
     const struct packing *p = &r->f.packing;
     if (!isfinite(t)) return failure_set(failure, NSD_USAGE, "a time of %g s is never reached", t);
     if (!((t - p->t) / p->dt < 1e15))
-        return failure_set(failure, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t, p->dt);
+        return failure_set(failure, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t,
+                           p->dt);
     if (run_choose(r, failure)) return failure->status;
     while (!failure->status && p->t < t - slack(p, t)) step_once(r, failure);
     return failure->status;

@@ -4,11 +4,11 @@
 #ifndef NSD_RUN_H
 #define NSD_RUN_H
 
+#include "file/writer.h"
+#include "measure/measures.h"
 #include "run/nsd.h"
 #include "run/process.h"
 #include "run/rollback.h"
-#include "file/writer.h"
-#include "measure/measures.h"
 #include "scene/inlet.h"
 #include "step/step_options.h"
 
@@ -18,8 +18,8 @@ enum { MADE_MOST = 20 };
 struct nsd_run {
     pid_t maker; /* the process that may use it */
     struct frame f;
-    struct contacts spare; /* where the contacts of the next step go */
-    struct external_force last;   /* the forces of the last step, while the next is made */
+    struct contacts spare;      /* where the contacts of the next step go */
+    struct external_force last; /* the forces of the last step, while the next is made */
     struct step_memory memory;
     struct neighbours ahead; /* of where bodies would be at the end of a step */
     struct flow flow;

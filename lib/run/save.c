@@ -1,7 +1,7 @@
 /* run/save.c: a run as documents. */
-#include "run/run.h"
-#include "file/wall_tables.h"
 #include "file/reader.h"
+#include "file/wall_tables.h"
+#include "run/run.h"
 
 #include <jansson.h>
 #include <stdlib.h>
@@ -12,8 +12,10 @@ int nsd_note(struct nsd_run *r, const char *line)
 {
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
-    if (!line || strchr(line, '\n')) return failure_set(failure, NSD_USAGE, "the history has lines");
-    if (r->noted) return failure_set(failure, NSD_USAGE, "the run has its line in the history already");
+    if (!line || strchr(line, '\n'))
+        return failure_set(failure, NSD_USAGE, "the history has lines");
+    if (r->noted)
+        return failure_set(failure, NSD_USAGE, "the run has its line in the history already");
     json_t *j = json_loads(line, JSON_REJECT_DUPLICATES, NULL);
     const bool object = json_is_object(j);
     json_decref(j);
@@ -28,7 +30,8 @@ static bool is_path(const char *path, struct failure *failure)
     if (!path || !*path)
         failure_set(failure, NSD_USAGE, "a document has a path");
     else if (!strcmp(path, "-"))
-        failure_set(failure, NSD_USAGE, "-: standard output is the program's; a file of this name is ./-");
+        failure_set(failure, NSD_USAGE,
+                    "-: standard output is the program's; a file of this name is ./-");
     return !failure->status;
 }
 
@@ -96,9 +99,9 @@ static int check_motion(const struct nsd_run *r, struct failure *failure)
 {
     if (!r->rests || !boundary_tables_move(&r->f.packing)) return 0;
     return failure_set(failure, NSD_DATA,
-                   "%.100s: a boundary moves, and in its first frame none could: "
-                   "nsd_finish() ends it, and another one may begin",
-                   r->path);
+                       "%.100s: a boundary moves, and in its first frame none could: "
+                       "nsd_finish() ends it, and another one may begin",
+                       r->path);
 }
 
 /* The trajectory ends as it is. */
@@ -139,8 +142,8 @@ static int check_first(const struct packing *first, const struct packing *p, con
 {
     bool same = !first->scene == !p->scene && (!p->scene || !strcmp(first->scene, p->scene));
     if (!same || first->seed != p->seed || first->walls != p->walls || first->kinds != p->kinds)
-        return failure_set(failure, NSD_DATA, "%.200s: belongs to another scene: remove it to begin again",
-                       path);
+        return failure_set(failure, NSD_DATA,
+                           "%.200s: belongs to another scene: remove it to begin again", path);
     return 0;
 }
 
@@ -155,21 +158,23 @@ static int copy_frames(struct nsd_run *r, struct reader *in, struct failure *fai
         if (!f.packed)
             failure_set(failure, NSD_DATA, "%.200s: an FCLIB problem, and no trajectory", r->path);
         else if (lost)
-            failure_set(failure, NSD_DATA, "%.200s: %.100s is not known, and depends on time", r->path,
-                    lost);
+            failure_set(failure, NSD_DATA, "%.200s: %.100s is not known, and depends on time",
+                        r->path, lost);
         else if (q->step >= p->step)
             failure_set(
                 failure, NSD_DATA,
                 "%.200s: has step %lld already, and the run is at step %lld: remove it to begin "
                 "again",
                 r->path, (long long)q->step, (long long)p->step);
-        if (failure->status || (first && (check_first(q, p, r->path, failure) || note_again(r, &f, failure))))
+        if (failure->status ||
+            (first && (check_first(q, p, r->path, failure) || note_again(r, &f, failure))))
             break;
         if (first) r->rests = !boundary_tables_move(q) && !q->outside.steered;
         first = false;
         if (writer_frame(r->out, &f, failure)) break;
     }
-    if (!failure->status && first) failure_set(failure, NSD_DATA, "%.200s: no frame to go on from", r->path);
+    if (!failure->status && first)
+        failure_set(failure, NSD_DATA, "%.200s: no frame to go on from", r->path);
     frame_free(&f);
     return failure->status;
 }
@@ -201,13 +206,14 @@ static int first_frame(struct nsd_run *r, const char *path, struct failure *fail
 {
     const bool goes_on = save_is_there(path);
     const struct packing *p = &r->f.packing;
-    if (!(r->path = strdup(path))) return failure_set(failure, NSD_SOFTWARE, "no memory for a path");
+    if (!(r->path = strdup(path)))
+        return failure_set(failure, NSD_SOFTWARE, "no memory for a path");
     r->rests = !boundary_tables_move(p) && !p->outside.steered;
     r->other_bodies = false;
     const struct frame f = frame_of(r);
     process_lock();
-    if (open_trajectory(r, goes_on, failure) || check_motion(r, failure) || writer_frame(r->out, &f, failure) ||
-        (goes_on && writer_take_place(r->out, failure)))
+    if (open_trajectory(r, goes_on, failure) || check_motion(r, failure) ||
+        writer_frame(r->out, &f, failure) || (goes_on && writer_take_place(r->out, failure)))
         writer_drop(r->out), r->out = NULL;
     process_unlock();
     if (!r->out) free(r->path), r->path = NULL;
@@ -230,13 +236,13 @@ int nsd_append(struct nsd_run *r, const char *path)
     if (!failure) return NSD_USAGE;
     if (!is_path(path, failure)) return failure->status;
     if (r->out && strcmp(r->path, path) != 0)
-        return failure_set(failure, NSD_USAGE, "%.100s is not finished: nsd_finish() comes before another",
-                       r->path);
+        return failure_set(failure, NSD_USAGE,
+                           "%.100s is not finished: nsd_finish() comes before another", r->path);
     if (r->out && r->other_bodies && !packing_varies(&r->f.packing))
         return failure_set(failure, NSD_DATA,
-                       "%.100s: bodies were added or removed since its first frame: "
-                       "nsd_finish() ends it, and another one may begin",
-                       path);
+                           "%.100s: bodies were added or removed since its first frame: "
+                           "nsd_finish() ends it, and another one may begin",
+                           path);
     if (r->out && check_motion(r, failure)) return failure->status;
     const struct save_before was = save_before(r);
     if (save_prepare(r, failure)) return back(r, was);

@@ -1,8 +1,8 @@
 #include "run/tool_filter.h"
 
-#include "run/cli.h"
 #include "file/reader.h"
 #include "file/writer.h"
+#include "run/cli.h"
 
 void tool_filter(int files, char *const *file, void (*each)(struct frame *, const char *where))
 {

@@ -44,7 +44,8 @@ enum { INSIDE_LEAST = 200 };
 static const double ASIDE[3] = { 0.4142135623730951, 0.7320508075688772, 0.2360679774997898 };
 
 /* Of the points along an axis (0, 1, 2) those, lo .. hi, that may be in [a, b] (m) */
-static void clump_fit_span(const struct clump_grid *g, int axis, double a, double b, int *lo, int *hi)
+static void clump_fit_span(const struct clump_grid *g, int axis, double a, double b, int *lo,
+                           int *hi)
 {
     const double from[3] = { g->origin.x, g->origin.y, g->origin.z };
     const int n = g->n[axis];
@@ -82,8 +83,9 @@ static int find_inside(struct clump_grid *g, struct failure *failure)
     }
     crossings_free(&t);
     if (!failure->status && g->inside < INSIDE_LEAST)
-        failure_set(failure, EX_DATAERR, "is too thin for balls: %lld points of a grid of %d are within it",
-                (long long)g->inside, CLUMP_GRID);
+        failure_set(failure, EX_DATAERR,
+                    "is too thin for balls: %lld points of a grid of %d are within it",
+                    (long long)g->inside, CLUMP_GRID);
     return failure->status;
 }
 
@@ -187,8 +189,9 @@ static int clump_fit_moments_of(struct solid *out, const struct mesh *m, struct 
         for (int j = 0; j < i; j++) out->second[i][j] = out->second[j][i]; // to the last bit
     if (out->volume < 0)
         return failure_set(failure, EX_DATAERR, "is turned inside out: turn its faces outward");
-    return out->volume > 0 && v3_finite(out->centre) ? 0
-                                                     : failure_set(failure, EX_DATAERR, "has no volume");
+    return out->volume > 0 && v3_finite(out->centre)
+               ? 0
+               : failure_set(failure, EX_DATAERR, "has no volume");
 }
 
 static double clump_fit_area_of(const struct mesh *m)
@@ -330,7 +333,8 @@ static double clump_fit_farthest(const struct fit *f, double growth)
     return most;
 }
 
-static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, struct failure *failure)
+static int clump_fit_choose(struct fit *f, const struct clump_limits *limits,
+                            struct failure *failure)
 {
     const struct clump_grid *g = &f->grid;
     struct candidate *heap = malloc((size_t)g->inside * sizeof *heap);
@@ -358,7 +362,8 @@ static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, st
             clump_fit_sift(heap, n, 0);
             continue;
         }
-        if (limits->error > 0 && clump_fit_farthest(f, growth_of(f)) <= limits->error * f->reach) break;
+        if (limits->error > 0 && clump_fit_farthest(f, growth_of(f)) <= limits->error * f->reach)
+            break;
     }
     free(heap);
     return 0;
@@ -366,7 +371,8 @@ static int clump_fit_choose(struct fit *f, const struct clump_limits *limits, st
 
 /* ---- the clump ---- */
 
-static int clump_fit_make_shape(struct shape *s, const struct fit *f, double growth, struct failure *failure)
+static int clump_fit_make_shape(struct shape *s, const struct fit *f, double growth,
+                                struct failure *failure)
 {
     if (shape_alloc(s, f->balls, 0, 0, failure)) return failure->status;
     s->form = SHAPE_CLUMP;
@@ -400,8 +406,8 @@ static int search_growth(struct shape *s, struct solid *balls, const struct fit 
 }
 
 /* The radii grow until the balls have the volume; d volume / d growth is about the surface's area. */
-static int clump_fit_grow(struct shape *s, struct solid *balls, struct fit *f, const struct solid *of,
-                struct failure *failure)
+static int clump_fit_grow(struct shape *s, struct solid *balls, struct fit *f,
+                          const struct solid *of, struct failure *failure)
 {
     const double area = clump_fit_area_of(f->mesh);
     double growth = growth_of(f), least = INFINITY;
@@ -459,7 +465,8 @@ static double moments_error(const struct solid *a, const struct solid *of)
     return sqrt(sum) * scale;
 }
 
-static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t balls, struct failure *failure)
+static int clump_fit_prepare(struct fit *f, const struct solid *of, int32_t balls,
+                             struct failure *failure)
 {
     if (clump_grid_init(&f->grid, f->mesh, failure)) return failure->status;
     for (int32_t e = 0; e < f->mesh->elements; e++)
@@ -490,15 +497,16 @@ static int clump_fit_judge(const struct clump_errors *e, struct failure *failure
 }
 
 int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
-              const struct clump_limits *limits, struct clump_errors *errors, struct failure *failure)
+              const struct clump_limits *limits, struct clump_errors *errors,
+              struct failure *failure)
 {
     struct fit f = { .mesh = m };
     struct solid got = { 0 };
-    if (mesh_check(m, 3, failure) || mesh_closed(m, failure) || clump_fit_moments_of(of, m, failure) ||
-        crossings_judge(m, failure))
+    if (mesh_check(m, 3, failure) || mesh_closed(m, failure) ||
+        clump_fit_moments_of(of, m, failure) || crossings_judge(m, failure))
         return failure->status;
-    if (!clump_fit_prepare(&f, of, limits->balls, failure) && !clump_fit_choose(&f, limits, failure) &&
-        !clump_fit_grow(s, &got, &f, of, failure)) {
+    if (!clump_fit_prepare(&f, of, limits->balls, failure) &&
+        !clump_fit_choose(&f, limits, failure) && !clump_fit_grow(s, &got, &f, of, failure)) {
         *errors = (struct clump_errors){ .balls = f.balls,
                                          .volume = got.volume / of->volume - 1,
                                          .distance = distance_of(&f, s) / f.reach,

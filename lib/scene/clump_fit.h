@@ -37,6 +37,7 @@ struct clump_limits {
  * EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE.
  */
 int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
-              const struct clump_limits *limits, struct clump_errors *errors, struct failure *failure);
+              const struct clump_limits *limits, struct clump_errors *errors,
+              struct failure *failure);
 
 #endif

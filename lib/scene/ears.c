@@ -147,7 +147,8 @@ static bool is_ear(const struct ears_polygon *p, int32_t i)
     if (!turns_left(p, i)) return false;
     for (int32_t k = 0; k < p->blunts; k++) {
         int32_t j = p->blunt[k];
-        if (ears_same_place(p, j, a) || ears_same_place(p, j, i) || ears_same_place(p, j, b)) continue;
+        if (ears_same_place(p, j, a) || ears_same_place(p, j, i) || ears_same_place(p, j, b))
+            continue;
         if (is_in(p, a, i, b, j)) return false;
     }
     return true;

@@ -73,7 +73,7 @@ int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t
 
 /* kind[k]: the scene's kind for kind k of the document */
 static int grains_add_body(struct grains *out, const struct scene_bodies *b, const int32_t *kind,
-                    int64_t i, struct failure *failure)
+                           int64_t i, struct failure *failure)
 {
     const struct packing *p = b->document;
     struct grain g = grain_at(p->x[i], p->radius[i]);
@@ -86,12 +86,14 @@ static int grains_add_body(struct grains *out, const struct scene_bodies *b, con
     if (b->unsaid && g.mass == 0) g.weighs = g.fixed = false;
     g.kind = b->has_kind ? b->kind : kind[p->kind[i]];
     if (g.kind < 0 && b->foreign)
-        return failure_set(failure, EX_DATAERR,
-                       "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}",
-                       b->file, (long long)i, p->kind_name[p->kind[i]], p->kind_name[p->kind[i]]);
+        return failure_set(
+            failure, EX_DATAERR,
+            "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}", b->file,
+            (long long)i, p->kind_name[p->kind[i]], p->kind_name[p->kind[i]]);
     if (g.kind < 0)
-        return failure_set(failure, EX_DATAERR, "%s: body %lld is of kind \"%s\": name it under \"kinds\"",
-                       b->file, (long long)i, p->kind_name[p->kind[i]]);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: body %lld is of kind \"%s\": name it under \"kinds\"", b->file,
+                           (long long)i, p->kind_name[p->kind[i]]);
     return grains_add(out, &g, failure);
 }
 
@@ -102,11 +104,12 @@ int grains_of_document(struct grains *out, const struct scene *s, const struct s
         return failure_set(failure, EX_DATAERR, "%s: a document, which is not read here", b->file);
     if (b->document->dim != s->dim)
         return failure_set(failure, EX_DATAERR, "%s: its dim is %d, and the scene's is %d", b->file,
-                       b->document->dim, s->dim);
+                           b->document->dim, s->dim);
     int32_t *kind = calloc((size_t)b->document->kinds + 1, sizeof *kind);
     if (!kind) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
     for (int32_t k = 0; k < b->document->kinds; k++) kind[k] = grains_kind(s, b, k);
-    for (int64_t i = 0; i < b->document->n && !failure->status; i++) grains_add_body(out, b, kind, i, failure);
+    for (int64_t i = 0; i < b->document->n && !failure->status; i++)
+        grains_add_body(out, b, kind, i, failure);
     free(kind);
     return failure->status;
 }
@@ -159,10 +162,11 @@ struct grains_table {
     bool endless; /* perhaps: it is no file, whose size says how long it is */
 };
 
-static int grains_fault(const struct grains_table *t, struct failure *failure, const char *trouble, const char *word)
+static int grains_fault(const struct grains_table *t, struct failure *failure, const char *trouble,
+                        const char *word)
 {
-    return failure_set(failure, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line, trouble,
-                   word ? " \"" : "", word ? word : "", word ? "\"" : "");
+    return failure_set(failure, EX_DATAERR, "%s:%lld: %s%s%s%s", t->path, (long long)t->line,
+                       trouble, word ? " \"" : "", word ? word : "", word ? "\"" : "");
 }
 
 /* The next word of a line, ended by a zero; NULL at its end */
@@ -217,7 +221,8 @@ static int grains_read_names(struct grains_table *t, char *line, struct failure 
             return grains_fault(t, failure, "there is no column", column_name[k]);
     if (!t->has[R] && !t->has[D]) return grains_fault(t, failure, "there is no column", "r");
     if (t->has[R] && t->has[D]) return grains_fault(t, failure, "both r and", "d");
-    if (t->has[MASS] && t->has[DENSITY]) return grains_fault(t, failure, "both mass and", "density");
+    if (t->has[MASS] && t->has[DENSITY])
+        return grains_fault(t, failure, "both mass and", "density");
     int q = t->has[QW] + t->has[QX] + t->has[QY] + t->has[QZ];
     return !q || q == 4 ? 0 : grains_fault(t, failure, "an orientation is qw qx qy qz", NULL);
 }
@@ -253,11 +258,13 @@ static int read_number(const struct grains_table *t, enum heading c, const char 
     if (positive && !(*x > 0)) return grains_fault(t, failure, text, NULL);
     bool whole = *x == floor(*x) && *x >= 0 && *x <= INT32_MAX;
     if (c == ID && !whole) return grains_fault(t, failure, "an id must be a whole number:", word);
-    if (c == FIXED && *x != 0 && *x != 1) return grains_fault(t, failure, "fixed must be 0 or 1:", word);
+    if (c == FIXED && *x != 0 && *x != 1)
+        return grains_fault(t, failure, "fixed must be 0 or 1:", word);
     return 0;
 }
 
-static int read_kind(const struct grains_table *t, const char *word, int32_t *kind, struct failure *failure)
+static int read_kind(const struct grains_table *t, const char *word, int32_t *kind,
+                     struct failure *failure)
 {
     for (int32_t k = 0; k < t->scene->kinds; k++) {
         if (strcmp(t->scene->kind[k].name, word) != 0) continue;
@@ -267,7 +274,8 @@ static int read_kind(const struct grains_table *t, const char *word, int32_t *ki
     return grains_fault(t, failure, "the scene names no kind", word);
 }
 
-static int make_grain(const struct grains_table *t, const double *x, struct grain *g, struct failure *failure)
+static int make_grain(const struct grains_table *t, const double *x, struct grain *g,
+                      struct failure *failure)
 {
     *g = grain_at(v3(x[X], x[Y], x[Z]), t->has[D] ? 0.5 * x[D] : x[R]);
     g->mass = x[MASS], g->density = x[DENSITY];
@@ -279,12 +287,14 @@ static int make_grain(const struct grains_table *t, const double *x, struct grai
     if (!t->has[QW]) return 0;
     quat q = { x[QW], x[QX], x[QY], x[QZ] };
     double length = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-    if (!(fabs(length - 1) < 1e-3)) return grains_fault(t, failure, "qw qx qy qz is no unit quaternion", NULL);
+    if (!(fabs(length - 1) < 1e-3))
+        return grains_fault(t, failure, "qw qx qy qz is no unit quaternion", NULL);
     g->q = quat_unit(q);
     return 0;
 }
 
-static int read_line(struct grains_table *t, char *line, struct grains *out, struct failure *failure)
+static int read_line(struct grains_table *t, char *line, struct grains *out,
+                     struct failure *failure)
 {
     double x[NAMES] = { 0 };
     int32_t kind = -1;
@@ -295,23 +305,26 @@ static int read_line(struct grains_table *t, char *line, struct grains *out, str
     for (; (word = next_word(&at)); n++) {
         if (n == t->n) break;
         enum heading c = t->column[n];
-        if (c == KIND ? read_kind(t, word, &kind, failure) : read_number(t, c, word, &x[c], failure))
+        if (c == KIND ? read_kind(t, word, &kind, failure)
+                      : read_number(t, c, word, &x[c], failure))
             return failure->status;
     }
     if (!n) return 0;
     if (word || n != t->n)
-        return t->named ? grains_fault(t, failure, "not as many words as columns", NULL) : fault_usual(t, failure);
+        return t->named ? grains_fault(t, failure, "not as many words as columns", NULL)
+                        : fault_usual(t, failure);
     if (out->n == MOST_ROWS) return grains_fault(t, failure, "a table of too many bodies", NULL);
     if (t->endless && out->n == MOST_PIPED)
-        return grains_fault(t, failure, "too many bodies for a pipe (endless?): put the table into a file",
-                     NULL);
+        return grains_fault(
+            t, failure, "too many bodies for a pipe (endless?): put the table into a file", NULL);
     if (make_grain(t, x, &g, failure)) return failure->status;
     g.kind = kind;
     return grains_add(out, &g, failure);
 }
 
 /* A line of a table without its newline; false at the end, and where it is too long. */
-static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table *t, struct failure *failure)
+static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table *t,
+                             struct failure *failure)
 {
     size_t n = 0;
     int c = 0;
@@ -319,7 +332,7 @@ static bool grains_next_line(FILE *f, char line[LINE], const struct grains_table
     line[n] = 0;
     if (n == LINE - 1)
         return failure_set(failure, EX_DATAERR, "%s:%lld: a line of more than %d bytes", t->path,
-                       (long long)t->line, LINE - 2),
+                           (long long)t->line, LINE - 2),
                false;
     return n || c != EOF;
 }
@@ -329,8 +342,9 @@ static int read_lines(struct grains_table *t, FILE *f, struct grains *out, struc
     char line[LINE] = "";
     for (t->line = 1; !failure->status && grains_next_line(f, line, t, failure); t->line++) {
         if (t->endless && t->line > MOST_LINES)
-            return grains_fault(t, failure, "too many lines for a pipe (endless?): put the table into a file",
-                         NULL);
+            return grains_fault(t, failure,
+                                "too many lines for a pipe (endless?): put the table into a file",
+                                NULL);
         char *s = line + (t->line == 1 ? mark_length(line, strlen(line)) : 0);
         s += strspn(s, " \t\r\v\f");
         if (t->line == 1 && *s == '#')
@@ -341,7 +355,8 @@ static int read_lines(struct grains_table *t, FILE *f, struct grains *out, struc
     return failure->status;
 }
 
-static int grains_read_table(struct grains *out, const struct scene *s, const char *path, struct failure *failure)
+static int grains_read_table(struct grains *out, const struct scene *s, const char *path,
+                             struct failure *failure)
 {
     struct stat st;
     struct grains_table t = { .path = path, .scene = s };
@@ -353,7 +368,8 @@ static int grains_read_table(struct grains *out, const struct scene *s, const ch
         failure_set(failure, EX_NOINPUT, "%s: a device is no table", path);
     t.endless = !S_ISREG(st.st_mode);
     if (!failure->status) read_lines(&t, f, out, failure);
-    if (!failure->status && ferror(f)) failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
+    if (!failure->status && ferror(f))
+        failure_set(failure, EX_NOINPUT, "%s: %s", path, strerror(errno));
     fclose(f);
     return failure->status;
 }

@@ -15,7 +15,6 @@
 /* From the shape's own axes to space; rng is used where orientations are random, each as likely. */
 quat orientation_draw(const struct scene *s, const struct scene_form *form, gsl_rng *rng);
 
-
 struct grain {
     vec3 x;                           /* m */
     quat q;                           /* orientation */

@@ -150,7 +150,8 @@ static bool in_plane(const struct facet *f, vec3 n, double at, const vec3 *x, do
 }
 
 /* Gives a facet, and all that are joined to it in its plane, to one face; stack: room for all facets */
-static void hull_grow(const struct facets *hull, int32_t seed, int32_t face, double flat, int32_t *stack)
+static void hull_grow(const struct facets *hull, int32_t seed, int32_t face, double flat,
+                      int32_t *stack)
 {
     struct facet *facet = hull->of;
     const vec3 *x = hull->x;
@@ -219,7 +220,8 @@ static int by_tail(const void *one, const void *other)
 }
 
 /* Goes around each face, from its least corner. */
-static int close_loops(struct loops *l, struct hull_side *side, int32_t sides, struct failure *failure)
+static int close_loops(struct loops *l, struct hull_side *side, int32_t sides,
+                       struct failure *failure)
 {
     int32_t n = 0;
     qsort(side, (size_t)sides, sizeof *side, by_tail);
@@ -264,12 +266,14 @@ int hull_faces(struct loops *l, const struct facets *hull, double flat, struct f
     int32_t faces = hull_join(hull, flat), sides = 0;
     struct hull_side *side = malloc((3 * (size_t)facets + 1) * sizeof *side);
     int32_t *of = calloc((size_t)hull->points + 1, sizeof *of);
-    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, failure)) hull_faces_no_memory(failure);
+    if (faces < 0 || !side || !of || loops_alloc(l, faces, 3 * facets, failure))
+        hull_faces_no_memory(failure);
     for (int32_t i = 0; i < facets && !failure->status; i++)
         for (int k = 0; k < 3; k++) {
             const struct facet *f = &facet[i];
             if (facet[f->next[k]].face == f->face) continue;
-            side[sides++] = (struct hull_side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
+            side[sides++] =
+                (struct hull_side){ f->face, f->point[(k + 1) % 3], f->point[(k + 2) % 3] };
         }
     if (!failure->status && !close_loops(l, side, sides, failure)) {
         while (thin_loops(l, of, hull->points)) {
@@ -458,17 +462,17 @@ static int32_t count_corners(const struct loops *l, int64_t points, int32_t *num
     return n;
 }
 
-static int hull_make_shape(struct shape *s, const struct hull *h, const struct loops *l, const vec3 *x,
-                      struct failure *failure)
+static int hull_make_shape(struct shape *s, const struct hull *h, const struct loops *l,
+                           const vec3 *x, struct failure *failure)
 {
     int32_t *number = malloc(((size_t)h->n + 1) * sizeof *number), corners = l->first[l->faces];
     int32_t n = number ? count_corners(l, h->n, number) : 0;
     if (!number) hull_no_memory(failure);
     if (n > SHAPE_VERTICES_MOST)
         failure_set(failure, EX_DATAERR,
-                "its hull has %d corners, and a shape has %d at most: leave out points "
-                "(decimate the mesh), or make a \"clump\" of it",
-                n, SHAPE_VERTICES_MOST);
+                    "its hull has %d corners, and a shape has %d at most: leave out points "
+                    "(decimate the mesh), or make a \"clump\" of it",
+                    n, SHAPE_VERTICES_MOST);
     if (!failure->status && !shape_alloc(s, n, l->faces, corners, failure)) {
         for (int64_t i = 0; i < h->n; i++)
             if (number[i] >= 0) s->vertex[number[i]] = x[h->kept[i]];
@@ -485,7 +489,8 @@ static int take_points(struct hull *h, int64_t n, const vec3 *x, struct failure 
 {
     double size = thin_extent(x, n);
     if (!(size > 0)) return hull_is_flat(failure);
-    if (!isfinite(size)) return failure_set(failure, EX_DATAERR, "the extent of its points is not finite");
+    if (!isfinite(size))
+        return failure_set(failure, EX_DATAERR, "the extent of its points is not finite");
     h->kept = malloc(((size_t)n + 1) * sizeof *h->kept);
     h->x = calloc((size_t)n + 1, sizeof *h->x);
     if (!h->kept || !h->x) return hull_no_memory(failure);

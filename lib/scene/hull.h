@@ -25,7 +25,6 @@ double thin_extent(const vec3 *x, int64_t n);
    Time n log n. Returns 0 or EX_SOFTWARE. */
 int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct failure *failure);
 
-
 /* Of the extent: what is closer to a plane is in it, as are the corners of files in single precision, whose last
    bit is 6e-8 of the largest; what is closer together is one point, for a shape's faces are flat to 1e-6. */
 static const double HULL_FLAT = 2e-7, HULL_APART = 1e-6;

@@ -1,7 +1,7 @@
 #include "scene/inlet.h"
 
-#include "contact/detect.h"
 #include "base/random.h"
+#include "contact/detect.h"
 #include "scene/grains.h"
 
 #include <stdlib.h>
@@ -45,7 +45,8 @@ int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
     *f = (struct flow){ 0 };
     if (!packing_varies(p)) return 0;
     if (!p->scene)
-        return failure_set(failure, EX_DATAERR, "inlets or outlets, but no scene that describes them");
+        return failure_set(failure, EX_DATAERR,
+                           "inlets or outlets, but no scene that describes them");
     if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, failure)) return failure->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
         f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p) &&
@@ -53,7 +54,7 @@ int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
         return 0;
     flow_free(f);
     return failure_set(failure, EX_DATAERR,
-                   "the scene's pours, removals, kinds, shapes or names are not the packing's");
+                       "the scene's pours, removals, kinds, shapes or names are not the packing's");
 }
 
 void flow_free(struct flow *f)
@@ -61,7 +62,8 @@ void flow_free(struct flow *f)
     scene_free(&f->scene);
 }
 
-static void inlet_note(struct packing *p, int64_t i, bool came, int32_t which, struct failure *failure)
+static void inlet_note(struct packing *p, int64_t i, bool came, int32_t which,
+                       struct failure *failure)
 {
     struct event e = { p->step,      p->t,       p->id[i], came,   which,
                        p->radius[i], p->mass[i], p->x[i],  p->v[i] };
@@ -113,7 +115,8 @@ static int32_t taken_by(const struct flow *f, const struct packing *p, const vec
 }
 
 /* Removes, and tells in row[i] where body i is now, -1: gone. */
-static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row, struct failure *failure)
+static int remove_bodies(const struct flow *f, struct packing *p, int32_t *row,
+                         struct failure *failure)
 {
     int64_t kept = 0;
     vec3 inverse[3];
@@ -304,7 +307,7 @@ struct newcomer {
 
 /* Would it meet nothing, neither now nor at the predicted positions? */
 static bool inlet_is_free(struct crowd *c, const struct scene_pour *o, const struct newcomer *g,
-                    struct failure *failure)
+                          struct failure *failure)
 {
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
@@ -334,7 +337,8 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
         packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
     if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
     if (!(p->mass[i] > 0 && p->inertia[i] > 0))
-        return failure_set(failure, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which, r);
+        return failure_set(failure, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which,
+                           r);
     p->x[i] = g->x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
     p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = g->q;
     if (p->shape) p->shape[i] = o->form.shape;

@@ -15,9 +15,9 @@
 #ifndef NSD_FLOW_H
 #define NSD_FLOW_H
 
+#include "scene/scene.h"
 #include "state/contact.h"
 #include "state/packing.h"
-#include "scene/scene.h"
 
 struct flow {
     struct scene
@@ -40,6 +40,7 @@ int flow_step(const struct flow *flow, struct packing *p, struct contacts *last,
 
 /* Bodies are taken away by another program: row[i] is where body i goes, in the same order; < 0: it is gone. Returns 0 or
    EX_SOFTWARE. */
-int flow_drop(struct packing *p, struct contacts *last, const int32_t *row, struct failure *failure);
+int flow_drop(struct packing *p, struct contacts *last, const int32_t *row,
+              struct failure *failure);
 
 #endif

@@ -164,8 +164,8 @@ int json_node_fault(jnode n, const char *format, ...)
     size_t length = write_path(&n, way, sizeof way);
     make_printable(way), make_printable(trouble);
     line_and_column(&n, &line, &column);
-    return failure_set(n.in->failure, EX_DATAERR, "%d:%d: %s%s%s", line, column, way, length ? ": " : "",
-                   trouble);
+    return failure_set(n.in->failure, EX_DATAERR, "%d:%d: %s%s%s", line, column, way,
+                       length ? ": " : "", trouble);
 }
 
 /* ---- keys ---- */
@@ -194,9 +194,9 @@ int json_node_only(jnode o, const char *names)
     json_object_foreach(
         o.json, key,
         value) if (strcmp(key, "comment") &&
-                   !json_node_is_among(names, key)) return json_node_fault(json_node_key(&o, key),
-                                                                 "unknown key; known here: %s",
-                                                                 names);
+                   !json_node_is_among(
+                       names, key)) return json_node_fault(json_node_key(&o, key),
+                                                           "unknown key; known here: %s", names);
     return 0;
 }
 
@@ -296,7 +296,8 @@ int json_node_vector(jnode n, int dim, vec3 *out)
     if (!json_is_array(n.json) || json_array_size(n.json) != (size_t)dim)
         return json_node_fault(n, "needs %s", dim == 2 ? "[x, y], for dim is 2" : "[x, y, z]");
     for (int i = 0; i < dim; i++)
-        if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i])) return n.in->failure->status;
+        if (json_node_number(json_node_item(&n, (size_t)i), J_ANY, &x[i]))
+            return n.in->failure->status;
     *out = v3(x[0], x[1], x[2]);
     return 0;
 }

@@ -10,8 +10,8 @@
 #ifndef NSD_JSON_NODE_H
 #define NSD_JSON_NODE_H
 
-#include "base/vec.h"
 #include "base/failure.h"
+#include "base/vec.h"
 
 #include <jansson.h>
 #include <stdbool.h>

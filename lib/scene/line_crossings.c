@@ -67,7 +67,8 @@ static void line_crossings_cut(const vec3 v[3], double z, double hair, double *f
     }
 }
 
-static int line_crossings_cross(struct crossings *t, const struct lines *l, const vec3 v[3], struct failure *failure)
+static int line_crossings_cross(struct crossings *t, const struct lines *l, const vec3 v[3],
+                                struct failure *failure)
 {
     int j0, j1, k0, k1;
     const vec3 lo = v3_min(v[0], v3_min(v[1], v[2])), hi = v3_max(v[0], v3_max(v[1], v[2]));
@@ -120,8 +121,8 @@ struct windings {
     vec3 place; /* m */
 };
 
-static void line_crossings_add_line(struct windings *w, const struct lines *l, const struct tunnelling *c, int64_t n,
-                     double rounding)
+static void line_crossings_add_line(struct windings *w, const struct lines *l,
+                                    const struct tunnelling *c, int64_t n, double rounding)
 {
     int winding = 0;
     for (int64_t i = 0; i + 1 < n; i++) {
@@ -145,10 +146,11 @@ static int line_crossings_judge(const struct windings *w, struct failure *failur
 {
     const vec3 x = w->place;
     if (w->inside_out > WRONG_MOST * (w->body + w->inside_out))
-        return failure_set(failure, EX_DATAERR,
-                       "is turned inside out in parts, as around (%.4g, %.4g, %.4g): turn their "
-                       "faces outward",
-                       x.x, x.y, x.z);
+        return failure_set(
+            failure, EX_DATAERR,
+            "is turned inside out in parts, as around (%.4g, %.4g, %.4g): turn their "
+            "faces outward",
+            x.x, x.y, x.z);
     if (w->twice > WRONG_MOST * w->body)
         return failure_set(
             failure, EX_DATAERR,

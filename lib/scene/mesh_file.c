@@ -148,8 +148,8 @@ static int give_part(struct scene_files *files, const char *part, int32_t first,
 static int give_names(struct scene_files *files, const struct soup *s, struct failure *failure)
 {
     if (!s->parts)
-        return failure_set(failure, EX_DATAERR, "%s: has no groups: \"parts\": [{name, faces}, ...]",
-                       s->name);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: has no groups: \"parts\": [{name, faces}, ...]", s->name);
     for (int32_t i = 0, end; i < s->triangles && !failure->status; i = end) {
         for (end = i + 1; end < s->triangles && s->part_of[end] == s->part_of[i];) end++;
         if (s->part_of[i] >= 0) give_part(files, s->part[s->part_of[i]], i, end, failure);
@@ -165,12 +165,12 @@ int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mes
     };
     const struct mesh_format *format = format_of(b);
     if (!format)
-        return failure_set(failure, EX_DATAERR, "%s: neither STL, OBJ nor PLY: write it as one of these",
-                       b->name);
+        return failure_set(failure, EX_DATAERR,
+                           "%s: neither STL, OBJ nor PLY: write it as one of these", b->name);
     s.grouped = files->parts != NULL;
     if (s.grouped && format != &mesh_obj)
-        failure_set(failure, EX_DATAERR, "%s: only OBJ files have groups: name ranges of faces instead",
-                b->name);
+        failure_set(failure, EX_DATAERR,
+                    "%s: only OBJ files have groups: name ranges of faces instead", b->name);
     else if (!format->read(&s, b->at, b->n) && !soup_mesh(to, &s, b->scale, left_out) && s.grouped)
         give_names(files, &s, failure);
     files->mesh_work = MESH_WORK_MOST - s.work;
@@ -179,7 +179,8 @@ int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mes
 }
 
 /* Opens a plain file; nothing else has an end that is known. Returns -1 after a fault. */
-static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, struct failure *failure)
+static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size,
+                                struct failure *failure)
 {
     struct stat st;
     int fd = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); // of a FIFO it would wait
@@ -187,9 +188,10 @@ static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, s
         failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
     else if (!S_ISREG(st.st_mode))
         failure_set(failure, EX_NOINPUT, "%s: no plain file: a mesh is not read from a %s", path,
-                S_ISDIR(st.st_mode) ? "directory" : "pipe or device");
+                    S_ISDIR(st.st_mode) ? "directory" : "pipe or device");
     else if (st.st_size > most)
-        failure_set(failure, EX_DATAERR, "%s: meshes of more than %d bytes in all", path, MESH_BYTES_MOST);
+        failure_set(failure, EX_DATAERR, "%s: meshes of more than %d bytes in all", path,
+                    MESH_BYTES_MOST);
     else
         return *size = st.st_size, fd;
     if (fd >= 0) close(fd);
@@ -200,11 +202,13 @@ static int mesh_file_open_plain(const char *path, int64_t most, int64_t *size, s
 static char *slurp(int fd, const char *path, int64_t size, int64_t *n, struct failure *failure)
 {
     char *bytes = malloc((size_t)size + 1);
-    if (!bytes) failure_set(failure, EX_SOFTWARE, "%s: no memory for %lld bytes", path, (long long)size);
+    if (!bytes)
+        failure_set(failure, EX_SOFTWARE, "%s: no memory for %lld bytes", path, (long long)size);
     for (*n = 0; bytes && *n < size;) {
         ssize_t more = read(fd, bytes + *n, (size_t)(size - *n));
         if (more < 0 && errno == EINTR) continue;
-        if (more < 0) failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
+        if (more < 0)
+            failure_set(failure, EX_NOINPUT, "%s: cannot be read: %s", path, strerror(errno));
         if (more <= 0) break;
         *n += more;
     }

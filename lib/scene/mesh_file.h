@@ -109,7 +109,6 @@ static inline double bytes_number(const void *at, enum bytes_type type, bool big
     }
 }
 
-
 enum {
     MESH_BYTES_MOST = 1 << 30, /* of all files of a scene */
     MESH_WORK_MOST = 1 << 30   /* for concave polygons [scene/ears.h]: some seconds */

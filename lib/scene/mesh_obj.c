@@ -85,7 +85,7 @@ static int mesh_obj_read(struct soup *s, const char *bytes, int64_t n)
         if (!words_next(&w, &word)) continue;
         if (word_is(word, "v")                          ? read_corner(&w)
             : word_is(word, "f") || word_is(word, "fo") ? mesh_obj_read_face(&w)
-            : word_is(word, "o") || word_is(word, "g")  ? mesh_obj_read_names(&w, word_is(word, "g"))
+            : word_is(word, "o") || word_is(word, "g") ? mesh_obj_read_names(&w, word_is(word, "g"))
             : word_is(word, "call")
                 ? word_fault(&w, word, "names another file, and no other is read")
                 : mesh_obj_is_among(word, curved) &&

@@ -184,7 +184,9 @@ static int read_header(struct ply *p)
         if (k == 4)
             return words_line(&p->w) ? check_header(p)
                                      : soup_fault(p->soup, "ends with its header");
-        if (k == 0 ? mesh_ply_read_format(p) : k == 1 ? read_element(p) : k == 2 && read_property(p))
+        if (k == 0   ? mesh_ply_read_format(p)
+            : k == 1 ? read_element(p)
+                     : k == 2 && read_property(p))
             return 1;
         format |= k == 0;
         if (k != 3 && words_next(&p->w, &none)) return word_fault(&p->w, none, "is too much");

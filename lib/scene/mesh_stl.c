@@ -13,7 +13,6 @@
  */
 #include "scene/mesh_file.h"
 
-
 #include <stdio.h>
 #include <string.h>
 

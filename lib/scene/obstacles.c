@@ -1,8 +1,8 @@
 #include "scene/obstacles.h"
 
-#include "shape/mesh.h"
 #include "scene/line_crossings.h"
 #include "scene/surface_parts.h"
+#include "shape/mesh.h"
 
 #include <stdlib.h>
 
@@ -97,7 +97,8 @@ static bool has_sides(const struct packing *p, const struct obstacle *o)
 }
 
 /* Does a ball touch it, and where? One of a side that the box does not reach only where its surface is */
-static bool obstacles_touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r)
+static bool obstacles_touches(const struct obstacles *all, const struct obstacle *o, vec3 c,
+                              double r)
 {
     const struct wall *w = &all->p->wall[o->wall];
     struct touch t;
@@ -167,7 +168,8 @@ static bool contains(const struct obstacles *all, const struct obstacle *o,
                                all->p->dim == 2 ? 0
                                : k & 4          ? box->hi[2]
                                                 : box->lo[2]);
-        const vec3 c = obstacles_place_of(all, o, corner), lo = v3_sub(b->lo, c), hi = v3_sub(c, b->hi);
+        const vec3 c = obstacles_place_of(all, o, corner), lo = v3_sub(b->lo, c),
+                   hi = v3_sub(c, b->hi);
         if (fmax(fmax(lo.x, hi.x), fmax(lo.y, hi.y)) > hair || fmax(lo.z, hi.z) > hair)
             return false;
     }
@@ -175,14 +177,16 @@ static bool contains(const struct obstacles *all, const struct obstacle *o,
 }
 
 /* On which sides of the walls the box has places, which of them are free, and how much of the box */
-static void obstacles_judge_sides(struct obstacles *all, const struct scene_box *box, const struct cell *cell)
+static void obstacles_judge_sides(struct obstacles *all, const struct scene_box *box,
+                                  const struct cell *cell)
 {
     int64_t free = 0;
     bool any = false;
     for (int32_t k = 0; k < all->n; k++) {
         struct obstacle *o = &all->o[k];
         for (int i = 0; i < SAMPLES && o->sided; i++)
-            *(is_free_side(all, o, obstacles_place_of(all, o, obstacles_sample(box, cell, all->p->dim, i)))
+            *(is_free_side(all, o,
+                           obstacles_place_of(all, o, obstacles_sample(box, cell, all->p->dim, i)))
                   ? &o->has_free
                   : &o->has_other) = true;
         const bool mesh = all->p->wall[o->wall].shape == BOUNDARY_MESH;

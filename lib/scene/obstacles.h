@@ -9,9 +9,9 @@
 #ifndef NSD_OBSTACLES_H
 #define NSD_OBSTACLES_H
 
-#include "state/packing.h"
-#include "shape/mesh.h"
 #include "scene/scene.h"
+#include "shape/mesh.h"
+#include "state/packing.h"
 
 #define OBSTACLES_SEEN ((int64_t)1 << 33) /* some minutes */
 

@@ -52,7 +52,7 @@ static bool random_start_place(struct cursor *c, double edge)
 
 /* Grain g into a cell of its own, moved at random as far as it stays in it. */
 static void random_start_settle(struct grain *g, const struct cursor *c, double edge, double jitter,
-                   gsl_rng *rng)
+                                gsl_rng *rng)
 {
     double x[3] = { 0 };
     for (int k = 0; k < c->dim; k++)
@@ -89,10 +89,11 @@ int shelves_fill(struct grains *out, const struct scene_bodies *b, int dim, gsl_
         c.at[0] += edge;
     }
     if (went >= 0 && !failure->status)
-        failure_set(failure, EX_DATAERR,
-                "the box has cells for %lld of %lld bodies: they need a height of %.4g m along %c",
-                (long long)went, (long long)out->n, c.end[dim - 1] - b->box.lo[dim - 1],
-                "xyz"[dim - 1]);
+        failure_set(
+            failure, EX_DATAERR,
+            "the box has cells for %lld of %lld bodies: they need a height of %.4g m along %c",
+            (long long)went, (long long)out->n, c.end[dim - 1] - b->box.lo[dim - 1],
+            "xyz"[dim - 1]);
     free(sorted);
     return failure->status;
 }
@@ -153,7 +154,8 @@ static uint64_t random_start_bucket(const struct level *l, const int64_t cell[3]
    of 64 bits. */
 #define FAR_CELL 1e15
 
-static void cell_of(const struct level *l, const struct random_start_all *s, vec3 x, int64_t cell[3])
+static void cell_of(const struct level *l, const struct random_start_all *s, vec3 x,
+                    int64_t cell[3])
 {
     const double at[3] = { x.x, x.y, x.z };
     for (int k = 0; k < 3; k++) {
@@ -213,8 +215,9 @@ static vec3 in_cell(const struct random_start_all *s, const double u[3], double 
 }
 
 /* Would grain i, no larger than those that are placed, meet one of this cell? */
-static bool random_start_meets(const struct random_start_placed *t, const struct level *l, const struct random_start_all *s, int64_t i,
-                  vec3 x, const int64_t cell[3])
+static bool random_start_meets(const struct random_start_placed *t, const struct level *l,
+                               const struct random_start_all *s, int64_t i, vec3 x,
+                               const int64_t cell[3])
 {
     for (int64_t j = l->head[random_start_bucket(l, cell)]; j >= 0; j = t->next[j]) {
         vec3 d = v3_sub(x, s->p.x[j]);
@@ -224,7 +227,8 @@ static bool random_start_meets(const struct random_start_placed *t, const struct
     return false;
 }
 
-static bool is_free_at(const struct random_start_placed *t, const struct random_start_all *s, int64_t i, vec3 x)
+static bool is_free_at(const struct random_start_placed *t, const struct random_start_all *s,
+                       int64_t i, vec3 x)
 {
     for (int k = random_start_level_of(s, i); k >= 0; k--) {
         const struct level *l = &t->level[k];
@@ -240,7 +244,8 @@ static bool is_free_at(const struct random_start_placed *t, const struct random_
 }
 
 /* The same with all images of the grain that may meet one in the cell; not in a wall, as large as it will be */
-static bool random_start_is_free(const struct random_start_placed *t, const struct random_start_all *s, int64_t i, vec3 x)
+static bool random_start_is_free(const struct random_start_placed *t,
+                                 const struct random_start_all *s, int64_t i, vec3 x)
 {
     int from[3] = { 0, 0, 0 }, to[3] = { 0, 0, 0 };
     if (obstacles_meet(&s->walls, x, s->p.radius[i] * (1 + FURTHER))) return false;
@@ -274,7 +279,8 @@ static vec3 random_start_draw_place(const struct random_start_all *s, int64_t i,
     return v3(x[0], x[1], x[2]);
 }
 
-static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, struct failure *failure)
+static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng,
+                          struct failure *failure)
 {
     struct random_start_placed t;
     int64_t all = TRIES_FREE + TRIES_MEAN * s->p.n;
@@ -290,11 +296,12 @@ static int add_one_by_one(struct random_start_all *s, double phi, gsl_rng *rng, 
             found = random_start_is_free(&t, s, i, s->p.x[i]);
         } while (!found && ++tries < TRIES && --all > 0);
         if (!found)
-            failure_set(failure, EX_DATAERR,
-                    "%lld of %lld bodies found a place at random between the walls; they are to "
-                    "fill %.3g of the box, of which %.3g is free: a smaller phi or count, or a "
-                    "wider box",
-                    (long long)i, (long long)s->p.n, phi * s->walls.free, s->walls.free);
+            failure_set(
+                failure, EX_DATAERR,
+                "%lld of %lld bodies found a place at random between the walls; they are to "
+                "fill %.3g of the box, of which %.3g is free: a smaller phi or count, or a "
+                "wider box",
+                (long long)i, (long long)s->p.n, phi * s->walls.free, s->walls.free);
         struct level *l = &t.level[random_start_level_of(s, i)];
         int64_t c[3];
         cell_of(l, s, s->p.x[i], c);
@@ -407,7 +414,7 @@ static int push_apart(struct random_start_all *s, struct neighbours *near, doubl
         for (int64_t i = 0; i < s->p.n; i++) *left = fmax(*left, push_off_walls(s, i));
         if (s->walls.seen > OBSTACLES_SEEN)
             failure_set(failure, EX_DATAERR,
-                    "a mesh is much finer than the grains, or crowded: a coarser one");
+                        "a mesh is much finer than the grains, or crowded: a coarser one");
         if (*left <= most || failure->status) break;
     }
     free(listed);
@@ -415,7 +422,8 @@ static int push_apart(struct random_start_all *s, struct neighbours *near, doubl
 }
 
 /* What overlaps in the end, all pushing done, in smaller radii */
-static int worst(struct random_start_all *s, struct neighbours *near, double *left, struct failure *failure)
+static int worst(struct random_start_all *s, struct neighbours *near, double *left,
+                 struct failure *failure)
 {
     *left = 0;
     wrap(s);
@@ -455,10 +463,11 @@ static int random_start_grow(struct random_start_all *s, double phi, struct fail
         if (failure->status || worst(s, &near, &left, failure) || left == 0) break;
     }
     if (!failure->status && left > 0)
-        failure_set(failure, EX_DATAERR,
-                "phi %g: the grains do not go in, %.2g of a radius overlaps: they need a height of "
-                "about %.4g m along %c",
-                phi, left, height_of(s, s->volume), "xyz"[s->dim - 1]);
+        failure_set(
+            failure, EX_DATAERR,
+            "phi %g: the grains do not go in, %.2g of a radius overlaps: they need a height of "
+            "about %.4g m along %c",
+            phi, left, height_of(s, s->volume), "xyz"[s->dim - 1]);
     neighbours_free(&near);
     return failure->status;
 }
@@ -571,7 +580,8 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, cons
     double room = s.walls.free * (cell ? cell_volume(cell, dim) : box_volume(&b->box, dim));
     if (!isfinite(room)) {
         obstacles_free(&s.walls);
-        return failure_set(failure, EX_DATAERR, "the box is too large: its volume is not a finite number");
+        return failure_set(failure, EX_DATAERR,
+                           "the box is too large: its volume is not a finite number");
     }
     double phi = draw_radii(out, b, dim, room, rng, failure);
     s.volume = phi * room;
@@ -583,7 +593,8 @@ int random_start(struct grains *out, const struct scene_bodies *b, int dim, cons
             phi * s.walls.free, s.walls.free, dim == 2 ? 0.82 : 0.6, height_of(&s, s.volume));
     if (!failure->status && !sort_radii(&s, out, failure) && !random_start_set_cell(&s, failure)) {
         if (phi > LOOSE[dim]) s.scale = pow(LOOSE[dim] / phi, 1.0 / dim);
-        if (!add_one_by_one(&s, phi, rng, failure) && s.scale < 1) random_start_grow(&s, phi, failure);
+        if (!add_one_by_one(&s, phi, rng, failure) && s.scale < 1)
+            random_start_grow(&s, phi, failure);
         for (int64_t i = 0; i < out->n && !failure->status; i++) out->g[s.from[i]].x = s.p.x[i];
     }
     packing_free(&s.p);

@@ -29,7 +29,6 @@
 int shelves_fill(struct grains *out, const struct scene_bodies *group, int dim, gsl_rng *rng,
                  struct failure *failure);
 
-
 /* The group's grains, in the order drawn; in its box, or, not NULL, in this cell; not in the walls of a packing, or NULL
    [scene/obstacles.h]. Returns 0, EX_DATAERR where they do not go in, or EX_SOFTWARE. */
 int random_start(struct grains *out, const struct scene_bodies *group, int dim,

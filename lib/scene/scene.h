@@ -148,9 +148,9 @@
 #define NSD_SCENE_H
 
 #include "base/failure.h"
-#include "state/packing.h"
-#include "shape/solid.h"
 #include "scene/scene_size.h"
+#include "shape/solid.h"
+#include "state/packing.h"
 
 #include <stddef.h>
 

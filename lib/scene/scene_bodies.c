@@ -287,9 +287,10 @@ static int read_bell(jnode o, struct scene_size *z)
     if (z->min > z->max) return json_node_fault(json_node_key(&o, "max"), "is less than min");
     double from = gauss ? z->min - z->mid : log(z->min / z->mid);
     double to = gauss ? z->max - z->mid : log(z->max / z->mid);
-    bool enough = z->spread > 0
-                      ? scene_bodies_normal_below(to / z->spread) - scene_bodies_normal_below(from / z->spread) > 1e-3
-                      : from <= 0 && to >= 0;
+    bool enough = z->spread > 0 ? scene_bodies_normal_below(to / z->spread) -
+                                          scene_bodies_normal_below(from / z->spread) >
+                                      1e-3
+                                : from <= 0 && to >= 0;
     return enough ? 0 : json_node_fault(o, "[min, max] keeps less than a thousandth of it");
 }
 

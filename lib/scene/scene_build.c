@@ -4,13 +4,13 @@
 #include "base/bounded.h"
 #include "base/random.h"
 
-#include "state/servo_box.h"
-#include "state/placement.h"
 #include "contact/detect.h"
 #include "scene/grains.h"
 #include "scene/random_start.h"
 #include "scene/scene_carry.h"
 #include "scene/time_step.h"
+#include "state/placement.h"
+#include "state/servo_box.h"
 
 #include <gsl/gsl_rng.h>
 #include <stdio.h>
@@ -19,8 +19,8 @@
 
 /* ---- bodies ---- */
 
-static int scene_build_set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x, double r,
-                    struct failure *failure)
+static int scene_build_set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x,
+                                double r, struct failure *failure)
 {
     double mass, inertia;
     if (b->form.shape)
@@ -29,8 +29,8 @@ static int scene_build_set_body(struct packing *p, int64_t i, const struct scene
         packing_solid(p->dim, r, b->density, &mass, &inertia);
     if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
     if (!b->fixed && !(mass > 0 && inertia > 0))
-        return failure_set(failure, EX_DATAERR, "body %lld: a radius of %g m gives no mass", (long long)i,
-                       r);
+        return failure_set(failure, EX_DATAERR, "body %lld: a radius of %g m gives no mass",
+                           (long long)i, r);
     p->x[i] = x, p->v[i] = b->v, p->w[i] = b->w;
     p->radius[i] = r;
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
@@ -43,7 +43,7 @@ static int scene_build_set_body(struct packing *p, int64_t i, const struct scene
 /* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in a
    periodic cell along its edges. */
 static vec3 scene_build_draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
-                       const struct packing *p, int64_t k, double r, gsl_rng *rng)
+                                   const struct packing *p, int64_t k, double r, gsl_rng *rng)
 {
     const int dim = p->dim;
     const struct cell *c = &p->cell;
@@ -87,14 +87,15 @@ struct scene_build_rows {
     int32_t *shape, *group; /* [shapes.n], [1 + names.n] */
 };
 
-static int scene_build_find_rows(struct scene_build_rows *to, const struct packing *p, const struct packing *from,
-                     struct failure *failure)
+static int scene_build_find_rows(struct scene_build_rows *to, const struct packing *p,
+                                 const struct packing *from, struct failure *failure)
 {
     *to = (struct scene_build_rows){ 0 };
     if (!from) return 0;
     to->shape = calloc((size_t)from->shapes.n + 1, sizeof *to->shape);
     to->group = calloc((size_t)from->names.n + 1, sizeof *to->group);
-    if (!to->shape || !to->group) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
+    if (!to->shape || !to->group)
+        return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
     for (int32_t k = 1; k < from->shapes.n; k++)
         to->shape[k] = shapes_find(&p->shapes, from->shapes.s[k].name);
     for (int32_t k = 0; k < from->names.n; k++)
@@ -105,8 +106,8 @@ static int scene_build_find_rows(struct scene_build_rows *to, const struct packi
 
 /* What is said of a grain comes before what its kind is; what its group says, before both. */
 static int set_grain(struct packing *p, int64_t i, const struct scene *s,
-                     const struct scene_bodies *b, const struct grain *g, const struct scene_build_rows *to,
-                     struct failure *failure)
+                     const struct scene_bodies *b, const struct grain *g,
+                     const struct scene_build_rows *to, struct failure *failure)
 {
     struct scene_bodies one = *b;
     if (!b->has_kind && g->kind >= 0) one.kind = g->kind;
@@ -124,7 +125,8 @@ static int set_grain(struct packing *p, int64_t i, const struct scene *s,
 }
 
 static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
-                       const struct scene_bodies *b, const struct grains *list, struct failure *failure)
+                       const struct scene_bodies *b, const struct grains *list,
+                       struct failure *failure)
 {
     struct scene_build_rows to;
     scene_build_find_rows(&to, p, b->document, failure);
@@ -159,7 +161,7 @@ static int set_ids(struct packing *p, bool given, struct failure *failure)
             p->id[i] = next++;
         else if (taken[p->id[i]]++)
             failure_set(failure, EX_DATAERR, "body %lld: another one has its id, %d", (long long)i,
-                    p->id[i]);
+                        p->id[i]);
     }
     free(taken);
     p->first_id = next;
@@ -172,7 +174,8 @@ static int orient_group(struct packing *p, const struct scene *s, int64_t g, int
 {
     const struct scene_bodies *b = &s->bodies[g];
     gsl_rng *rng = b->form.tumbled ? counter_alloc() : NULL;
-    if (b->form.tumbled && !rng) return failure_set(failure, EX_SOFTWARE, "no memory for random numbers");
+    if (b->form.tumbled && !rng)
+        return failure_set(failure, EX_SOFTWARE, "no memory for random numbers");
     for (int64_t i = 0; i < n; i++) {
         if (rng) counter_start(rng, s->seed, COUNTER_TURN, (uint64_t)g, (uint64_t)i, 0);
         p->q[first + i] = orientation_draw(s, &b->form, rng);
@@ -193,9 +196,10 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
     bool given = false;
     for (int64_t g = 0; g < s->groups; g++) {
         const struct scene_bodies *b = &s->bodies[g];
-        int bad = is_list(b)             ? fill_grains(p, first, s, b, &list[g], failure)
-                  : b->from == SCENE_ONE ? scene_build_set_body(p, first, b, b->x, b->size.min, failure)
-                                         : fill_lattice(p, first, b, rng, failure);
+        int bad = is_list(b) ? fill_grains(p, first, s, b, &list[g], failure)
+                  : b->from == SCENE_ONE
+                      ? scene_build_set_body(p, first, b, b->x, b->size.min, failure)
+                      : fill_lattice(p, first, b, rng, failure);
         if (bad) return bad;
         if (is_list(b)) draw_velocities(p, first, list[g].n, b, rng);
         int64_t n = is_list(b) ? list[g].n : b->count;
@@ -214,7 +218,8 @@ static int fill_groups(struct packing *p, const struct scene *s, const struct gr
 /* ---- the packing ---- */
 
 /* The shapes of a document, behind the scene's: a name stands for one shape. */
-static int scene_build_take_shapes(struct packing *p, const struct scene_bodies *b, struct failure *failure)
+static int scene_build_take_shapes(struct packing *p, const struct scene_bodies *b,
+                                   struct failure *failure)
 {
     const struct shapes *from = &b->document->shapes;
     struct shapes copy;
@@ -222,8 +227,8 @@ static int scene_build_take_shapes(struct packing *p, const struct scene_bodies 
     for (int32_t k = 1; k < from->n && !failure->status; k++) {
         int32_t had = shapes_find(&p->shapes, from->s[k].name);
         if (had >= 0 && !shape_same(&p->shapes.s[had], &from->s[k]))
-            failure_set(failure, EX_DATAERR, "%s: its shape \"%s\" is another than the scene's", b->file,
-                    from->s[k].name);
+            failure_set(failure, EX_DATAERR, "%s: its shape \"%s\" is another than the scene's",
+                        b->file, from->s[k].name);
         else if (had < 0)
             shapes_add(&p->shapes, p->dim, &copy.s[k], failure);
     }
@@ -235,7 +240,8 @@ static int set_shapes(struct packing *p, const struct scene *s, struct failure *
 {
     if (shapes_copy(&p->shapes, &s->shapes, failure)) return failure->status;
     for (int64_t g = 0; g < s->groups; g++)
-        if (s->bodies[g].document && scene_build_take_shapes(p, &s->bodies[g], failure)) return failure->status;
+        if (s->bodies[g].document && scene_build_take_shapes(p, &s->bodies[g], failure))
+            return failure->status;
     return p->shapes.n ? packing_alloc_shapes(p, failure) : 0;
 }
 
@@ -282,9 +288,9 @@ static int check_removals(const struct scene *s, const bool *of_bodies, struct f
         const int32_t group = s->removal[k].group;
         const char *name = group ? s->names.text[group - 1] : NULL;
         if (group && !of_bodies[group] && !has_group(s, name))
-            return failure_set(failure, EX_DATAERR,
-                           "remove[%d].name: no group of bodies and no pour has the name \"%s\"", k,
-                           name);
+            return failure_set(
+                failure, EX_DATAERR,
+                "remove[%d].name: no group of bodies and no pour has the name \"%s\"", k, name);
     }
     return 0;
 }
@@ -296,16 +302,17 @@ static int check_names(const struct packing *p, const struct scene *s, struct fa
         for (int32_t kind = 0; kind < p->kinds; kind++)
             if (!strcmp(p->names.text[k], p->kind_name[kind]))
                 return failure_set(failure, EX_DATAERR,
-                               "\"%s\" is a kind: walls and groups have other names",
-                               p->names.text[k]);
+                                   "\"%s\" is a kind: walls and groups have other names",
+                                   p->names.text[k]);
     bool of_bodies[NAMES_MOST + 1] = { false };
     for (int64_t i = 0; p->group && i < p->n; i++) of_bodies[p->group[i]] = p->group[i] > 0;
     for (int64_t g = 0; g < s->groups; g++) of_bodies[s->bodies[g].group] = s->bodies[g].group > 0;
     for (int32_t k = 0; k < s->pours; k++) of_bodies[s->pour[k].group] = s->pour[k].group > 0;
     for (int32_t k = 0; k < p->names.rows; k++)
         if (of_bodies[1 + p->names.row[k].name])
-            return failure_set(failure, EX_DATAERR, "\"%s\" is the name of a wall and of a group of bodies",
-                           p->names.text[p->names.row[k].name]);
+            return failure_set(failure, EX_DATAERR,
+                               "\"%s\" is the name of a wall and of a group of bodies",
+                               p->names.text[p->names.row[k].name]);
     return check_removals(s, of_bodies, failure);
 }
 
@@ -328,7 +335,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct failu
     if (packing_alloc_walls(p, s->walls, failure) || packing_alloc_kinds(p, s->kinds, failure))
         return failure->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
-    if (drives_copy(&p->drives, &s->drives, failure) || drives_copy(&p->pushes, &s->pushes, failure) ||
+    if (drives_copy(&p->drives, &s->drives, failure) ||
+        drives_copy(&p->pushes, &s->pushes, failure) ||
         drives_copy(&p->pulls, &s->pulls, failure) || mesh_copy(&p->mesh, &s->mesh, failure))
         return failure->status;
     if (s->cell.given && !s->cell.goes_on &&
@@ -377,8 +385,8 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
 enum { PLACE = 40 + NAME_BYTES }; /* bytes of the place of a row in a scene */
 
 /* "bodies[1]", "walls[1], floor": what the scene says of a row, -1 - i of a wall; "" of one that it does not say */
-static const char *scene_build_place_of(const struct scene *s, const struct grains *list, int32_t row,
-                            char text[PLACE])
+static const char *scene_build_place_of(const struct scene *s, const struct grains *list,
+                                        int32_t row, char text[PLACE])
 {
     int64_t g = 0, end = 0;
     *text = 0;
@@ -408,10 +416,11 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
         bool by_run = settled[c->b] && (c->a < 0 || settled[c->a]);
         if (c->gap >= -(by_run ? LEFT_BY_A_RUN : ROUNDING) * r) continue;
         scene_build_place_of(s, list, c->a, a), scene_build_place_of(s, list, c->b, b);
-        e = c->a < 0 ? failure_set(failure, EX_DATAERR, "body %d is %.3g m deep in wall %d (%s%s%s", c->b,
-                               -c->gap, -1 - c->a, b, a, cure)
-                     : failure_set(failure, EX_DATAERR, "bodies %d and %d overlap by %.3g m (%s, %s%s",
-                               c->a, c->b, -c->gap, a, b, cure);
+        e = c->a < 0
+                ? failure_set(failure, EX_DATAERR, "body %d is %.3g m deep in wall %d (%s%s%s",
+                              c->b, -c->gap, -1 - c->a, b, a, cure)
+                : failure_set(failure, EX_DATAERR, "bodies %d and %d overlap by %.3g m (%s, %s%s",
+                              c->a, c->b, -c->gap, a, b, cure);
     }
     contacts_free(&found);
     return e;
@@ -448,8 +457,8 @@ static int scene_build_set_dt(struct packing *p, const struct scene *s, struct f
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : failure_set(failure, EX_DATAERR,
-                         "dt: auto: nothing in the scene moves, so no time step can be "
-                         "chosen: give a number of seconds");
+                             "dt: auto: nothing in the scene moves, so no time step can be "
+                             "chosen: give a number of seconds");
 }
 
 static int scene_build_by_number(const void *a, const void *b)
@@ -469,8 +478,8 @@ static int check_forces(const struct packing *p, struct failure *failure)
     for (int32_t k = 0; k < p->pulls.n && !failure->status; k++) {
         const int32_t wanted = p->pulls.drive[k].boundary;
         if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, scene_build_by_number))
-            failure_set(failure, EX_DATAERR, "forces: no body has the id %d (nsd-info -p shows them)",
-                    wanted);
+            failure_set(failure, EX_DATAERR,
+                        "forces: no body has the id %d (nsd-info -p shows them)", wanted);
     }
     free(id);
     return failure->status;
@@ -506,17 +515,19 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         w->kind = grains_kind(s, b, from->wall[i].kind);
         if (w->kind < 0)
             return failure_set(failure, EX_DATAERR,
-                           "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
-                           from->kind_name[from->wall[i].kind]);
+                               "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
+                               from->kind_name[from->wall[i].kind]);
     }
     if (drives_copy(&p->drives, &from->drives, failure) ||
-        drives_copy(&p->pushes, &from->pushes, failure) || mesh_copy(&p->mesh, &from->mesh, failure))
+        drives_copy(&p->pushes, &from->pushes, failure) ||
+        mesh_copy(&p->mesh, &from->mesh, failure))
         return failure->status;
     for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
     for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
     for (int32_t k = 0; k < from->names.rows; k++) {
         const struct named *r = &from->names.row[k];
-        if (names_give(&p->names, from->names.text[r->name], r->boundary, r->first, r->count, failure))
+        if (names_give(&p->names, from->names.text[r->name], r->boundary, r->first, r->count,
+                       failure))
             return failure->status;
     }
     return 0;
@@ -538,7 +549,8 @@ static int inherit_walls(struct packing *p, const struct scene *s, struct failur
 }
 
 /* kg m^2: what a room's wall adds to its inertia: its mass by the square of its lever [state/servo_box.h] */
-static int set_room_mass(struct packing *p, const struct scene *s, int32_t w, struct failure *failure)
+static int set_room_mass(struct packing *p, const struct scene *s, int32_t w,
+                         struct failure *failure)
 {
     struct load *l = &p->wall[w].load;
     double lever = wall_lever(p, &p->wall[w], p->t), farthest = 0;
@@ -547,15 +559,15 @@ static int set_room_mass(struct packing *p, const struct scene *s, int32_t w, st
             farthest = fmax(farthest, fabs(wall_lever(p, &p->wall[k], p->t)));
     if (lever > 1e-9 * farthest || farthest == 0)
         return failure_set(failure, EX_DATAERR,
-                       "room.center: lies behind walls[%d], by %g m: give a \"center\" between "
-                       "the walls",
-                       s->wall_item[w], lever);
+                           "room.center: lies behind walls[%d], by %g m: give a \"center\" between "
+                           "the walls",
+                           s->wall_item[w], lever);
     if (!s->room_yields) return 0;
     if (!(l->mass > 0)) l->mass = time_step_wall_mass(p, &p->wall[w]);
     if (!(l->mass > 0))
         return failure_set(failure, EX_DATAERR,
-                       "room: no bodies move, whose mass would give the walls theirs: give a "
-                       "\"mass\", kg");
+                           "room: no bodies move, whose mass would give the walls theirs: give a "
+                           "\"mass\", kg");
     l->mass *= lever * lever;
     return 0;
 }
@@ -570,8 +582,8 @@ static int set_masses(struct packing *p, const struct scene *s, struct failure *
     for (int k = 0; k < p->dim; k++) squares += v3_dot(c->edge[k], c->edge[k]);
     if (s->cell.given && by_rule && !(mass > 0))
         return failure_set(failure, EX_DATAERR,
-                       "cell.stress: no body moves, so the mass of the edges cannot be chosen: "
-                       "give a \"mass\", kg");
+                           "cell.stress: no body moves, so the mass of the edges cannot be chosen: "
+                           "give a \"mass\", kg");
     for (int k = 0; k < 9 && by_rule; k++)
         if (c->mass[k / 3][k % 3] > 0) c->mass[k / 3][k % 3] = mass;
     if (s->cell.given && c->size_mass > 0) c->size_mass = (by_rule ? mass : c->size_mass) * squares;
@@ -591,7 +603,8 @@ static int set_masses(struct packing *p, const struct scene *s, struct failure *
 }
 
 /* The whole cell of a document, its moments as if the document's time were the scene's */
-static int scene_build_take_cell(struct packing *p, const struct scene *s, const struct packing *from)
+static int scene_build_take_cell(struct packing *p, const struct scene *s,
+                                 const struct packing *from)
 {
     if (cell_copy(&p->cell, &from->cell)) return 1;
     for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
@@ -627,7 +640,8 @@ static int inherit_cell(struct packing *p, const struct scene *s, struct failure
     for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
     bool repeats = from && cell_repeats(&from->cell);
     if (s->cell.goes_on && !repeats)
-        return failure_set(failure, EX_DATAERR, "cell: has no edges, and nor has the first document");
+        return failure_set(failure, EX_DATAERR,
+                           "cell: has no edges, and nor has the first document");
     if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
     if (s->cell.goes_on ? complete_cell(p, s, from) : scene_build_take_cell(p, s, from))
         return failure_set(failure, EX_SOFTWARE, "no memory for the cell");
@@ -710,13 +724,15 @@ static int list_group(struct grains *out, const struct scene *s, int64_t g, cons
 }
 
 /* A packing of the walls alone, where bodies at random have to avoid them. Its shapes and names are the scene's. */
-static int make_walls(struct packing *walls, bool *any, const struct scene *s, struct failure *failure)
+static int make_walls(struct packing *walls, bool *any, const struct scene *s,
+                      struct failure *failure)
 {
     *any = false;
     for (int64_t g = 0; g < s->groups && !s->overlap; g++)
         *any = *any || s->bodies[g].from == SCENE_RANDOM;
     if (!*any || packing_init(walls, s->dim, 0, failure)) return failure->status;
-    if (set_parameters(walls, s, failure) || inherit_walls(walls, s, failure)) return failure->status;
+    if (set_parameters(walls, s, failure) || inherit_walls(walls, s, failure))
+        return failure->status;
     *any = walls->walls > 0;
     return 0;
 }
@@ -729,10 +745,11 @@ static int check_count(const struct scene *s, struct failure *failure)
     double n = 0, most = limits_room();
     for (int64_t g = 0; g < s->groups; g++) n += (double)s->bodies[g].count;
     if (n * BODY_BYTES <= most) return 0;
-    return failure_set(failure, EX_DATAERR,
-                   "%.0f bodies take %.3g GB of memory and more, and this process has %.3g GB: a "
-                   "smaller count",
-                   n, n * BODY_BYTES / 1e9, most / 1e9);
+    return failure_set(
+        failure, EX_DATAERR,
+        "%.0f bodies take %.3g GB of memory and more, and this process has %.3g GB: a "
+        "smaller count",
+        n, n * BODY_BYTES / 1e9, most / 1e9);
 }
 
 int scene_build(struct packing *p, const struct scene *s, const char *dir, struct failure *failure)

@@ -2,8 +2,8 @@
 #ifndef NSD_SCENE_BUILD_H
 #define NSD_SCENE_BUILD_H
 
-#include "state/packing.h"
 #include "scene/scene.h"
+#include "state/packing.h"
 
 /*
  * Bodies in the order of the scene's groups; p->scene is the scene's text. Tables with a relative

@@ -80,7 +80,8 @@ static int carry_bonds(const struct carried *y, struct failure *failure)
         if (!has_images(y, b.shift) || (!bonds && !b.wet)) continue;
         if (!bonds) b.beta = 0;
         if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
-        if (!bonds_add(&p->bonds, &b)) return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
+        if (!bonds_add(&p->bonds, &b))
+            return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     }
     return 0;
 }
@@ -102,7 +103,8 @@ static int carry_memory(const struct carried *y, struct failure *failure)
     return 0;
 }
 
-static int carry_force(const struct carried *y, const vec3 *from, vec3 **to, struct failure *failure)
+static int carry_force(const struct carried *y, const vec3 *from, vec3 **to,
+                       struct failure *failure)
 {
     if (!from) return 0;
     if (external_force_alloc(to, y->p->n, failure)) return failure->status;
@@ -150,7 +152,8 @@ static void carry_account(struct packing *p, const struct scene *s, const struct
     p->first_id = (int32_t)first;
 }
 
-int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct failure *failure)
+int scene_carry(struct packing *p, const struct scene *s, const int64_t *row,
+                struct failure *failure)
 {
     const struct packing *first = NULL;
     for (int64_t g = 0; g < s->groups && !failure->status; g++) {

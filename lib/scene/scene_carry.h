@@ -7,12 +7,13 @@
 #ifndef NSD_SCENE_CARRY_H
 #define NSD_SCENE_CARRY_H
 
-#include "state/packing.h"
 #include "scene/scene.h"
+#include "state/packing.h"
 
 /* Once p has the scene's bodies, of the documents' groups in their order, walls and laws; row[g]: where group g begins.
    Returns 0 or EX_SOFTWARE. */
-int scene_carry(struct packing *p, const struct scene *s, const int64_t *row, struct failure *failure);
+int scene_carry(struct packing *p, const struct scene *s, const int64_t *row,
+                struct failure *failure);
 /* Once it has its dt, too */
 void scene_carry_dt(struct packing *p, const struct scene *s);
 

@@ -105,8 +105,8 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out
     double one = 1, mass[3][3] = { { 0 } };
     bool matrix = json_is_array(n.json), given[3][3] = { { false } };
     if (!n.json) out->by_rule = true;
-    if (n.json &&
-        (matrix ? scene_cell_read_matrix(n, dim, mass, given) : json_node_number(n, J_POSITIVE, &one)))
+    if (n.json && (matrix ? scene_cell_read_matrix(n, dim, mass, given)
+                          : json_node_number(n, J_POSITIVE, &one)))
         return 1;
     for (int i = 0; i < dim; i++)
         for (int j = 0; j < dim; j++) {

@@ -43,7 +43,8 @@ static int add_kind(jnode n, struct scene *s, const char *name, double density)
     const char *trouble = name_trouble_of_kind(name, strlen(name));
     if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
     s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
-    if (!s->kind[s->kinds].name) return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
+    if (!s->kind[s->kinds].name)
+        return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
     s->kinds++;
     return 0;
 }
@@ -238,7 +239,8 @@ static int scene_material_read_part(jnode o, struct scene *s)
         return 1;
     if (first > last) return json_node_fault(faces, "its first face is behind its last");
     struct failure *failure = o.in->failure;
-    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1), failure);
+    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1),
+                      failure);
 }
 
 int scene_read_parts(jnode a, struct scene *s, bool *groups)

@@ -93,8 +93,8 @@ static int read_cone(jnode o, struct scene *s, struct wall *w)
         json_node_vector(json_node_key(&o, "point"), 3, &w->x) ||
         scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
         read_two(radii, J_NOT_NEGATIVE, w->size) ||
-        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) || scene_shapes_read_side(o, w) ||
-        read_arc(o, 3, w))
+        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) ||
+        scene_shapes_read_side(o, w) || read_arc(o, 3, w))
         return 1;
     return w->size[0] + w->size[1] > 0 ? 0 : json_node_fault(radii, "must not both be 0");
 }
@@ -134,7 +134,7 @@ struct reader_of_shape {
 };
 
 static int scene_shapes_read_shape(jnode o, const char *common, struct scene *s, struct wall *w,
-                      const struct reader_of_shape *r)
+                                   const struct reader_of_shape *r)
 {
     char names[100];
     for (; r->key; r++) {

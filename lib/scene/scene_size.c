@@ -69,7 +69,8 @@ double scene_size_draw(const struct scene_size *z, gsl_rng *rng)
         if (z->min == z->max) return z->min;
         return gsl_ran_flat(rng, z->min, z->max);
     case SIZE_POWER:
-        return scene_size_within(z, z->min * invert_power(z->exponent, z->min, z->max, gsl_rng_uniform(rng)));
+        return scene_size_within(
+            z, z->min * invert_power(z->exponent, z->min, z->max, gsl_rng_uniform(rng)));
     case SIZE_SIEVE:
         return scene_size_within(z, draw_sieve(z, rng));
     default:

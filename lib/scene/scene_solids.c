@@ -1,9 +1,9 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
-#include "shape/solid.h"
 #include "scene/clump_fit.h"
 #include "scene/hull.h"
-#include "scene/surface_parts.h"
 #include "scene/scene_read.h"
+#include "scene/surface_parts.h"
+#include "shape/solid.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -157,7 +157,8 @@ static int read_polyhedron(jnode o, struct shape *s)
     s->faces = s->corners = 0;
     if (!bad && (faces < 4 || faces > 2 * n))
         return json_node_fault(list, "%zu faces close no body of %zu vertices", faces, n);
-    for (size_t f = 0; !bad && f < faces; f++) bad = scene_solids_read_face(json_node_item(&list, f), s, room);
+    for (size_t f = 0; !bad && f < faces; f++)
+        bad = scene_solids_read_face(json_node_item(&list, f), s, room);
     return bad;
 }
 
@@ -174,7 +175,8 @@ static int read_regular(jnode o, struct shape *s, int dim)
         json_node_number(json_node_key(&r, "height"), J_POSITIVE, &height))
         return 1;
     int32_t n = (int32_t)sides, levels = dim == 2 ? 1 : 2;
-    if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->failure)) return 1;
+    if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->failure))
+        return 1;
     for (int32_t i = 0; i < n * levels; i++) {
         vec3 x = quat_turn(quat_rotation(v3(0, 0, 2 * M_PI * (i % n) / n)), v3(radius, 0, 0));
         s->vertex[i] = v3(x.x, x.y, dim == 2 ? 0 : i < n ? -height / 2 : height / 2);
@@ -447,7 +449,7 @@ static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *s
 
 /* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
 static int scene_solids_settle(jnode o, struct shape *s, const struct solid *as, int dim,
-                  struct solid_frame *solid)
+                               struct solid_frame *solid)
 {
     struct failure failure = { 0 };
     if (as->volume > 0)

@@ -187,7 +187,8 @@ static int read_plane(jnode o, struct scene *s, struct wall w)
     return scene_walls_add_wall(o, s, w);
 }
 
-static int scene_walls_read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box, bool *boxed)
+static int scene_walls_read_box(jnode o, struct scene *s, struct wall w, struct scene_box *box,
+                                bool *boxed)
 {
     struct scene_box b;
     if (json_node_only(o, "box " COMMON) || scene_read_box(json_node_key(&o, "box"), s->dim, &b) ||
@@ -426,7 +427,8 @@ int scene_read_room(jnode o, struct scene *s)
     if (!s->has_walls)
         return json_node_fault(o, "needs \"walls\" in the scene: those of a document bring theirs");
     bool *in = scene_alloc(o, (size_t)s->walls, sizeof *in);
-    int bad = !in || scene_walls_read_names(json_node_key(&o, "walls"), s, in) || set_loads(o, s, in);
+    int bad =
+        !in || scene_walls_read_names(json_node_key(&o, "walls"), s, in) || set_loads(o, s, in);
     free(in);
     return bad;
 }

@@ -44,7 +44,8 @@ static double bell_below(const struct scene_size *z, double r)
     const double lo = (gauss ? z->min - z->mid : log(z->min / z->mid)) / z->spread,
                  hi = (gauss ? z->max - z->mid : log(z->max / z->mid)) / z->spread,
                  at = (gauss ? r - z->mid : log(r / z->mid)) / z->spread;
-    return (size_table_normal_below(at) - size_table_normal_below(lo)) / (size_table_normal_below(hi) - size_table_normal_below(lo));
+    return (size_table_normal_below(at) - size_table_normal_below(lo)) /
+           (size_table_normal_below(hi) - size_table_normal_below(lo));
 }
 
 static double sieve_below(const struct scene_size *z, double r)
@@ -83,7 +84,8 @@ static void sum_up(struct size_table *t)
     }
 }
 
-int size_table_asked(struct size_table *t, const struct scene_size *z, int dim, struct failure *failure)
+int size_table_asked(struct size_table *t, const struct scene_size *z, int dim,
+                     struct failure *failure)
 {
     const bool one = !(z->min < z->max);
     if (size_table_alloc(t, one ? 1 : BINS + 1, failure)) return failure->status;

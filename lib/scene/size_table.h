@@ -23,7 +23,8 @@ struct size_table {
 };
 
 /* Each returns 0 or EX_SOFTWARE; size_table_free() in any case. */
-int size_table_asked(struct size_table *t, const struct scene_size *z, int dim, struct failure *failure);
+int size_table_asked(struct size_table *t, const struct scene_size *z, int dim,
+                     struct failure *failure);
 /* Of n grains with these radii (m) */
 int size_table_drawn(struct size_table *t, const double *radius, int64_t n, int dim,
                      struct failure *failure);

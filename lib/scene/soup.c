@@ -2,8 +2,8 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "scene/soup.h"
 
-#include "state/names.h"
 #include "scene/ears.h"
+#include "state/names.h"
 
 #include <float.h>
 #include <stdarg.h>
@@ -25,8 +25,8 @@ int soup_fault(struct soup *s, const char *format, ...)
         if (*c & 0x80)
             *c = '?'; // of words out of the file; half a character, or one that moves a terminal
     if (!s->unit) return failure_set(s->failure, EX_DATAERR, "%s: %s", s->name, trouble);
-    return failure_set(s->failure, EX_DATAERR, "%s: %s %lld: %s", s->name, s->unit, (long long)s->at,
-                   trouble);
+    return failure_set(s->failure, EX_DATAERR, "%s: %s %lld: %s", s->name, s->unit,
+                       (long long)s->at, trouble);
 }
 
 static int soup_no_memory(struct soup *s)
@@ -289,7 +289,8 @@ static int soup_add_to(struct mesh *to, struct soup *s, double scale)
     if (!number) return soup_no_memory(s);
     if (to->elements > SOUP_TRIANGLES_MOST - s->triangles)
         soup_fault(s, "more than %d triangles, with those of other files", SOUP_TRIANGLES_MOST);
-    else if (!mesh_grow(to, number_corners(s, number), s->triangles, &vertex, &element, s->failure)) {
+    else if (!mesh_grow(to, number_corners(s, number), s->triangles, &vertex, &element,
+                        s->failure)) {
         for (int32_t i = 0; i < s->corners; i++)
             if (number[i] >= 0) vertex[number[i]] = v3_scale(scale, s->corner[i]);
         for (int32_t i = 0; i < s->triangles; i++)

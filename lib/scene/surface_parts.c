@@ -31,21 +31,23 @@ static int by_vertices(const void *one, const void *other)
     return (a->triangle > b->triangle) - (a->triangle < b->triangle);
 }
 
-static int surface_parts_judge_sides(const struct surface_parts_side *side, int32_t n, struct failure *failure)
+static int surface_parts_judge_sides(const struct surface_parts_side *side, int32_t n,
+                                     struct failure *failure)
 {
     for (int32_t k = 0, end; k < n; k = end) {
         const struct surface_parts_side *a = &side[k];
         for (end = k + 1; end < n && side[end].lo == a->lo && side[end].hi == a->hi;) end++;
         if (end - k == 1)
-            return failure_set(failure, EX_DATAERR, "is open: triangle %d has a side without a neighbour",
-                           a->triangle);
-        if (end - k > 2)
-            return failure_set(failure, EX_DATAERR, "more than two triangles share a side of triangle %d",
-                           a->triangle);
-        if (a->back == side[k + 1].back)
             return failure_set(failure, EX_DATAERR,
-                           "of triangles %d and %d, which share a side, one is turned inside out",
-                           a->triangle, side[k + 1].triangle);
+                               "is open: triangle %d has a side without a neighbour", a->triangle);
+        if (end - k > 2)
+            return failure_set(failure, EX_DATAERR,
+                               "more than two triangles share a side of triangle %d", a->triangle);
+        if (a->back == side[k + 1].back)
+            return failure_set(
+                failure, EX_DATAERR,
+                "of triangles %d and %d, which share a side, one is turned inside out", a->triangle,
+                side[k + 1].triangle);
     }
     return 0;
 }
@@ -92,16 +94,18 @@ static int judge_convex(const struct mesh *m, const struct shape *s, struct fail
     struct solid hull;
     double volume = surface_parts_volume_of(m);
     if (solid_of(&hull, s, 3, failure)) return failure->status;
-    if (volume < 0) return failure_set(failure, EX_DATAERR, "is turned inside out: turn its faces outward");
+    if (volume < 0)
+        return failure_set(failure, EX_DATAERR, "is turned inside out: turn its faces outward");
     if (crossings_judge(m, failure)) return failure->status;
     if (fabs(volume - hull.volume) > CONVEX * hull.volume)
         return failure_set(failure, EX_DATAERR,
-                       "is not convex: its volume is %.6g m^3, that of its hull %.6g m^3", volume,
-                       hull.volume);
+                           "is not convex: its volume is %.6g m^3, that of its hull %.6g m^3",
+                           volume, hull.volume);
     return 0;
 }
 
-int mesh_shape(struct shape *s, const struct mesh *m, bool hull, bool *by_hull, struct failure *failure)
+int mesh_shape(struct shape *s, const struct mesh *m, bool hull, bool *by_hull,
+               struct failure *failure)
 {
     *by_hull = false;
     if (m->vertices > CORNERS_MOST)
@@ -154,12 +158,13 @@ static int name_parts(int32_t *of, const struct scene *s, int32_t w, struct fail
         if (part->wall != w) continue;
         if (part->last >= n)
             return failure_set(failure, EX_DATAERR,
-                           "walls[%d].materials: no face %lld: the surface has %d, from 0 on",
-                           s->wall_item[w], (long long)part->last, n);
+                               "walls[%d].materials: no face %lld: the surface has %d, from 0 on",
+                               s->wall_item[w], (long long)part->last, n);
         for (int64_t e = part->first; e <= part->last; e++) {
             if (of[e] >= 0)
-                return failure_set(failure, EX_DATAERR, "walls[%d].materials: face %lld is named twice",
-                               s->wall_item[w], (long long)e);
+                return failure_set(failure, EX_DATAERR,
+                                   "walls[%d].materials: face %lld is named twice", s->wall_item[w],
+                                   (long long)e);
             of[e] = k;
         }
     }
@@ -167,7 +172,8 @@ static int name_parts(int32_t *of, const struct scene *s, int32_t w, struct fail
 }
 
 /* The elements of part k become those of a new wall; *at, where they lie. */
-static int surface_parts_add_part(struct scene *s, int32_t k, int32_t first, int32_t n, struct failure *failure)
+static int surface_parts_add_part(struct scene *s, int32_t k, int32_t first, int32_t n,
+                                  struct failure *failure)
 {
     const struct scene_part *part = &s->part[k];
     struct wall w = s->wall[part->wall];

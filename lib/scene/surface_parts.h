@@ -14,7 +14,8 @@
 
 /* s's vertices (m), faces and corners. hull: of the corners, whatever the triangles are. Returns 0,
    EX_DATAERR with what is wrong with the surface, or EX_SOFTWARE. *by_hull: the hull may do where the surface does not. */
-int mesh_shape(struct shape *s, const struct mesh *m, bool hull, bool *by_hull, struct failure *failure);
+int mesh_shape(struct shape *s, const struct mesh *m, bool hull, bool *by_hull,
+               struct failure *failure);
 
 /* Is every side of a triangle that of two, once either way? Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int mesh_closed(const struct mesh *m, struct failure *failure);

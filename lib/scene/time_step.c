@@ -2,9 +2,9 @@
 #include "scene/time_step.h"
 
 #include "base/number.h"
-#include "state/servo_box.h"
 #include "contact/detect.h"
 #include "shape/wall_edge.h"
+#include "state/servo_box.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,7 +81,8 @@ static double lightest(const struct packing *p)
 {
     double most = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) most = dmax(most, time_step_power(2 * p->radius[i], p->dim - 1) / p->mass[i]);
+        if (p->mass[i] > 0)
+            most = dmax(most, time_step_power(2 * p->radius[i], p->dim - 1) / p->mass[i]);
     return most;
 }
 
@@ -538,7 +539,8 @@ double time_step_wall_mass(const struct packing *p, const struct wall *w)
 {
     double mass = 0, face = 0;
     for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) mass += p->mass[i], face += time_step_power(2 * p->radius[i], p->dim - 1);
+        if (p->mass[i] > 0)
+            mass += p->mass[i], face += time_step_power(2 * p->radius[i], p->dim - 1);
     return face > 0 ? mass / face * pressed_area(p, w->load.axis) : 0;
 }
 

@@ -126,10 +126,11 @@ int cell_check(const struct cell *c, int dim, double least, struct failure *fail
     cell_heights(c, height);
     for (int k = 0; k < 3; k++)
         if (c->repeats[k] && !(height[k] >= least))
-            return failure_set(failure, EX_DATAERR,
-                           "the periodic cell is %.9g m wide across edge %d: less than the largest "
-                           "body with its gap, %.9g m, which would touch itself",
-                           height[k], k, least);
+            return failure_set(
+                failure, EX_DATAERR,
+                "the periodic cell is %.9g m wide across edge %d: less than the largest "
+                "body with its gap, %.9g m, which would touch itself",
+                height[k], k, least);
     return 0;
 }
 

@@ -21,8 +21,8 @@
 #ifndef NSD_CELL_H
 #define NSD_CELL_H
 
-#include "base/vec.h"
 #include "base/failure.h"
+#include "base/vec.h"
 
 #include <stdbool.h>
 #include <stdint.h>

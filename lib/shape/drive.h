@@ -52,7 +52,6 @@ static inline bool load_grows_too_fast(const struct load *l, double dt)
     return !(part < 0.1 && part > -0.1);
 }
 
-
 /* DRIVE_SPEED: s = value t, from `from` on. DRIVE_SINE: s = value sin(2 pi frequency t + phase).
    DRIVE_TABLE: s linear between the rows of a table, constant before and after. */
 enum drive_signal { DRIVE_SPEED, DRIVE_SINE, DRIVE_TABLE, DRIVE_SIGNALS };

@@ -153,7 +153,7 @@ static int32_t crossing(int32_t edge, int32_t side)
 
 /* What is left of a polygon (or of a segment, n = 2) where m . x <= at */
 static int meet_clip(struct clipped *to, const struct clipped *from, int n, vec3 m, double at,
-                int32_t side)
+                     int32_t side)
 {
     int count = 0;
     for (int k = 0; k < n && count < CORNERS_MOST - 2; k++) {

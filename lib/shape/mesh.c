@@ -55,12 +55,13 @@ int mesh_check(const struct mesh *m, int dim, struct failure *failure)
     for (int32_t i = 0; i < m->vertices; i++)
         if (!v3_finite(m->vertex[i]) || (dim == 2 && m->vertex[i].z != 0))
             return failure_set(failure, EX_DATAERR,
-                           "vertex %d of the mesh: not finite, or not in the plane", i);
+                               "vertex %d of the mesh: not finite, or not in the plane", i);
     for (int32_t i = 0; i < m->elements; i++) {
         const int32_t *e = m->element[i];
         for (int k = 0; k < 3; k++)
             if (e[k] < 0 || e[k] >= m->vertices)
-                return failure_set(failure, EX_DATAERR, "element %d of the mesh: no such vertex", i);
+                return failure_set(failure, EX_DATAERR, "element %d of the mesh: no such vertex",
+                                   i);
         vec3 a = v3_sub(m->vertex[e[1]], m->vertex[e[0]]);
         vec3 b = v3_sub(m->vertex[e[2]], m->vertex[e[0]]);
         if ((dim == 2 && e[2] != e[1]) || !(v3_norm(dim == 2 ? a : v3_cross(a, b)) > 0))
@@ -84,7 +85,8 @@ static int mesh_by_key(const void *a, const void *b)
 }
 
 /* Makes the boxes of order[lo .. hi-1] from box `at` on; returns the index behind them. */
-static int32_t mesh_grow_tree(struct surface *s, struct keyed *room, int32_t lo, int32_t hi, int32_t at)
+static int32_t mesh_grow_tree(struct surface *s, struct keyed *room, int32_t lo, int32_t hi,
+                              int32_t at)
 {
     struct surface_box *b = &s->box[at];
     b->lo = v3(INFINITY, INFINITY, INFINITY), b->hi = v3_scale(-1, b->lo);
@@ -216,9 +218,10 @@ int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t
     free(room);
     for (int32_t v = 0; good && v < 3 * n; v++)
         if (s->star[v + 1] - s->star[v] > STAR_MOST)
-            return failure_set(failure, EX_DATAERR, "a mesh: more than %d elements meet at a corner",
-                           STAR_MOST);
-    return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for a surface of %d elements", n);
+            return failure_set(failure, EX_DATAERR,
+                               "a mesh: more than %d elements meet at a corner", STAR_MOST);
+    return good ? 0
+                : failure_set(failure, EX_SOFTWARE, "no memory for a surface of %d elements", n);
 }
 
 void surface_free(struct surface *s)
@@ -255,11 +258,13 @@ static struct mesh_place mesh_near_triangle(vec3 a, vec3 b, vec3 c, vec3 p)
     double d3 = v3_dot(ab, bp), d4 = v3_dot(ac, bp);
     if (d3 >= 0 && d4 <= d3) return (struct mesh_place){ b, 4 };
     double vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return (struct mesh_place){ v3_axpy(a, d1 / (d1 - d3), ab), 0 };
+    if (vc <= 0 && d1 >= 0 && d3 <= 0)
+        return (struct mesh_place){ v3_axpy(a, d1 / (d1 - d3), ab), 0 };
     double d5 = v3_dot(ab, cp), d6 = v3_dot(ac, cp);
     if (d6 >= 0 && d5 <= d6) return (struct mesh_place){ c, 5 };
     double vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return (struct mesh_place){ v3_axpy(a, d2 / (d2 - d6), ac), 2 };
+    if (vb <= 0 && d2 >= 0 && d6 <= 0)
+        return (struct mesh_place){ v3_axpy(a, d2 / (d2 - d6), ac), 2 };
     double va = d3 * d6 - d5 * d4, along = (d4 - d3) + (d5 - d6);
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
         return (struct mesh_place){ v3_axpy(b, (d4 - d3) / along, v3_sub(c, b)), 1 };
@@ -328,8 +333,8 @@ vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c)
 }
 
 /* Returns how many elements were looked at for it, of those at its corners each. */
-static int mesh_look_at(const struct surface *s, int32_t e, vec3 c, double most, struct touch *touch,
-                   int *n)
+static int mesh_look_at(const struct surface *s, int32_t e, vec3 c, double most,
+                        struct touch *touch, int *n)
 {
     struct mesh_place at = near_element(s, e, c);
     vec3 d = v3_sub(c, at.x);

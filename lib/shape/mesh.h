@@ -81,7 +81,6 @@ static inline bool surface_walk_next(struct surface_walk *w, const struct surfac
     return false;
 }
 
-
 struct mesh {
     int32_t vertices, elements;
     vec3 *vertex;          /* [vertices] m, from the point of reference of their boundary */

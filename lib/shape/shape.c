@@ -8,7 +8,8 @@
    single precision, and what overlaps at rest does so by 1e-4. */
 static const double FLAT = 1e-6;
 
-int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct failure *failure)
+int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners,
+                struct failure *failure)
 {
     s->vertices = vertices, s->faces = faces, s->corners = corners;
     s->vertex = calloc((size_t)vertices + 1, sizeof *s->vertex);
@@ -119,7 +120,8 @@ static int shape_copy_one(struct shape *to, const struct shape *from, struct fai
         return failure_set(failure, EX_SOFTWARE, "no memory for a shape");
     }
     char *name = to->name;
-    if (shape_alloc(to, from->vertices, from->faces, from->corners, failure)) return failure->status;
+    if (shape_alloc(to, from->vertices, from->faces, from->corners, failure))
+        return failure->status;
     to->name = name;
     for (int32_t i = 0; i < from->vertices; i++)
         to->vertex[i] = from->vertex[i], to->ball[i] = from->ball[i];

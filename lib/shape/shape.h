@@ -50,7 +50,6 @@ static inline double core_bottom(const struct core *c, vec3 n)
     return least;
 }
 
-
 enum shape_form { SHAPE_BALL, SHAPE_CLUMP, SHAPE_CAPSULE, SHAPE_HULL, SHAPE_FORMS };
 
 enum {
@@ -105,7 +104,8 @@ bool shape_same(const struct shape *a, const struct shape *b);
 
 /* Arrays for so many vertices, faces and corners, all zero. Returns 0, or EX_SOFTWARE with nothing to
    free. */
-int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners, struct failure *failure);
+int shape_alloc(struct shape *s, int32_t vertices, int32_t faces, int32_t corners,
+                struct failure *failure);
 void shape_free(struct shape *s);
 /*
  * Checks that a shape is one, and makes normals and edges: numbers finite and in range, faces flat and

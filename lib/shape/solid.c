@@ -177,7 +177,8 @@ static int compare_chords(const void *one, const void *other)
 }
 
 /* What a line with this share of the section adds */
-static void solid_add_line(struct solid_sums *t, struct chord *in, int n, double y, double z, double share)
+static void solid_add_line(struct solid_sums *t, struct chord *in, int n, double y, double z,
+                           double share)
 {
     int count = 0;
     for (int k = 0; k < n; k++)
@@ -196,7 +197,8 @@ static void solid_add_line(struct solid_sums *t, struct chord *in, int n, double
     }
 }
 
-static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim, struct failure *failure)
+static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim,
+                           struct failure *failure)
 {
     size_t room = (size_t)s->vertices + (size_t)s->corners + (size_t)s->faces + 2;
     struct chord *in = malloc(room * sizeof *in);
@@ -355,7 +357,8 @@ static void even_out(double m[3])
 int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct failure *failure)
 {
     struct solid o = { 0 };
-    return solid_of(&o, s, dim, failure) ? failure->status : solid_settle_as(s, dim, &o, was, failure);
+    return solid_of(&o, s, dim, failure) ? failure->status
+                                         : solid_settle_as(s, dim, &o, was, failure);
 }
 
 int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
@@ -370,7 +373,8 @@ int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct sol
     }
     double size = dim == 2 ? reach * reach : reach * reach * reach;
     if (o.volume < 0) return failure_set(failure, EX_DATAERR, "is turned inside out");
-    if (!(o.volume > FLAT * size)) return failure_set(failure, EX_DATAERR, "is flat: it has no volume");
+    if (!(o.volume > FLAT * size))
+        return failure_set(failure, EX_DATAERR, "is flat: it has no volume");
     *was = (struct solid_frame){ reach, o.centre, principal_axes(o.second, dim) };
     double unit = 1 / reach;
     for (int32_t i = 0; i < s->vertices; i++) {

@@ -220,8 +220,10 @@ static bool crosses_segment(const vec3 x[2], vec3 a, vec3 b)
 
 static bool crosses_triangle(const vec3 x[3], vec3 a, vec3 b)
 {
-    if (!opposite(wall_edge_volume(x[0], x[1], x[2], a), wall_edge_volume(x[0], x[1], x[2], b))) return false;
-    double u = wall_edge_volume(a, b, x[0], x[1]), v = wall_edge_volume(a, b, x[1], x[2]), w = wall_edge_volume(a, b, x[2], x[0]);
+    if (!opposite(wall_edge_volume(x[0], x[1], x[2], a), wall_edge_volume(x[0], x[1], x[2], b)))
+        return false;
+    double u = wall_edge_volume(a, b, x[0], x[1]), v = wall_edge_volume(a, b, x[1], x[2]),
+           w = wall_edge_volume(a, b, x[2], x[0]);
     return (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
 }
 

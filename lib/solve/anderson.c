@@ -290,7 +290,8 @@ static void begin_taken_back(struct anderson *a)
 
 /* ---- a turn of each phase: sweeps, and what comes next; returns as nlgs_sweep() ---- */
 
-static int anderson_mix(struct anderson *a), leap(struct anderson *a), anderson_alone(struct anderson *a);
+static int anderson_mix(struct anderson *a), leap(struct anderson *a),
+    anderson_alone(struct anderson *a);
 
 static void start_mixing(struct anderson *a)
 {

@@ -287,7 +287,8 @@ bool arc_follow(struct central *m, double natural, int steps)
         if (p.before > 0)
             correct(&p, corrected);
         else
-            arc_step(&p, corrected, stride(&p, p.s + corrected, arc_longest(&p, TANGENT), down), turn);
+            arc_step(&p, corrected, stride(&p, p.s + corrected, arc_longest(&p, TANGENT), down),
+                     turn);
     }
     for (int64_t c = 0; c < m->newton->a.W.n; c++) memset(m->side[c].p, 0, sizeof m->side[c].p);
     free(p.at);

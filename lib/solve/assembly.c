@@ -166,8 +166,8 @@ static bool in_blocks(const struct couplings *y, const struct coupling *of, enum
 }
 
 /* B += J_c J_b^T / m over the freedoms that c and b share */
-static void assembly_add_shared(const struct couplings *y, int64_t c, int64_t b, enum blocks_of which,
-                       double B[3][3])
+static void assembly_add_shared(const struct couplings *y, int64_t c, int64_t b,
+                                enum blocks_of which, double B[3][3])
 {
     for (int64_t k = y->first[c]; k < y->first[c + 1]; k++)
         for (int64_t l = y->first[b]; l < y->first[b + 1]; l++) {
@@ -272,7 +272,8 @@ int assembly_W(const struct assembly *A, struct stored *W, struct failure *failu
     for (int64_t c = 0; c < n; c++) blocks += assembly_neighbours(A, c, ALL, near);
     int e = 0;
     if (n * d > INT32_MAX || blocks * d * d > INT32_MAX)
-        e = failure_set(failure, EX_DATAERR, "/fclib_local/W: too large for the 32-bit indices of FCLIB");
+        e = failure_set(failure, EX_DATAERR,
+                        "/fclib_local/W: too large for the 32-bit indices of FCLIB");
     else if (!stored_init(W, n * d, n * d, -2, blocks * d * d))
         e = assembly_short_of_memory(failure);
     else
@@ -419,7 +420,7 @@ int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, do
     *M = *H = (struct stored){ 0 }, *f = NULL;
     if (A->p->bodies > INT32_MAX / 6 - freedoms_of(A) || nd > (INT32_MAX - 3 * couplings) / 12)
         return failure_set(failure, EX_DATAERR,
-                       "/fclib_global/H: too large for the 32-bit indices of FCLIB");
+                           "/fclib_global/H: too large for the 32-bit indices of FCLIB");
     int32_t *first = malloc((size_t)(A->p->bodies + freedoms_of(A) + 1) * sizeof *first);
     if (!first) return assembly_short_of_memory(failure);
     int64_t nv = assembly_unknowns(A, first);

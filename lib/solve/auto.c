@@ -78,7 +78,7 @@ static double auto_largest(const struct scaled *a, double *x, double *v)
 
 /* z = P(y - v^/lambda) */
 static void auto_advance(const struct scaled *a, double lambda, const double *y, const double *v,
-                    double *z)
+                         double *z)
 {
     const int d = a->W.d;
     for (int64_t c = 0; c < a->W.n; c++) {

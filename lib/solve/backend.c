@@ -27,7 +27,8 @@ static bool backend_has(int lanes)
 void backend_narrow(int lanes)
 {
     for (size_t k = 0; k < sizeof backends / sizeof *backends; k++)
-        if (!k || (backends[k].lanes <= lanes && backend_has(backends[k].lanes))) chosen = &backends[k];
+        if (!k || (backends[k].lanes <= lanes && backend_has(backends[k].lanes)))
+            chosen = &backends[k];
 }
 
 static void backend_choose(void)

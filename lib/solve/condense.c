@@ -87,11 +87,12 @@ static int factor_init(struct factor *K, const struct global *P, struct failure 
     klu_l_defaults(c);
     K->symbolic = klu_l_analyze(K->n, K->p, K->i, c);
     if (K->symbolic) K->numeric = klu_l_factor(K->p, K->i, K->x, K->symbolic, c);
-    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE) return condense_short_of_memory(failure);
+    if (c->status == KLU_OUT_OF_MEMORY || c->status == KLU_TOO_LARGE)
+        return condense_short_of_memory(failure);
     bool good = K->numeric && c->status == KLU_OK && klu_l_rcond(K->symbolic, K->numeric, c);
     if (!good || !(c->rcond >= 1e-16))
         return failure_set(failure, EX_DATAERR, "/fclib_global/M: %s singular (rcond %.1g)",
-                       P->nl ? "with G it is" : "is", good ? c->rcond : 0);
+                           P->nl ? "with G it is" : "is", good ? c->rcond : 0);
     return 0;
 }
 
@@ -102,7 +103,9 @@ static int factor_solve(struct factor *K, const double *b, double *x, struct fai
     memcpy(x, b, (size_t)K->n * sizeof *x);
     bool good = klu_l_solve(K->symbolic, K->numeric, K->n, 1, x, &K->common);
     for (int64_t k = 0; good && k < K->n; k++) good = isfinite(x[k]);
-    return good ? 0 : failure_set(failure, EX_DATAERR, "/fclib_global/M: singular to working precision");
+    return good
+               ? 0
+               : failure_set(failure, EX_DATAERR, "/fclib_global/M: singular to working precision");
 }
 
 /* (v0, l0) = K^-1 (f, -b) */
@@ -192,8 +195,8 @@ static int condense_columns(struct motion *U, const struct global *P, struct fac
                             struct failure *failure)
 {
     struct condense_columns s = { .component = calloc((size_t)(2 * K->n + 1), sizeof *s.component),
-                         .todo = malloc((size_t)(P->H.n + 1) * sizeof *s.todo),
-                         .y = malloc((size_t)(K->n + 1) * sizeof *s.y) };
+                                  .todo = malloc((size_t)(P->H.n + 1) * sizeof *s.todo),
+                                  .y = malloc((size_t)(K->n + 1) * sizeof *s.y) };
     bool room = s.y && s.component && s.todo && lists_init(&s.of, P->H.n, P->H.count, P->H.col);
     int e = room ? solve_columns(&U->V, &P->H, K, &s, failure) : condense_short_of_memory(failure);
     lists_free(&s.of);
@@ -229,7 +232,8 @@ static bool condense_W(struct sparse *W, const struct sparse *H, const struct sp
     return good;
 }
 
-int condense(const struct global *P, struct motion *U, struct sparse *W, double *q, struct failure *failure)
+int condense(const struct global *P, struct motion *U, struct sparse *W, double *q,
+             struct failure *failure)
 {
     struct factor K = { 0 };
     int64_t n = P->nv + P->nl, nd = P->H.n;

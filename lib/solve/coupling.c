@@ -24,7 +24,7 @@ static bool coupling_add(struct couplings *c, int64_t *room, const struct coupli
 
 /* Appends those of contact i; false when memory is short. */
 static bool coupling_add_contact(struct couplings *c, int64_t *room, const struct packing *p,
-                        const vec3 half[3], const struct contact *t, int64_t i)
+                                 const vec3 half[3], const struct contact *t, int64_t i)
 {
     const double ahead = step_ahead(p);
     for (int32_t k = 0; k < c->freedoms.n; k++) {

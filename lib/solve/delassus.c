@@ -100,7 +100,8 @@ int delassus_alloc_common(struct delassus *W, int common, struct failure *failur
     return 0;
 }
 
-int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct failure *failure)
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A,
+                  struct failure *failure)
 {
     const int64_t entries = A->count;
     *W = (struct delassus){ .d = d, .n = n };

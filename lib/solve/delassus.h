@@ -19,8 +19,8 @@
 #ifndef NSD_DELASSUS_H
 #define NSD_DELASSUS_H
 
-#include "base/matrix.h"
 #include "base/failure.h"
+#include "base/matrix.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -61,7 +61,8 @@ bool delassus_block_counts(int d, const double *B);
  * The blocks of A, an (n d) x (n d) matrix; those of zeros are left out. q, mu and r are 0. Returns 0, or EX_SOFTWARE
  * with nothing to free. The caller has checked the indices.
  */
-int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A, struct failure *failure);
+int delassus_init(struct delassus *W, int d, int64_t n, const struct sparse *A,
+                  struct failure *failure);
 void delassus_free(struct delassus *W);
 
 /*

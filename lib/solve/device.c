@@ -210,7 +210,8 @@ static void fill_contact(struct problem *p, int64_t i, int64_t c, uint64_t *stat
     struct rebound *e = slot_rebound(p, i);
     int k = slot_lane(i);
     const struct body *a = &p->body[c], *b = &p->body[c + 1];
-    double n[3], len = 0, la = 0.5 + 0.2 * device_number(state), lb = 0.5 + 0.2 * device_number(state);
+    double n[3], len = 0, la = 0.5 + 0.2 * device_number(state),
+                 lb = 0.5 + 0.2 * device_number(state);
     for (int j = 0; j < 3; j++) n[j] = device_number(state), len += n[j] * n[j];
     for (int j = 0; j < 3; j++) x->n[j][k] = n[j] / sqrt(len);
     double im = a->im + b->im, it = im + la * la * a->ii + lb * lb * b->ii;
@@ -376,7 +377,7 @@ static void on_device(struct problem *p, struct mixing m, struct result *out)
 
 /* Both, of a problem that is made; -1 when memory is short */
 static int device_compare(struct device *d, struct problem *p, enum method_id method, bool *same,
-                   struct failure *failure)
+                          struct failure *failure)
 {
     size_t vector = (size_t)p->slots * 3, bodies = (size_t)p->bodies * sizeof *p->body;
     double *room = lay_lines((1 + 2 * MIXING_DEPTH) * (int64_t)vector, sizeof *room);
@@ -424,9 +425,10 @@ int device_check(struct device *d, const struct problem_kind *kind, enum method_
     if (failure->status) return failure->status;
     d->checked[method] |= 1U << variant;
     if (same) return 0;
-    failure_set(&d->lost, EX_UNAVAILABLE,
-            "--device %s: %s: its driver computes other bits than the CPU (%s, %s): take another "
-            "driver, or leave --device out",
-            d->kind->name, d->name, methods[method]->name, kind->name);
+    failure_set(
+        &d->lost, EX_UNAVAILABLE,
+        "--device %s: %s: its driver computes other bits than the CPU (%s, %s): take another "
+        "driver, or leave --device out",
+        d->kind->name, d->name, methods[method]->name, kind->name);
     return failure_set(failure, d->lost.status, "%s", d->lost.text);
 }

@@ -34,7 +34,7 @@ enum {
 struct device {
     const struct device_kind *kind;
     char name[200];                 /* as the driver has it */
-    struct failure lost;                /* status 0: it works */
+    struct failure lost;            /* status 0: it works */
     struct problem *problem;        /* whose iterate it has; NULL: none */
     bool here, there;               /* the iterate of the host is current; that of the device is */
     int kept;                       /* iterates that are kept */
@@ -51,7 +51,8 @@ struct device_kind {
     struct device *(*open)(int number, struct failure *failure);
     void (*close)(struct device *d);
     /* Memory and kernels for a problem, and all but its iterate */
-    int (*hold)(struct device *d, struct problem *p, enum method_id method, struct failure *failure);
+    int (*hold)(struct device *d, struct problem *p, enum method_id method,
+                struct failure *failure);
     /* The iterate to the device, and from it: reactions, u, W->r, and velocities of bodies if wanted */
     void (*upload)(struct device *d, const struct problem *p);
     void (*download)(struct device *d, struct problem *p, bool bodies);
@@ -83,7 +84,8 @@ void device_close(struct device *d); /* may be NULL */
 const char *device_declines(const struct problem *p);
 
 /* From now on p's iterate is on the device: p->device = d. Returns 0, or EX_UNAVAILABLE: then it is not. */
-int device_hold(struct device *d, struct problem *p, enum method_id method, struct failure *failure);
+int device_hold(struct device *d, struct problem *p, enum method_id method,
+                struct failure *failure);
 /* The end of that: r, u and W->r are in the slots again. EX_UNAVAILABLE where the device was lost */
 int device_release(struct problem *p, struct failure *failure);
 /* The iterate is in the slots, and may be changed there if `writes`. Nothing without a device */

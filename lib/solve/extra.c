@@ -35,8 +35,8 @@ void extra_push(const struct extra_lane *at, const double dm[3])
 
 /* W, limits and step of a contact with these w^ and s of the impact law, in the units of
    solve/rolling.h. Impact multiplies u by s, which changes no law; without it W is symmetric. */
-static void extra_set_operator(const struct bundle *c, const struct extra *x, int i, const double w[2],
-                         const double s[2], struct rolling *q)
+static void extra_set_operator(const struct bundle *c, const struct extra *x, int i,
+                               const double w[2], const double s[2], struct rolling *q)
 {
     double l = x->length[i];
     *q = (struct rolling){ .wn = w[0] / s[0], .wt = w[1] / s[1] };

@@ -171,8 +171,8 @@ static void add_face(struct faces *f, int d, struct face g, const int *pivot)
 }
 
 /* Contacts with the same neighbours, as one face or one each. Returns the rest of the room. */
-static double *faces_add_faces(struct faces *f, const struct delassus *W, int32_t *contact, int count,
-                         double *room)
+static double *faces_add_faces(struct faces *f, const struct delassus *W, int32_t *contact,
+                               int count, double *room)
 {
     int pivot[3 * FACE_CONTACTS_MAX] = { 0 }, d = W->d;
     struct face g = { .contact = contact, .count = count, .rows = d * count };

@@ -1,10 +1,10 @@
 /* solve/fill.c: slots of balls, with levers, and what bonds and moments add [solve/fill.h]. */
 #include "solve/fill.h"
 
+#include "solve/problem.h"
 #include "state/kinematics.h"
 #include "state/offset.h"
 #include "state/rotation.h"
-#include "solve/problem.h"
 
 /* The body at a place, so many times lighter */
 static struct body lighter(const struct problem *p, int32_t place, double times)

@@ -249,4 +249,5 @@ static int ipm_run(struct solve *s)
     return newton_after_sweeps(s, SWEEPS, 1.3, ipm_solve);
 }
 
-const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0, ipm_run };
+const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0,
+                                   ipm_run };

@@ -180,7 +180,7 @@ static void judge_moments(const struct problem *p, int64_t i, bool believes, enu
 }
 
 static void judge_all(const struct problem *p, int64_t first, int64_t end, bool believes,
-                  enum err_terms which, struct sums *s)
+                      enum err_terms which, struct sums *s)
 {
     for (int64_t i = first; i < end; i++) {
         fetch_ahead(p, i);

@@ -74,7 +74,7 @@ bool lay_bundles(struct problem *p)
 /* The copy of a body i (wall w: -1-w) that does not move, of a contact. A load's speed is prescribed here
    [solve/coupling.h]. */
 static void lay_copy_body(const struct problem *p, int32_t i, const struct contact *c,
-                      struct body *copy)
+                          struct body *copy)
 {
     const struct packing *pack = p->packing;
     if (i >= 0) {

@@ -4,8 +4,8 @@
 #ifndef NSD_LAY_H
 #define NSD_LAY_H
 
-#include "state/contact.h"
 #include "solve/plan.h"
+#include "state/contact.h"
 
 struct problem;
 

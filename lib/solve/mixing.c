@@ -68,8 +68,8 @@ ALWAYS_INLINE void measure_text(int d, int depth, const struct problem *p, const
     }
 }
 
-static void mixing_measure(const struct problem *p, const struct mixing *m, int64_t first, int64_t end,
-                    struct mixing_sums *t)
+static void mixing_measure(const struct problem *p, const struct mixing *m, int64_t first,
+                           int64_t end, struct mixing_sums *t)
 {
     BY_SHAPE(p, m, measure_text, p, *m, first, end, t);
 }
@@ -157,8 +157,8 @@ ALWAYS_INLINE void react_group(struct problem *p, int64_t first, int64_t end, vo
     BY_SHAPE(p, j->m, react_text, p, *j->m, *j, first, end);
 }
 
-static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m, double leap,
-                  const double gamma[MIXING_DEPTH])
+static void mixing_react(struct problem *p, int me, int threads, const struct mixing *m,
+                         double leap, const double gamma[MIXING_DEPTH])
 {
     struct mixing_jump jump = { m, leap, gamma };
     walk(p, me, threads, react_group, &jump);

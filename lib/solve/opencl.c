@@ -2,8 +2,8 @@
  * solve/opencl.c: a device by OpenCL 1.2 [solve/device.h]. A launch solves contacts that do not depend on each
  * other, and waits for the one before it: the queue is in order.
  */
-#include "solve/local_exact.h"
 #include "solve/device.h"
+#include "solve/local_exact.h"
 #include "solve/opencl_api.h"
 
 #include <assert.h>
@@ -118,9 +118,10 @@ static bool good(struct opencl *o, int32_t error, const char *what)
 {
     struct failure *lost = &o->device.lost;
     if (error && !lost->status)
-        failure_set(lost, EX_UNAVAILABLE,
-                "--device opencl: %s: it has failed: %s: %s: start again, or leave --device out",
-                o->device.name, what, opencl_error(error));
+        failure_set(
+            lost, EX_UNAVAILABLE,
+            "--device opencl: %s: it has failed: %s: %s: start again, or leave --device out",
+            o->device.name, what, opencl_error(error));
     return !lost->status;
 }
 
@@ -132,7 +133,7 @@ static bool lost(const struct opencl *o)
 /* ---- the devices of the machine ---- */
 
 static void opencl_text_of(const struct opencl_api *api, void *device, void *platform, char *text,
-                    size_t room)
+                           size_t room)
 {
     char name[120] = "?", of[60] = "?";
     api->clGetDeviceInfo(device, OCL_DEVICE_NAME, sizeof name - 1, name, NULL);
@@ -168,8 +169,8 @@ static uint64_t opencl_number_of(const struct opencl_api *api, void *device, uin
 static int none(struct failure *failure)
 {
     return failure_set(failure, EX_UNAVAILABLE,
-                   "--device opencl: no device has a driver here: install that of the GPU, or "
-                   "leave --device out");
+                       "--device opencl: no device has a driver here: install that of the GPU, or "
+                       "leave --device out");
 }
 
 static int opencl_list(FILE *to, struct failure *failure)
@@ -221,14 +222,15 @@ static bool opencl_begin(struct opencl *o)
     int32_t error = 0;
     if (!opencl_number_of(api, o->id, OCL_DEVICE_DOUBLE_FP_CONFIG)) {
         failure_set(failure, EX_UNAVAILABLE,
-                "--device opencl: %s: no double precision (fp64): take another, --device list",
-                o->device.name);
+                    "--device opencl: %s: no double precision (fp64): take another, --device list",
+                    o->device.name);
         return false;
     }
     api->clGetDeviceInfo(o->id, OCL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof team, &team, NULL);
     if (team < TEAM) {
-        failure_set(failure, EX_UNAVAILABLE, "--device opencl: %s: work-groups of %d at most, not %d",
-                o->device.name, (int)team, TEAM);
+        failure_set(failure, EX_UNAVAILABLE,
+                    "--device opencl: %s: work-groups of %d at most, not %d", o->device.name,
+                    (int)team, TEAM);
         return false;
     }
     o->memory = opencl_number_of(api, o->id, OCL_DEVICE_GLOBAL_MEM_SIZE);
@@ -248,7 +250,7 @@ static struct device *opencl_open_device(int number, struct failure *failure)
     if (!n) return none(failure), NULL;
     if (number >= n) {
         failure_set(failure, EX_UNAVAILABLE,
-                "--device opencl:%d: there are %d, from opencl:0 on: --device list", number, n);
+                    "--device opencl:%d: there are %d, from opencl:0 on: --device list", number, n);
         return NULL;
     }
     struct opencl *o = calloc(1, sizeof *o);
@@ -273,10 +275,11 @@ static void report_build(struct opencl *o, void *program, int32_t error)
     char *log = calloc(n + 1, 1), *line = log ? log : "";
     if (log) o->api->clGetProgramBuildInfo(program, o->id, OCL_PROGRAM_BUILD_LOG, n, log, NULL);
     line += strspn(line, " \t\r\n");
-    failure_set(&o->device.lost, EX_UNAVAILABLE,
-            "--device opencl: %s: its driver does not compile the kernels: %s: %.*s: take another "
-            "driver, or leave --device out",
-            o->device.name, opencl_error(error), (int)strcspn(line, "\n") % 150, line);
+    failure_set(
+        &o->device.lost, EX_UNAVAILABLE,
+        "--device opencl: %s: its driver does not compile the kernels: %s: %.*s: take another "
+        "driver, or leave --device out",
+        o->device.name, opencl_error(error), (int)strcspn(line, "\n") % 150, line);
     free(log);
 }
 
@@ -341,9 +344,11 @@ static struct argument real(double x)
         MEMORY(BLOCK)
 
 /* Sets arguments of a kernel, from this index on; returns the index after them. */
-#define SET(k, from, ...) opencl_set(o, k, from, (const struct argument[]){ __VA_ARGS__, { 0, { NULL } } })
+#define SET(k, from, ...)                                                                          \
+    opencl_set(o, k, from, (const struct argument[]){ __VA_ARGS__, { 0, { NULL } } })
 
-static uint32_t opencl_set(struct opencl *o, enum kernel_id k, uint32_t from, const struct argument *a)
+static uint32_t opencl_set(struct opencl *o, enum kernel_id k, uint32_t from,
+                           const struct argument *a)
 {
     for (; a->size; a++, from++)
         if (!lost(o))
@@ -379,11 +384,12 @@ static bool need(struct opencl *o, enum opencl_role role, size_t size)
     size_t all = size;
     for (int k = 0; k < ROLES; k++) all += o->buffer[k].size;
     if (all > o->memory || size > o->largest) {
-        failure_set(&o->device.lost, EX_UNAVAILABLE,
-                "--device opencl: %s: needs %.3g GB, and %.3g GB of it in one piece: it has %.3g "
-                "and %.3g: leave --device out",
-                o->device.name, GB * (double)all, GB * (double)size, GB * (double)o->memory,
-                GB * (double)o->largest);
+        failure_set(
+            &o->device.lost, EX_UNAVAILABLE,
+            "--device opencl: %s: needs %.3g GB, and %.3g GB of it in one piece: it has %.3g "
+            "and %.3g: leave --device out",
+            o->device.name, GB * (double)all, GB * (double)size, GB * (double)o->memory,
+            GB * (double)o->largest);
         return false;
     }
     b->memory = o->api->clCreateBuffer(o->context, OCL_MEM_READ_WRITE, size, NULL, &error);
@@ -397,7 +403,8 @@ static void opencl_forget(struct opencl *o, enum opencl_role role)
     o->buffer[role] = (struct buffer){ 0 };
 }
 
-static void opencl_put(struct opencl *o, enum opencl_role role, size_t offset, const void *from, size_t size)
+static void opencl_put(struct opencl *o, enum opencl_role role, size_t offset, const void *from,
+                       size_t size)
 {
     if (lost(o) || !size) return;
     o->device.account.to += (double)size;
@@ -407,7 +414,8 @@ static void opencl_put(struct opencl *o, enum opencl_role role, size_t offset, c
          "writing to it");
 }
 
-static void opencl_take(struct opencl *o, enum opencl_role role, size_t offset, void *to, size_t size)
+static void opencl_take(struct opencl *o, enum opencl_role role, size_t offset, void *to,
+                        size_t size)
 {
     if (lost(o) || !size) return;
     o->device.account.from += (double)size, o->device.account.waits++;
@@ -652,7 +660,8 @@ static void opencl_answer(struct opencl *o, int d, uint32_t next, int64_t part)
     launch(o, SWEEP_ANSWERED, 1);
 }
 
-static void opencl_sweep(struct device *d, struct problem *p, const struct sweep_opt *s, struct tally *t)
+static void opencl_sweep(struct device *d, struct problem *p, const struct sweep_opt *s,
+                         struct tally *t)
 {
     struct opencl *o = (struct opencl *)d;
     bool asks = o->variant == VARIANT_BLOCKS && methods[o->method]->believes;
@@ -704,8 +713,8 @@ struct opencl_columns {
 };
 
 /* to[c.n] = the sums of n parts of that many numbers, and the largest of some */
-static void sum_parts(struct opencl *o, enum opencl_role parts, int64_t n, struct opencl_columns c, enum opencl_role sum,
-                      double *to)
+static void sum_parts(struct opencl *o, enum opencl_role parts, int64_t n, struct opencl_columns c,
+                      enum opencl_role sum, double *to)
 {
     if (!need(o, sum, (size_t)c.n * sizeof *to)) return;
     SET(SUM_PARTS, 0, MEMORY(parts), opencl_whole(n), integer(c.n), integer(c.most_first),
@@ -721,8 +730,8 @@ static_assert(offsetof(struct sums, max_pen) == 8 * BUNDLE * sizeof(double) &&
                   offsetof(struct sums, jammed) == 11 * BUNDLE * sizeof(double),
               "and in its order");
 
-static void opencl_judge(struct device *d, const struct problem *p, bool believes, enum err_terms which,
-                  int64_t per_block, struct sums *s)
+static void opencl_judge(struct device *d, const struct problem *p, bool believes,
+                         enum err_terms which, int64_t per_block, struct sums *s)
 {
     struct opencl *o = (struct opencl *)d;
     int64_t blocks = (p->bundles + per_block - 1) / per_block;
@@ -745,7 +754,8 @@ static void opencl_keep(struct device *d, const struct problem *p, int place, bo
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    enum opencl_role r = (enum opencl_role)(FRAME_MEMORY_R + place), v = (enum opencl_role)(FRAME_MEMORY_U + place);
+    enum opencl_role r = (enum opencl_role)(FRAME_MEMORY_R + place),
+                     v = (enum opencl_role)(FRAME_MEMORY_U + place);
     if (need(o, r, size)) opencl_copy(o, R, r, size);
     if (u && need(o, v, size)) opencl_copy(o, U, v, size);
 }
@@ -757,7 +767,8 @@ static void opencl_restore(struct device *d, const struct problem *p, int place,
     opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_R + place), R, size);
     if (u) opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_U + place), U, size);
     if (p->kind.given_by_W) {
-        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d), opencl_whole(p->slots));
+        SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), integer(p->d),
+            opencl_whole(p->slots));
         launch(o, SCATTER, p->slots);
     }
     opencl_renew(d, p);
@@ -798,23 +809,24 @@ static_assert(MIXING_COLUMNS == (1 + 2 * MIXING_DEPTH) * BUNDLE && MIXING_DEPTH 
               "struct mixing_sums is what the kernel products writes");
 
 static void opencl_measure(struct device *d, const struct problem *p, const struct mixing *m,
-                    int64_t per_chunk, struct mixing_sums *sums)
+                           int64_t per_chunk, struct mixing_sums *sums)
 {
     struct opencl *o = (struct opencl *)d;
     int64_t chunks = (p->bundles + per_chunk - 1) / per_chunk;
     if (!need(o, MIXED, (size_t)chunks * sizeof *sums)) return;
-    SET(CHANGES, 0, MEMORY(R), integer(p->d), opencl_whole(o->vector), MEMORY(ROOM), opencl_whole(0),
-        opencl_whole(dg_at(o, m->next)), opencl_whole(df_at(o, m->next)));
+    SET(CHANGES, 0, MEMORY(R), integer(p->d), opencl_whole(o->vector), MEMORY(ROOM),
+        opencl_whole(0), opencl_whole(dg_at(o, m->next)), opencl_whole(df_at(o, m->next)));
     launch(o, CHANGES, o->vector);
     SET(PRODUCTS, 0, MEMORY(ROOM), MEMORY(W_CC), integer(p->d), integer(m->depth),
-        opencl_whole(p->bundles), integer((int32_t)per_chunk), opencl_whole(0), opencl_whole(df_at(o, m->next)),
-        opencl_whole(o->vector), MEMORY(MIXED));
+        opencl_whole(p->bundles), integer((int32_t)per_chunk), opencl_whole(0),
+        opencl_whole(df_at(o, m->next)), opencl_whole(o->vector), MEMORY(MIXED));
     launch(o, PRODUCTS, chunks * MIXING_COLUMNS);
-    sum_parts(o, MIXED, chunks, (struct opencl_columns){ MIXING_COLUMNS, 0, 0 }, MIXED_SUM, sums->f2);
+    sum_parts(o, MIXED, chunks, (struct opencl_columns){ MIXING_COLUMNS, 0, 0 }, MIXED_SUM,
+              sums->f2);
 }
 
-static void opencl_react(struct device *d, const struct problem *p, const struct mixing *m, double leap,
-                  const double gamma[MIXING_DEPTH])
+static void opencl_react(struct device *d, const struct problem *p, const struct mixing *m,
+                         double leap, const double gamma[MIXING_DEPTH])
 {
     struct opencl *o = (struct opencl *)d;
     uint32_t next = SET(REACT, 0, MEMORY(LIST), MEMORY(BUNDLES), MEMORY(BESIDE), MEMORY(BODIES),

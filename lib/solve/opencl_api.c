@@ -19,18 +19,19 @@ static void open_loader(struct failure *failure)
 {
     void *opened = dlopen(LOADER, RTLD_NOW | RTLD_LOCAL);
     if (!opened) {
-        failure_set(failure, EX_UNAVAILABLE,
-                "--device opencl: no OpenCL here, %s: install ocl-icd-libopencl1 and the driver of "
-                "the GPU, or leave --device out",
-                dlerror());
+        failure_set(
+            failure, EX_UNAVAILABLE,
+            "--device opencl: no OpenCL here, %s: install ocl-icd-libopencl1 and the driver of "
+            "the GPU, or leave --device out",
+            dlerror());
         return;
     }
 #define FIND(result, name, arguments)                                                              \
     {                                                                                              \
         void *at = dlsym(opened, #name);                                                           \
         if (!at) {                                                                                 \
-            failure_set(failure, EX_UNAVAILABLE, "--device opencl: %s has no %s: it is no OpenCL 1.2",     \
-                    LOADER, #name);                                                                \
+            failure_set(failure, EX_UNAVAILABLE,                                                   \
+                        "--device opencl: %s has no %s: it is no OpenCL 1.2", LOADER, #name);      \
             dlclose(opened);                                                                       \
             return;                                                                                \
         }                                                                                          \
@@ -79,16 +80,16 @@ const char *opencl_error(int32_t error)
 /* The assembler takes the files in as they are [solve/opencl_api.h]. */
 
 #define EACH_TEXT(X)                                                                               \
-    X(begin, "lib/solve/opencl/begin.cl")                                                        \
+    X(begin, "lib/solve/opencl/begin.cl")                                                          \
     X(lanes, "lib/base/lanes.h")                                                                   \
-    X(local, "lib/solve/local.h")                                                                    \
-    X(sbp, "lib/solve/local_sbp.h")                                                                  \
-    X(sal, "lib/solve/local_sal.h")                                                                  \
-    X(exact, "lib/solve/local_exact.h")                                                              \
-    X(newton, "lib/solve/local_newton.h")                                                            \
-    X(ebp, "lib/solve/local_ebp.h")                                                                  \
-    X(eal, "lib/solve/local_eal.h")                                                                  \
-    X(bundle, "lib/solve/bundle.h")                                                              \
+    X(local, "lib/solve/local.h")                                                                  \
+    X(sbp, "lib/solve/local_sbp.h")                                                                \
+    X(sal, "lib/solve/local_sal.h")                                                                \
+    X(exact, "lib/solve/local_exact.h")                                                            \
+    X(newton, "lib/solve/local_newton.h")                                                          \
+    X(ebp, "lib/solve/local_ebp.h")                                                                \
+    X(eal, "lib/solve/local_eal.h")                                                                \
+    X(bundle, "lib/solve/bundle.h")                                                                \
     X(kernels, "lib/solve/opencl/kernels.cl")
 
 #define TAKE_IN(name, file)                                                                        \

@@ -99,7 +99,8 @@ static void plan_seat_some(void *arg, int64_t first, int64_t end)
         at[0] = at[1] = nobody + (i >= other);
         if (l->contact[i] < 0) continue;
         const int32_t *body = l->pair[l->contact[i]];
-        for (int k = 0; k < 2; k++) at[k] = plan_moves(l, body[k]) ? l->seat[body[k]] : (int32_t)next++;
+        for (int k = 0; k < 2; k++)
+            at[k] = plan_moves(l, body[k]) ? l->seat[body[k]] : (int32_t)next++;
     }
 }
 

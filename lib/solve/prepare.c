@@ -17,9 +17,9 @@ static int bonded_check_memory(const struct problem *p, struct failure *failure)
     double have = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (need <= have) return 0;
     return failure_set(failure, EX_SOFTWARE,
-                   "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
-                   "--global auto, anderson and nlgs need no W, nor does --fclib=global",
-                   (long long)p->n, need / GB, have / GB);
+                       "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
+                       "--global auto, anderson and nlgs need no W, nor does --fclib=global",
+                       (long long)p->n, need / GB, have / GB);
 }
 
 /* K and a of component j (0 to d-1) of contact c */
@@ -64,7 +64,8 @@ int bonded_global(const struct assembly *A, struct global *P, struct failure *fa
     int e = assembly_MH(A, &M, &H, &P->f, failure);
     P->nv = M.n;
     if (!e) e = sparse_unpack(&P->M, &M, "M", failure) || sparse_unpack(&P->H, &H, "H", failure);
-    if (!e && !prepare_add_bonds(A, P)) failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
+    if (!e && !prepare_add_bonds(A, P))
+        failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     stored_free(&M), stored_free(&H);
     return failure->status;
 }
@@ -117,9 +118,10 @@ static int prepare_check_memory(const struct problem *p, struct failure *failure
     double need = 2 * blocks * size;
     double have = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
     if (need <= have) return 0;
-    return failure_set(failure, EX_SOFTWARE,
-                   "the loads couple %.0f pairs of contacts: needs %.3g GB, the machine has %.3g",
-                   blocks, need / GB, have / GB);
+    return failure_set(
+        failure, EX_SOFTWARE,
+        "the loads couple %.0f pairs of contacts: needs %.3g GB, the machine has %.3g", blocks,
+        need / GB, have / GB);
 }
 
 /* W of the bodies and the freedoms */
@@ -144,11 +146,12 @@ static void besides(const struct problem *bodies, int64_t i, const double u[3], 
 
 /* W, with the pushes of the reactions found; NULL and why where it fails */
 static struct delassus *prepare_assemble(const struct problem *bodies, const struct contacts *s,
-                                 struct failure *failure)
+                                         struct failure *failure)
 {
     struct delassus *W = calloc(1, sizeof *W);
     if (!W) return failure_set(failure, EX_SOFTWARE, "no memory for the contact problem"), NULL;
-    int e = bodies->kind.extra ? bonded_blocks(bodies, W, failure) : assemble_free(bodies, W, failure);
+    int e =
+        bodies->kind.extra ? bonded_blocks(bodies, W, failure) : assemble_free(bodies, W, failure);
     if (e) return free(W), NULL;
     for (int64_t i = 0; s->found && i < bodies->slots; i++) {
         int64_t c = bodies->contact[i];
@@ -228,8 +231,8 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
     if (bodies.kind.rolls) {
         problem_free(&bodies);
         return failure_set(failure, EX_DATAERR,
-                       "rolling friction where loads push contacts, or by another "
-                       "solver than auto, anderson and nlgs: not known");
+                           "rolling friction where loads push contacts, or by another "
+                           "solver than auto, anderson and nlgs: not known");
     }
     struct delassus *W = prepare_assemble(&bodies, s, failure);
     if (W && !problem_prepare_delassus(p, W, o, failure)) {

@@ -40,7 +40,6 @@ int bonded_blocks(const struct problem *bodies, struct delassus *W, struct failu
    case. Returns 0, EX_SOFTWARE or EX_DATAERR. */
 int bonded_global(const struct assembly *A, struct global *P, struct failure *failure);
 
-
 /* As problem_prepare(). Where it is not sweeps that solve, W has the bonds [solve/extra.h] in it
    [solve/prepare.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger than the memory of
    the machine. */

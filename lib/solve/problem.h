@@ -19,14 +19,14 @@
 #ifndef NSD_PROBLEM_H
 #define NSD_PROBLEM_H
 
-#include "state/contact.h"
-#include "state/packing.h"
 #include "solve/bundle.h"
 #include "solve/coupling.h"
 #include "solve/delassus.h"
 #include "solve/extra.h"
 #include "solve/kind.h"
 #include "solve/schedule.h"
+#include "state/contact.h"
+#include "state/packing.h"
 
 enum {
     FAR_BUNDLES = 1024 /* bundles, 0.8 MB: more do not stay in a near cache from sweep to sweep */
@@ -59,12 +59,12 @@ struct problem {
     struct plan *plan;      /* has contact, group and seat; NULL: it is kept, not of the problem */
     struct two_thread_split *split; /* NULL: the order has no halves */
     struct exchange
-        *exchange; /* borrowed: the other processes that have a part of it; NULL: none */
-    struct device
-        *device;         /* borrowed: it has the iterate [solve/device.h]; NULL: the slots have */
-    struct mass_splitting *brake; /* slots that the sweeps have to solve by shorter steps; NULL: none */
-    int64_t bodies;      /* of body[]; 0: given by W */
-    struct body *body;   /* [bodies] the packing's, by colours in the order in which the sweep first
+        *exchange;         /* borrowed: the other processes that have a part of it; NULL: none */
+    struct device *device; /* borrowed: it has the iterate [solve/device.h]; NULL: the slots have */
+    struct mass_splitting
+        *brake;        /* slots that the sweeps have to solve by shorter steps; NULL: none */
+    int64_t bodies;    /* of body[]; 0: given by W */
+    struct body *body; /* [bodies] the packing's, by colours in the order in which the sweep first
                           meets them, and copies of what does not move; NULL: given by W */
     const struct packing *packing; /* borrowed: its velocities are those before the step; NULL:
                                       there is only W */

@@ -1,14 +1,14 @@
 /* solve/problem_of_bodies.c: the bundles of a packing [solve/problem.h]. */
 #include "base/team.h"
-#include "state/kinematics.h"
-#include "state/offset.h"
-#include "state/rotation.h"
-#include "solve/mass_splitting.h"
 #include "solve/exchange.h"
 #include "solve/fill.h"
 #include "solve/lay.h"
+#include "solve/mass_splitting.h"
 #include "solve/plan.h"
 #include "solve/problem.h"
+#include "state/kinematics.h"
+#include "state/offset.h"
+#include "state/rotation.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -168,7 +168,8 @@ static double problem_of_bodies_fastest(void *arg, int64_t first, int64_t end)
    differences of such speeds, and have their rounding. */
 static double rotation_speed(const struct packing *p)
 {
-    double most = team_most(team_size(), p->n, PER_THREAD, problem_of_bodies_fastest, (void *)p), images = 0;
+    double most = team_most(team_size(), p->n, PER_THREAD, problem_of_bodies_fastest, (void *)p),
+           images = 0;
     for (int32_t k = 0; k < p->walls; k++)
         most = fmax(most, wall_top_speed(p, &p->wall[k]) + v3_norm(p->wall[k].belt));
     for (int k = 0; k < 3; k++) images += p->cell.repeats[k] ? v3_norm(p->cell.rate[k]) : 0;
@@ -201,7 +202,8 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         const struct contact *c = &y->s->c[i];
         shaped |= contact_shaped(y->p, c);
         struct contact made = { 0 };
-        if (!turned) contact_basis(&made, 3, c->n), turned = !problem_of_bodies_same(made.t1, c->t1);
+        if (!turned)
+            contact_basis(&made, 3, c->n), turned = !problem_of_bodies_same(made.t1, c->t1);
         rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
                     (y->s->law && y->s->law[i].offset > 0) ||
                     (y->moving_images && contact_shifted(c));
@@ -238,7 +240,8 @@ static double sum_of_slots(const struct problem *p, const double *x)
 }
 
 static int prepare_by_plan(struct problem *p, const struct packing *pack, const struct contacts *s,
-                           const struct plan *plan, const struct prepare_opt *o, struct failure *failure)
+                           const struct plan *plan, const struct prepare_opt *o,
+                           struct failure *failure)
 {
     struct exchange *exchange = o->exchange;
     const struct lattice cell = lattice_of(pack);
@@ -249,7 +252,8 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     p->bodies = pack->n + 2 + plan->copies;
     p->exchange = exchange;
     if (exchange) p->n = exchange->contacts;
-    if (p->bodies > BODIES_MAX) return failure_set(failure, EX_DATAERR, "more than %d bodies", BODIES_MAX);
+    if (p->bodies > BODIES_MAX)
+        return failure_set(failure, EX_DATAERR, "more than %d bodies", BODIES_MAX);
     p->body = lay_lines(p->bodies, sizeof *p->body);
     bool room = p->body && lay_plan(p, plan);
     bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
@@ -271,7 +275,8 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     free(half);
     if (!room) return problem_of_bodies_no_memory(p, failure);
     if (freedoms_in(pack)) {
-        if (!(p->coupling = calloc(1, sizeof *p->coupling))) return problem_of_bodies_no_memory(p, failure);
+        if (!(p->coupling = calloc(1, sizeof *p->coupling)))
+            return problem_of_bodies_no_memory(p, failure);
         if (couplings_init(p->coupling, pack, s, failure)) return problem_free(p), failure->status;
     }
 

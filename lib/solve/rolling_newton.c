@@ -16,7 +16,8 @@ static void rolling_newton_residual(const struct rolling *q, bool hat, struct po
     rolling_velocity(q, y->x, y->u);
     predict(q, q->rho, y->x, y->u, hat, y->tau);
     double rn = hat ? cone_top(q, y->tau, y->at_limit) : fmax(y->tau[0], 0);
-    for (int i = 0; i < ROLLING_PARTS; i++) y->at_limit[i] = rolling_part(y->tau, i) > q->mu[i] * rn;
+    for (int i = 0; i < ROLLING_PARTS; i++)
+        y->at_limit[i] = rolling_part(y->tau, i) > q->mu[i] * rn;
     limit(q, y->tau, rn, y->p);
     for (int i = 0; i < ROLLING; i++) y->Z[i] = y->x[i] - y->p[i];
     y->z2 = dot(y->Z, y->Z, ROLLING);
@@ -72,7 +73,8 @@ static void slope_of_projection(const struct rolling *q, bool hat, const struct 
 }
 
 /* dx of (I - P T) dx = -Z; false where the matrix is singular */
-static bool rolling_newton_direction(const struct rolling *q, bool hat, const struct point *y, double dx[ROLLING])
+static bool rolling_newton_direction(const struct rolling *q, bool hat, const struct point *y,
+                                     double dx[ROLLING])
 {
     double T[ROLLING][ROLLING], P[ROLLING][ROLLING], M[ROLLING * ROLLING];
     slope_of_prediction(q, hat, y, T), slope_of_projection(q, hat, y, P);

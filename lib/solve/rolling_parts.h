@@ -26,7 +26,6 @@ struct rolling {
     bool safeguarded, gave_up;
 };
 
-
 /* The parts of x that have a limit: where each begins, and how many numbers it has */
 static const int first_of[ROLLING_PARTS] = { 1, 3, 4 }, size_of[ROLLING_PARTS] = { 2, 1, 2 };
 

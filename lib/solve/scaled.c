@@ -127,7 +127,7 @@ void scaled_product(const struct scaled *a, const double *x, double *v)
 
 /* |x_c - P(x_c - v^_c)|^2, and in *size |x_c|^2 */
 static double scaled_natural2(const struct scaled *a, int64_t c, const double *x, const double *v,
-                       double *size)
+                              double *size)
 {
     int d = a->W.d;
     double r[3], u[3], tau[3], p[3], off = 0;

@@ -16,7 +16,7 @@
 /* The cut and the zones [solve/schedule.h]. */
 
 enum {
-    SAMPLE = 16384,            /* contacts that decide where to cut, at most */
+    SAMPLE = 16384,                  /* contacts that decide where to cut, at most */
     SPLIT_CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread */
 };
 

@@ -53,7 +53,6 @@ struct two_thread_split {
     alignas(64) _Atomic int64_t rims;    /* how often the rim has */
 };
 
-
 enum order {
     ORDER_NATURAL,
     ORDER_REVERSE,

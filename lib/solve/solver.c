@@ -103,7 +103,7 @@ enum {
 
 /* err_eval(); where W alone is known, and no mass, what reactions without end are is seen by their work. */
 static void solver_judge(struct err *e, struct problem *p, bool believes, enum err_terms which,
-                  int threads)
+                         int threads)
 {
     double work, most;
     err_eval(e, p, believes, which, threads);

@@ -52,7 +52,6 @@ double price_analysis(double entries);
 /* Making W's blocks, with this many entries, from the bodies or from another W */
 double price_assembly(double entries);
 
-
 struct solver;
 
 struct solve_opt {

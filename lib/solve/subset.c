@@ -39,7 +39,7 @@ static int64_t count_large(const double *map, int64_t n, double large)
 /* Chooses the contacts with a large map and as many of their neighbours, or more of these up to
    `least` in all. False where they would be too many. */
 static bool subset_choose(const struct scaled *a, const double *map, double largest, int64_t least,
-                   bool anyhow, struct selection_contacts *p)
+                          bool anyhow, struct selection_contacts *p)
 {
     const struct delassus *W = &a->W;
     double large = LARGE * largest;

@@ -287,7 +287,8 @@ struct task {
 ALWAYS_INLINE void solve_group(struct problem *p, int64_t first, int64_t end, void *task)
 {
     const struct task *t = task;
-    struct sweep_counts other = { splat(0), splat(0), splat(0), splat(0) }; // another process counts them
+    struct sweep_counts other = { splat(0), splat(0), splat(0),
+                                  splat(0) }; // another process counts them
     bool copies = p->exchange && first < end && exchange_is_copy(p->exchange, first);
     solve_bundles(p, first, end, t->o, t->kernel, copies ? &other : t->count);
 }

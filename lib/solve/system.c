@@ -211,7 +211,7 @@ static bool normalise(struct system *s, const struct face *f, const struct reduc
 
 /* L' and D' [rank][rank] of one face; false where it is singular */
 static bool system_reduce(struct system *s, const struct face *f, const struct reduced *q,
-                   const double **l, const double **d)
+                          const double **l, const double **d)
 {
     int left = f->rows - f->rank, rows = f->rows, rank = f->rank;
     if (!left) {

@@ -28,7 +28,7 @@ static bool attraction_moves(const struct packing *p, int32_t who)
 
 /* Of the movable one of its two bodies, b where both are */
 static struct attraction_hold hold_of(const struct packing *p, const struct contacts *s, int64_t i,
-                           const vec3 edge[3])
+                                      const vec3 edge[3])
 {
     const struct contact *c = &s->c[i];
     struct attraction_hold h = { .body = c->b, .other = -1, .i = i, .n = c->n, .x = c->x };
@@ -282,7 +282,8 @@ static bool of_one_pair(const struct attraction_run *y, int64_t i, int64_t j)
 }
 
 /* How many of hold i's pair are tied, or bonded; balls have each place for itself. */
-static int64_t count_pair(const struct attraction_run *y, const struct attraction *of, int64_t i, bool bonded)
+static int64_t count_pair(const struct attraction_run *y, const struct attraction *of, int64_t i,
+                          bool bonded)
 {
     int64_t n = 0, k = i;
     while (k > 0 && of_one_pair(y, i, k - 1)) k--;
@@ -294,7 +295,8 @@ static int64_t count_pair(const struct attraction_run *y, const struct attractio
 }
 
 /* What is in one plane with hold i, into room; returns how many. */
-static int64_t attraction_gather(const struct attraction_run *y, const struct attraction *of, int64_t i, bool bonded)
+static int64_t attraction_gather(const struct attraction_run *y, const struct attraction *of,
+                                 int64_t i, bool bonded)
 {
     int64_t n = 0;
     for (int64_t k = 0; k < y->n; k++) {
@@ -372,14 +374,15 @@ static void share_run(const struct attraction_run *y, struct attraction *of)
         struct attraction *t = &of[y->hold[i].i];
         if (t->tied && t->among == 0) share_pull(y, of, i);
         if (!t->bonded) continue;
-        double pair = (double)count_pair(y, of, i, true), n = (double)attraction_gather(y, of, i, true);
+        double pair = (double)count_pair(y, of, i, true),
+               n = (double)attraction_gather(y, of, i, true);
         t->bonds = pair > n ? pair : n;
     }
 }
 
 /* Does contact i share with others? */
 static bool attraction_is_shared(const struct contacts *s, const struct packing *p,
-                      const struct attraction *of, int64_t i)
+                                 const struct attraction *of, int64_t i)
 {
     const struct contact *c = &s->c[i];
     bool moves_both = attraction_moves(p, c->a) && attraction_moves(p, c->b);
@@ -392,7 +395,8 @@ int attraction_share(struct attraction *of, const struct contacts *s, const stru
     int64_t n = 0, count = 0;
     vec3 edge[3];
     cell_predict(&p->cell, step_ahead(p), edge);
-    for (int64_t i = 0; i < s->n; i++) of[i].among = of[i].bonds = 0, n += attraction_is_shared(s, p, of, i);
+    for (int64_t i = 0; i < s->n; i++)
+        of[i].among = of[i].bonds = 0, n += attraction_is_shared(s, p, of, i);
     struct attraction_hold *hold = malloc((size_t)(2 * n + 1) * sizeof *hold);
     if (!hold) return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0; i < s->n; i++)

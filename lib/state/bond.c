@@ -81,15 +81,17 @@ static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, i
     return NULL;
 }
 
-int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls, struct failure *failure)
+int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls,
+                struct failure *failure)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct bond *x = &s->bond[i];
         const char *trouble = bond_trouble(x, dim, bodies, walls);
-        if (trouble) return failure_set(failure, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
+        if (trouble)
+            return failure_set(failure, EX_DATAERR, "bond %lld: %s", (long long)i, trouble);
         if (i && compare_bonds(x - 1, x) >= 0)
             return failure_set(failure, EX_DATAERR, "bond %lld: not sorted by its bodies, or twice",
-                           (long long)i);
+                               (long long)i);
     }
     return 0;
 }

@@ -5,8 +5,8 @@
 #ifndef NSD_BOND_H
 #define NSD_BOND_H
 
-#include "base/vec.h"
 #include "base/failure.h"
+#include "base/vec.h"
 #include "state/contact.h"
 
 /* Of a bond: there is a liquid bridge, also one that is new, whose energy has not been accounted for */
@@ -59,6 +59,7 @@ bool bonds_broken(const struct bonds *bonds, int32_t a, int32_t b, int64_t from)
 
 /* Do bodies and walls exist, are keys in order, numbers in range, and where dim is 2 places in the plane?
    Returns 0, or EX_DATAERR with the first bond that fails. */
-int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls, struct failure *failure);
+int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls,
+                struct failure *failure);
 
 #endif

@@ -171,10 +171,11 @@ static bool contact_not_negative(double x)
 
 static const char *contact_law_trouble(const struct contact_law *t)
 {
-    if (!contact_not_negative(t->pull) || !contact_not_negative(t->offset) || !contact_not_negative(t->jump[0]) ||
-        !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
+    if (!contact_not_negative(t->pull) || !contact_not_negative(t->offset) ||
+        !contact_not_negative(t->jump[0]) || !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
         return "its pull, offset or jump is out of range";
-    if (!contact_not_negative(t->stiff[0]) || !contact_not_negative(t->stiff[1]) || !(t->beta >= 0 && t->beta <= 1))
+    if (!contact_not_negative(t->stiff[0]) || !contact_not_negative(t->stiff[1]) ||
+        !(t->beta >= 0 && t->beta <= 1))
         return "its stiffness or beta is out of range";
     if (!contact_not_negative(t->mu_r) || !contact_not_negative(t->mu_p))
         return "mu_r and mu_p must not be negative";

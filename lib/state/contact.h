@@ -2,8 +2,8 @@
 #ifndef NSD_CONTACT_H
 #define NSD_CONTACT_H
 
-#include "base/vec.h"
 #include "base/failure.h"
+#include "base/vec.h"
 #include "state/pair_columns.h"
 
 #include <stdbool.h>
@@ -109,7 +109,8 @@ bool contacts_reserve(struct contacts *contacts, int64_t more);
 
 /* Do bodies and walls exist, are numbers finite and in range, bases orthonormal (to 1e-6)?
    Returns 0, or EX_DATAERR with the first contact that fails. */
-int contacts_check(const struct contacts *contacts, int64_t bodies, int32_t walls, struct failure *failure);
+int contacts_check(const struct contacts *contacts, int64_t bodies, int32_t walls,
+                   struct failure *failure);
 
 /* c->n = n, a unit vector, and c->t1: in the plane as above, in space as [Duff et al. 2017], which
    is continuous in n but where n_z changes sign. */

@@ -44,7 +44,8 @@ double pulls_most(const struct drives *d, int64_t n, const int32_t *id, const do
     double most = 0;
     for (int64_t i = 0; d->n && i < n; i++) {
         double sum = 0;
-        for (int32_t k = external_force_first_of(d, id[i]); k < d->n && d->drive[k].boundary == id[i]; k++)
+        for (int32_t k = external_force_first_of(d, id[i]);
+             k < d->n && d->drive[k].boundary == id[i]; k++)
             if (!d->drive[k].turns) sum += external_force_largest(d, &d->drive[k]);
         if (mass[i] > 0) most = fmax(most, sum / mass[i]);
     }
@@ -58,7 +59,8 @@ int pulls_check(const struct drives *d, double most, int dim, struct failure *fa
         if (d->drive[k].signal == DRIVE_SPEED)
             return failure_set(failure, EX_DATAERR, "force %d: no such signal", k);
     if (!(most >= 0 && isfinite(most)))
-        return failure_set(failure, EX_DATAERR, "forces: their largest acceleration is not a number");
+        return failure_set(failure, EX_DATAERR,
+                           "forces: their largest acceleration is not a number");
     return 0;
 }
 
@@ -127,8 +129,8 @@ static int copy_push(double **to, const double *x, int32_t walls, struct failure
     return 0;
 }
 
-int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n, int32_t walls,
-                 struct failure *failure)
+int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n,
+                        int32_t walls, struct failure *failure)
 {
     const struct lasting *s = &from->lasts;
     *to = (struct external_force){ .steered = from->steered, .most = from->most };
@@ -143,12 +145,14 @@ int external_force_copy(struct external_force *to, const struct external_force *
     return 0;
 }
 
-int external_force_begin(struct external_force *o, const double *mass, int64_t n, int32_t walls, struct failure *failure)
+int external_force_begin(struct external_force *o, const double *mass, int64_t n, int32_t walls,
+                         struct failure *failure)
 {
     const struct lasting *s = &o->lasts;
     free(o->force), free(o->torque), free(o->push);
     o->force = o->torque = NULL, o->push = NULL;
-    if (copy_vectors(&o->force, s->force, n, failure) || copy_vectors(&o->torque, s->torque, n, failure) ||
+    if (copy_vectors(&o->force, s->force, n, failure) ||
+        copy_vectors(&o->torque, s->torque, n, failure) ||
         copy_push(&o->push, s->push, walls, failure))
         return failure->status;
     external_force_measure(o, mass, n);
@@ -193,7 +197,8 @@ void external_force_measure(struct external_force *o, const double *mass, int64_
     o->most = sqrt(most);
 }
 
-int external_force_say(struct external_force *o, const char *words, int64_t length, struct failure *failure)
+int external_force_say(struct external_force *o, const char *words, int64_t length,
+                       struct failure *failure)
 {
     if (o->length + length > o->room) {
         int64_t room = 2 * (o->length + length);
@@ -207,7 +212,8 @@ int external_force_say(struct external_force *o, const char *words, int64_t leng
 }
 
 /* Is every number finite, and in the plane where dim is 2? */
-static int check_vectors(const vec3 *force, const vec3 *torque, int dim, int64_t n, struct failure *failure)
+static int check_vectors(const vec3 *force, const vec3 *torque, int dim, int64_t n,
+                         struct failure *failure)
 {
     for (int64_t i = 0; (force || torque) && i < n; i++) {
         const char *trouble = NULL;
@@ -216,7 +222,8 @@ static int check_vectors(const vec3 *force, const vec3 *torque, int dim, int64_t
         if (!v3_finite(m)) trouble = "torque from outside is not finite";
         if (dim == 2 && (f.z != 0 || m.x != 0 || m.y != 0))
             trouble = "force from outside leaves the plane, and dim is 2";
-        if (trouble) return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)i, trouble);
+        if (trouble)
+            return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)i, trouble);
     }
     return 0;
 }
@@ -229,11 +236,12 @@ static int check_push(const double *push, int32_t walls, struct failure *failure
     return 0;
 }
 
-int external_force_check(const struct external_force *o, int dim, int64_t n, int32_t walls, struct failure *failure)
+int external_force_check(const struct external_force *o, int dim, int64_t n, int32_t walls,
+                         struct failure *failure)
 {
     const struct lasting *s = &o->lasts;
-    if (check_vectors(o->force, o->torque, dim, n, failure) || check_push(o->push, walls, failure) ||
-        check_vectors(s->force, s->torque, dim, n, failure))
+    if (check_vectors(o->force, o->torque, dim, n, failure) ||
+        check_push(o->push, walls, failure) || check_vectors(s->force, s->torque, dim, n, failure))
         return failure->status;
     return check_push(s->push, walls, failure);
 }

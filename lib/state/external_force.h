@@ -50,26 +50,29 @@ void external_force_free(struct external_force *outside);
 void external_force_forget(struct external_force *outside);
 /* to = a deep copy for n bodies and so many walls; to need not be initialised. Returns 0 or EX_SOFTWARE, where there
    is nothing to free. */
-int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n, int32_t walls,
-                 struct failure *failure);
+int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n,
+                        int32_t walls, struct failure *failure);
 /* *to = force or torque, [n], zero, unless it exists; push[walls], likewise. Each returns 0 or EX_SOFTWARE, where nothing
    has changed. */
 int external_force_alloc(vec3 **to, int64_t n, struct failure *failure);
-int external_force_alloc_push(struct external_force *outside, int32_t walls, struct failure *failure);
+int external_force_alloc_push(struct external_force *outside, int32_t walls,
+                              struct failure *failure);
 /* A step begins: its forces are those that last. mass[n], kg. Returns 0 or EX_SOFTWARE. */
-int external_force_begin(struct external_force *outside, const double *mass, int64_t n, int32_t walls,
-                  struct failure *failure);
+int external_force_begin(struct external_force *outside, const double *mass, int64_t n,
+                         int32_t walls, struct failure *failure);
 /* Bodies are removed: body i is now in row[i], in the same order; < 0: it is gone. Of those that last. */
 void external_force_follow(struct external_force *outside, const int32_t *row, int64_t n);
 /* Forces of n bodies in place of those of `had`; new ones are zero. Returns 0 or EX_SOFTWARE, where nothing has
    changed. */
-int external_force_resize(struct external_force *outside, int64_t had, int64_t n, struct failure *failure);
+int external_force_resize(struct external_force *outside, int64_t had, int64_t n,
+                          struct failure *failure);
 /* Finds `most`, of bodies with these masses (kg). */
 void external_force_measure(struct external_force *outside, const double *mass, int64_t n);
 /* Appends words of length bytes. Returns 0 or EX_SOFTWARE, where nothing has changed. */
-int external_force_say(struct external_force *outside, const char *words, int64_t length, struct failure *failure);
+int external_force_say(struct external_force *outside, const char *words, int64_t length,
+                       struct failure *failure);
 /* Is every number finite, and in the plane where dim is 2? Returns 0 or EX_DATAERR. */
 int external_force_check(const struct external_force *outside, int dim, int64_t n, int32_t walls,
-                  struct failure *failure);
+                         struct failure *failure);
 
 #endif

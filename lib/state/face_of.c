@@ -2,7 +2,8 @@
 
 #include "shape/mesh.h"
 
-int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes, struct failure *failure)
+int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes,
+                 struct failure *failure)
 {
     return wall_faces_init(f, p->walls, p->wall, meshes ? &p->mesh : NULL, failure);
 }

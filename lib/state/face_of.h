@@ -9,7 +9,8 @@
 #include "state/wall_faces.h"
 
 /* meshes: contacts are to be found on the faces of meshes; else all are on face 0. Returns as wall_faces_init(). */
-int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes, struct failure *failure);
+int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes,
+                 struct failure *failure);
 /* The face of a contact with a boundary, counted from the boundary's first one; ahead (s): from the packing's time to
    where the contact acts */
 int32_t face_of_contact(const struct wall_faces *f, const struct packing *p,

@@ -31,7 +31,8 @@ int memory_copy(struct memory *to, const struct memory *from, struct failure *fa
 
 /* What is remembered of the contact with this key, or NULL. *from, 0 at first, is where to look from on:
    contacts are asked for in their order. */
-static const struct recall *memory_find(const struct memory *m, struct contact_key key, int64_t *from)
+static const struct recall *memory_find(const struct memory *m, struct contact_key key,
+                                        int64_t *from)
 {
     int order = -1;
     while (*from < m->n && (order = contact_key_order(recall_key(&m->recall[*from]), key)) < 0)
@@ -134,7 +135,8 @@ int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct f
         else if (i && memory_compare(x - 1, x) >= 0)
             trouble = "not sorted by its bodies, or twice";
         if (trouble)
-            return failure_set(failure, EX_DATAERR, "remembered reaction %lld: %s", (long long)i, trouble);
+            return failure_set(failure, EX_DATAERR, "remembered reaction %lld: %s", (long long)i,
+                               trouble);
     }
     return 0;
 }

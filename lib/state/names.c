@@ -96,7 +96,8 @@ int names_add(struct names *s, const char *text, int32_t *which, struct failure 
     if (trouble) return failure_set(failure, EX_DATAERR, "a name %s", trouble);
     *which = names_find(s, text, n);
     if (*which >= 0) return 0;
-    if (s->n == NAMES_MOST) return failure_set(failure, EX_DATAERR, "more than %d names", NAMES_MOST);
+    if (s->n == NAMES_MOST)
+        return failure_set(failure, EX_DATAERR, "more than %d names", NAMES_MOST);
     *which = s->n;
     return add_text(s, text, n, failure);
 }
@@ -107,7 +108,8 @@ int names_give(struct names *s, const char *text, int32_t boundary, int32_t firs
     int32_t name;
     if (names_add(s, text, &name, failure)) return failure->status;
     if (s->rows == NAMED_MOST)
-        return failure_set(failure, EX_DATAERR, "names of more than %d ranges of faces", NAMED_MOST);
+        return failure_set(failure, EX_DATAERR, "names of more than %d ranges of faces",
+                           NAMED_MOST);
     return names_add_row(s, (struct named){ name, boundary, first, count }, failure);
 }
 
@@ -138,7 +140,8 @@ void names_settle(struct names *s)
     s->rows = n;
 }
 
-int names_check(const struct names *s, int32_t walls, const struct wall *wall, struct failure *failure)
+int names_check(const struct names *s, int32_t walls, const struct wall *wall,
+                struct failure *failure)
 {
     for (int32_t k = 0; k < s->n; k++) {
         const char *trouble = name_trouble(s->text[k], strlen(s->text[k]));
@@ -154,8 +157,9 @@ int names_check(const struct names *s, int32_t walls, const struct wall *wall, s
         int32_t faces = w->shape == BOUNDARY_MESH ? w->elements : 0;
         if (r->first < 0 || r->count < 0 || r->first > faces || r->count > faces - r->first ||
             (!r->count && r->first))
-            return failure_set(failure, EX_DATAERR, "name \"%s\": wall %d has no such faces, it has %d",
-                           s->text[r->name], r->boundary, faces);
+            return failure_set(failure, EX_DATAERR,
+                               "name \"%s\": wall %d has no such faces, it has %d",
+                               s->text[r->name], r->boundary, faces);
         bool same = last && last->name == r->name && last->boundary == r->boundary;
         if (last && (names_compare(last, r) >= 0 ||
                      (same && (!last->count || r->first < last->first + last->count))))

@@ -54,7 +54,8 @@ int names_give(struct names *names, const char *text, int32_t boundary, int32_t 
 void names_settle(struct names *names);
 
 /* Do the rows speak of boundaries and faces that exist, each face once a name? Returns 0 or EX_DATAERR. */
-int names_check(const struct names *names, int32_t walls, const struct wall *wall, struct failure *failure);
+int names_check(const struct names *names, int32_t walls, const struct wall *wall,
+                struct failure *failure);
 
 /* The name of a whole boundary; NULL: it has none */
 const char *names_of_wall(const struct names *names, int32_t boundary);

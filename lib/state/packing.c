@@ -57,7 +57,7 @@ int packing_alloc_column(struct packing *p, int column, struct failure *failure)
     column_set_array(c, p, array(p->n, column_bytes(c)));
     return column_array(c, p) ? 0
                               : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
-                                        (long long)p->n, c->name);
+                                            (long long)p->n, c->name);
 }
 
 uint32_t packing_optional(const struct packing *p)
@@ -87,7 +87,8 @@ int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
     *p = (struct packing){ .dim = dim, .n = n, .theta = 0.5, .cell = cell_none() };
     for (int k = 0; k < BODY_COLUMNS && !failure->status; k++)
         if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, failure);
-    if (failure->status || packing_alloc_walls(p, 0, failure) || packing_alloc_kinds(p, 1, failure)) {
+    if (failure->status || packing_alloc_walls(p, 0, failure) ||
+        packing_alloc_kinds(p, 1, failure)) {
         packing_free(p);
         return failure->status;
     }
@@ -187,13 +188,15 @@ bool packing_bounds(const struct packing *p, const struct contact *c)
            (law == IMPACT_BOUNDED || (law == IMPACT_DEFAULT && shaped));
 }
 
-int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct failure *failure)
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
+                           struct failure *failure)
 {
     free(p->poured), free(p->removed);
     p->poured = array(pours, sizeof *p->poured);
     p->removed = array(removals, sizeof *p->removed);
     p->pours = p->poured ? pours : 0, p->removals = p->removed ? removals : 0;
-    return p->poured && p->removed ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for passages");
+    return p->poured && p->removed ? 0
+                                   : failure_set(failure, EX_SOFTWARE, "no memory for passages");
 }
 
 int packing_resize(struct packing *p, int64_t n, struct failure *failure)
@@ -204,7 +207,8 @@ int packing_resize(struct packing *p, int64_t n, struct failure *failure)
         char *old = column_array(c, p);
         if (!old && is_optional(b)) continue;
         char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
+        if (!more)
+            return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
         if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
         column_set_array(c, p, more);
     }
@@ -238,7 +242,8 @@ struct packing packing_with_bodies(const struct packing *p, const struct packing
 int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
 {
     if (packing_init(to, p->dim, p->n, failure)) return failure->status;
-    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure)) goto fail;
+    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure))
+        goto fail;
     size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
     to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
     to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
@@ -253,7 +258,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct failure *fa
             memcpy(column_array(&b->column, to), column_array(&b->column, p),
                    n * column_bytes(&b->column));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
-    if (drives_copy(&to->drives, &p->drives, failure) || drives_copy(&to->pushes, &p->pushes, failure) ||
+    if (drives_copy(&to->drives, &p->drives, failure) ||
+        drives_copy(&to->pushes, &p->pushes, failure) ||
         drives_copy(&to->pulls, &p->pulls, failure) || mesh_copy(&to->mesh, &p->mesh, failure) ||
         names_copy(&to->names, &p->names, failure) || sums_copy(&to->sums, &p->sums, failure))
         goto fail;
@@ -340,7 +346,8 @@ struct whole packing_whole(const struct packing *p)
 }
 
 /* What is wrong with a column's real numbers of body i, or NULL */
-static const char *packing_number_trouble(const struct body_column *b, const struct packing *p, int64_t i)
+static const char *packing_number_trouble(const struct body_column *b, const struct packing *p,
+                                          int64_t i)
 {
     const double *x = column_row(&b->column, p, i);
     for (int k = 0; k < b->column.width; k++) {
@@ -474,7 +481,7 @@ static int check_images(const struct packing *p, int64_t first, struct failure *
         for (int k = 0; k < 3; k++)
             if (p->image[i][k] < -IMAGES_MOST || p->image[i][k] > IMAGES_MOST)
                 return failure_set(failure, EX_DATAERR, "body %lld: image is out of range",
-                               (long long)(first + i));
+                                   (long long)(first + i));
     return 0;
 }
 
@@ -490,12 +497,13 @@ static int check_cell(const struct packing *p, struct failure *failure)
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
             if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
-                return failure_set(failure, EX_DATAERR, "wall %d: crosses a periodic edge of the cell", i);
+                return failure_set(failure, EX_DATAERR,
+                                   "wall %d: crosses a periodic edge of the cell", i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return failure_set(failure, EX_DATAERR,
-                               "wall %d: the edges along it move, so that its bodies' images "
-                               "would meet it at other speeds",
-                               i);
+                                   "wall %d: the edges along it move, so that its bodies' images "
+                                   "would meet it at other speeds",
+                                   i);
         }
     return 0;
 }
@@ -509,24 +517,28 @@ static int packing_check_each_body(const struct packing *p, int64_t first, struc
             trouble = real ? packing_number_trouble(b, p, i) : NULL;
             if (trouble)
                 return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
-                               b->column.name, trouble);
+                                   b->column.name, trouble);
         }
         if ((trouble = body_trouble(p, i)))
-            return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i), trouble);
+            return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i),
+                               trouble);
     }
     return 0;
 }
 
 int packing_check_bodies(const struct packing *p, int64_t first, struct failure *failure)
 {
-    return packing_check_each_body(p, first, failure) || check_images(p, first, failure) ? failure->status : 0;
+    return packing_check_each_body(p, first, failure) || check_images(p, first, failure)
+               ? failure->status
+               : 0;
 }
 
 int packing_check(const struct packing *p, struct failure *failure)
 {
     if (p->dim != 2 && p->dim != 3)
         return failure_set(failure, EX_DATAERR, "dim is %d, not 2 or 3", p->dim);
-    if (!(p->dt > 0 && isfinite(p->dt))) return failure_set(failure, EX_DATAERR, "dt must be positive");
+    if (!(p->dt > 0 && isfinite(p->dt)))
+        return failure_set(failure, EX_DATAERR, "dt must be positive");
     if (!isfinite(p->t)) return failure_set(failure, EX_DATAERR, "time is not finite");
     if (!(p->theta >= 0 && p->theta <= 1))
         return failure_set(failure, EX_DATAERR, "theta must lie in [0, 1]");
@@ -565,7 +577,8 @@ int packing_check(const struct packing *p, struct failure *failure)
         return failure->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].boundary].load.way)
-            return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled", i);
+            return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled",
+                               i);
     if (pulls_check(&p->pulls, p->pulls_most, p->dim, failure)) return failure->status;
     if (mesh_check(&p->mesh, p->dim, failure)) return failure->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, failure)) return failure->status;

@@ -114,7 +114,6 @@ struct events {
 int events_add(struct events *events, const struct event *event, struct failure *failure);
 void events_free(struct events *events);
 
-
 struct whole;
 
 struct packing {
@@ -154,14 +153,14 @@ struct packing {
     struct pair_law *law; /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
     struct bonds bonds;   /* what lasts of pairs by these laws */
 
-    struct memory memory;   /* the reactions that the next step starts from */
+    struct memory memory;          /* the reactions that the next step starts from */
     struct external_force outside; /* what acts from outside in the step to come */
 
     /* Inlets and outlets act [scene/inlet.h] where there are pours or removals. */
     int32_t pours, removals;
     struct flow_count *poured, *removed; /* [pours], [removals] */
-    int32_t first_id;                 /* of the first body that is poured */
-    struct events events;             /* since the last frame */
+    int32_t first_id;                    /* of the first body that is poured */
+    struct events events;                /* since the last frame */
 
     char *scene; /* the JSON it was built from, or NULL */
 
@@ -172,7 +171,7 @@ struct packing {
 /* What a part of a packing knows of all bodies */
 struct whole {
     double speed, rotation_speed; /* m/s: of the fastest centre, and of the fastest point */
-    double small, large;     /* m: the smallest and the largest radius */
+    double small, large;          /* m: the smallest and the largest radius */
     double apart; /* m: the widest gap at which contacts are to be sought for the bonds that hold
                                 and keep no place; -INFINITY where there are none */
 };
@@ -196,7 +195,8 @@ int packing_alloc_laws(struct packing *p, struct failure *failure);
 
 /* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
    EX_SOFTWARE. */
-int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals, struct failure *failure);
+int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
+                           struct failure *failure);
 
 /* Are there inlets or outlets? */
 static inline bool packing_varies(const struct packing *p)

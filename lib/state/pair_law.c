@@ -26,9 +26,11 @@ const char *pair_law_trouble(const struct pair_law *l)
         return "the wetting angle must lie in [0, pi/2)";
     if (!pair_law_not_negative(l->mu_r) || !pair_law_not_negative(l->mu_p))
         return "mu_r and mu_p must not be negative";
-    if (!pair_law_not_negative(l->w) || !pair_law_not_negative(l->eta) || !pair_law_not_negative(l->area))
+    if (!pair_law_not_negative(l->w) || !pair_law_not_negative(l->eta) ||
+        !pair_law_not_negative(l->area))
         return "energy, viscosity and area of a bond must not be negative";
-    if (!pair_law_not_negative(l->cn) || !pair_law_not_negative(l->ct) || (l->w > 0 && !positive(l->cn)))
+    if (!pair_law_not_negative(l->cn) || !pair_law_not_negative(l->ct) ||
+        (l->w > 0 && !positive(l->cn)))
         return "the stiffness of a bond must be positive";
     if (!(l->beta >= 0 && l->beta <= 1)) return "beta must lie in [0, 1]";
     if (!isfinite(l->made)) return "the time of bonds is not finite";

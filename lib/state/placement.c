@@ -101,7 +101,7 @@ static void recount(struct packing *p, struct contacts *s, int32_t n, int to, in
 
 /* The image of b that a meets, when both have been brought back into the cell */
 static void placement_follow(const struct packing *p, const vec3 inverse[3], int32_t a, int32_t b,
-                   int8_t shift[3])
+                             int8_t shift[3])
 {
     int32_t of_a[3], of_b[3];
     if (a < 0) return; // a plane is its own image
@@ -118,7 +118,8 @@ void packing_wrap(struct packing *p, struct contacts *s)
     if (!cell_repeats(c)) return;
     while ((n = cell_recut(c, &to, &from))) recount(p, s, n, to, from);
     cell_inverse(c->edge, inverse);
-    for (int64_t i = 0; s && i < s->n; i++) placement_follow(p, inverse, s->c[i].a, s->c[i].b, s->c[i].shift);
+    for (int64_t i = 0; s && i < s->n; i++)
+        placement_follow(p, inverse, s->c[i].a, s->c[i].b, s->c[i].shift);
     for (int64_t i = 0; i < p->bonds.n; i++) {
         struct bond *x = &p->bonds.bond[i];
         placement_follow(p, inverse, x->a, x->b, x->shift);

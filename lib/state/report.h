@@ -48,7 +48,6 @@ struct err {
 /* Radii: as deep as a run fails for [state/account.h]; what an impact leaves for a step is less */
 #define DEPTH_WEDGED 0.1
 
-
 /* How deep bodies are in one another */
 struct depth {
     double deepest;    /* radii; 0: nothing overlaps */
@@ -116,8 +115,8 @@ struct report {
     int64_t newton;      /* Newton steps in all */
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
-    bool watched;        /* passed is known: there is what bodies may go through [contact/tunnelling.h] */
-    int64_t passed;      /* bodies that went through a boundary or another body in this step */
+    bool watched; /* passed is known: there is what bodies may go through [contact/tunnelling.h] */
+    int64_t passed; /* bodies that went through a boundary or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
     struct endless endless;            /* for which the step was not made */

@@ -60,7 +60,8 @@ quat rotation_turn(const struct packing *p, int64_t i, quat q, vec3 L, double dt
 quat rotation_predict(const struct packing *p, int64_t i)
 {
     double ahead = step_ahead(p);
-    if (rotation_is(p, i)) return rotation_turn(p, i, p->q[i], rotation_momentum(p, i, p->q[i], p->w[i]), ahead);
+    if (rotation_is(p, i))
+        return rotation_turn(p, i, p->q[i], rotation_momentum(p, i, p->q[i], p->w[i]), ahead);
     return quat_mul(quat_rotation(v3_scale(ahead, p->w[i])), p->q[i]);
 }
 

@@ -38,7 +38,8 @@ static bool choose_number(struct selection *c, const struct packing *p, const ch
     return c->wall[k] = true;
 }
 
-static bool selection_choose(struct selection *c, const struct packing *p, const char *word, size_t n)
+static bool selection_choose(struct selection *c, const struct packing *p, const char *word,
+                             size_t n)
 {
     int32_t name = names_find(&p->names, word, n);
     if (choose_number(c, p, word, n)) return true;
@@ -66,8 +67,8 @@ static bool is_of_walls(const struct packing *p, int32_t name)
     return false;
 }
 
-int selection_init(struct selection *c, const struct packing *p, const char *option, const char *list,
-                struct failure *failure)
+int selection_init(struct selection *c, const struct packing *p, const char *option,
+                   const char *list, struct failure *failure)
 {
     *c = (struct selection){ .any = list };
     if (!list) return 0;
@@ -81,7 +82,7 @@ int selection_init(struct selection *c, const struct packing *p, const char *opt
         if (!selection_choose(c, p, s, n)) {
             list_all(p, all, sizeof all);
             failure_set(failure, EX_DATAERR, "%s: no '%.*s' here, but %s", option,
-                    (int)(n > NAME_BYTES ? NAME_BYTES : n), s, all);
+                        (int)(n > NAME_BYTES ? NAME_BYTES : n), s, all);
         }
         s += n;
         if (!*s) break;
@@ -120,8 +121,8 @@ bool selection_body(const struct selection *c, const struct packing *p, int64_t 
     return p->group && p->group[i] > 0 && c->name[p->group[i] - 1];
 }
 
-bool selection_contact(const struct selection *c, const struct packing *p, const struct wall_faces *faces,
-                    const struct contact *contact)
+bool selection_contact(const struct selection *c, const struct packing *p,
+                       const struct wall_faces *faces, const struct contact *contact)
 {
     if (selection_body(c, p, contact->b)) return true;
     if (contact->a >= 0) return selection_body(c, p, contact->a);

@@ -19,8 +19,8 @@ struct selection {
 
 /* list NULL: all. option: "--only", for the message, which lists what there is. Returns 0, EX_DATAERR or EX_SOFTWARE
    with nothing to free. */
-int selection_init(struct selection *c, const struct packing *p, const char *option, const char *list,
-                struct failure *failure);
+int selection_init(struct selection *c, const struct packing *p, const char *option,
+                   const char *list, struct failure *failure);
 void selection_free(struct selection *c);
 
 /* The wall, or any of its faces; the face, counted from the wall's first one; the body */
@@ -28,7 +28,7 @@ bool selection_wall(const struct selection *c, const struct packing *p, int32_t 
 bool selection_face(const struct selection *c, const struct packing *p, int32_t wall, int32_t face);
 bool selection_body(const struct selection *c, const struct packing *p, int64_t i);
 /* The contact of such a body, or with such a face; faces: of face_of_init() */
-bool selection_contact(const struct selection *c, const struct packing *p, const struct wall_faces *faces,
-                    const struct contact *contact);
+bool selection_contact(const struct selection *c, const struct packing *p,
+                       const struct wall_faces *faces, const struct contact *contact);
 
 #endif

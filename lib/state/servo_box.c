@@ -52,10 +52,10 @@ int servo_box_check_growth(const struct packing *p, struct failure *failure)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (servo_box_has(&p->wall[w]) && load_grows_too_fast(&p->wall[w].load, p->dt))
-            return failure_set(failure, EX_DATAERR,
-                           "the room of the walls changes by %.2g of its size in step %lld, and a "
-                           "tenth is the most: take a smaller dt, a larger mass or slower rates",
-                           (p->wall[w].load.speed + p->wall[w].load.rate) * p->dt,
-                           (long long)p->step);
+            return failure_set(
+                failure, EX_DATAERR,
+                "the room of the walls changes by %.2g of its size in step %lld, and a "
+                "tenth is the most: take a smaller dt, a larger mass or slower rates",
+                (p->wall[w].load.speed + p->wall[w].load.rate) * p->dt, (long long)p->step);
     return 0;
 }

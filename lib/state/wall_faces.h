@@ -5,8 +5,8 @@
 #ifndef NSD_WALL_FACES_H
 #define NSD_WALL_FACES_H
 
-#include "shape/wall_shape.h"
 #include "shape/mesh.h"
+#include "shape/wall_shape.h"
 
 struct wall_faces {
     int32_t n; /* faces of all boundaries */

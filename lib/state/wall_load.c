@@ -30,7 +30,8 @@ int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, doub
     const int32_t n = f.n;
     wall_faces_free(&f);
     s->since = t;
-    if (!n) return failure_set(failure, EX_DATAERR, "there are no walls, of which sums could be kept");
+    if (!n)
+        return failure_set(failure, EX_DATAERR, "there are no walls, of which sums could be kept");
     return alloc(s, n, failure);
 }
 
@@ -43,7 +44,8 @@ int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct failure
     return 0;
 }
 
-int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct failure *failure)
+int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall,
+               struct failure *failure)
 {
     struct wall_faces f;
     if (!s->n) return 0;

@@ -8,8 +8,8 @@
 #ifndef NSD_SUMS_H
 #define NSD_SUMS_H
 
-#include "base/vec.h"
 #include "base/failure.h"
+#include "base/vec.h"
 
 #include <stdint.h>
 
@@ -40,6 +40,7 @@ int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, doub
 void sums_free(struct wall_sums *s);
 int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct failure *failure);
 /* Are they of these walls' faces, and finite? Returns 0 or EX_DATAERR. */
-int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall, struct failure *failure);
+int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall,
+               struct failure *failure);
 
 #endif

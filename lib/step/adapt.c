@@ -1,8 +1,8 @@
 /* step/adapt.c: dt halved and doubled by what overlaps would come [step/adapt.h]. */
 #include "step/adapt.h"
 
-#include "state/kinematics.h"
 #include "contact/detect.h"
+#include "state/kinematics.h"
 
 /* Of TOL: what twice the dt may bring, so that it is not halved again at once */
 #define CALM 0.5

@@ -22,8 +22,8 @@
 #ifndef NSD_ADAPT_H
 #define NSD_ADAPT_H
 
-#include "state/packing.h"
 #include "contact/neighbours.h"
+#include "state/packing.h"
 
 /* So many times dt is halved at most, to 1.5e-5 of it: impacts that go by a radius in a step then stay below any
    TOL that makes sense, and what is jammed between walls does not stop a run for good. */

@@ -48,8 +48,9 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
         b->kinetic += 0.5 * (m * v3_dot(v, v) + rotation_energy2(p, i, q, w));
         b->potential -= m * v3_dot(p->g, x);
         b->change += 0.5 * m * (v3_dot(v, v) - v3_dot(p->v[i], p->v[i]));
-        b->change += rotation_is(p, i) ? 0.5 * (rotation_energy2(p, i, q, w) - rotation_energy2(p, i, q, was))
-                                  : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
+        b->change += rotation_is(p, i)
+                         ? 0.5 * (rotation_energy2(p, i, q, w) - rotation_energy2(p, i, q, was))
+                         : 0.5 * p->inertia[i] * (v3_dot(w, w) - v3_dot(p->w[i], p->w[i]));
         b->gravity += p->dt * m * v3_dot(p->g, mean[i].v);
         balance_add_to(b->momentum, m, v);
         if (p->outside.force) b->loads += p->dt * v3_dot(p->outside.force[i], mean[i].v);
@@ -61,7 +62,8 @@ static void add_bodies(struct balance *of_all, const struct packing *p, const st
     }
 }
 
-static void balance_add_freedoms(struct balance *b, const struct packing *p, const struct impulses *sum)
+static void balance_add_freedoms(struct balance *b, const struct packing *p,
+                                 const struct impulses *sum)
 {
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
@@ -112,8 +114,9 @@ static void add_ties(struct balance *b, const struct packing *p, const struct co
 }
 
 /* The moment on b turns it, and the other way round a. */
-static void balance_add_moment(struct balance_work *w, const struct packing *p, const struct contact *c,
-                       const double moment[3], const struct balance_mean *mean)
+static void balance_add_moment(struct balance_work *w, const struct packing *p,
+                               const struct contact *c, const double moment[3],
+                               const struct balance_mean *mean)
 {
     vec3 m = contact_in_space(c, moment);
     *(p->mass[c->b] > 0 ? &w->free : &w->held) += v3_dot(m, mean[c->b].w);
@@ -124,8 +127,9 @@ static void balance_add_moment(struct balance_work *w, const struct packing *p, 
 }
 
 /* Of the reaction r of contact i, without its moment */
-static struct balance_work work_of(const struct packing *p, const struct contact *c, const double r[3],
-                           const struct impulses *sum, const struct balance_mean *mean)
+static struct balance_work work_of(const struct packing *p, const struct contact *c,
+                                   const double r[3], const struct impulses *sum,
+                                   const struct balance_mean *mean)
 {
     const struct push o = push_of(p, sum->ahead, sum->edge, c, r);
     const struct balance_mean *mb = &mean[c->b];
@@ -143,8 +147,9 @@ static struct balance_work work_of(const struct packing *p, const struct contact
     return w;
 }
 
-static void balance_add_contacts(struct balance *b, const struct packing *p, const struct contacts *s,
-                         const struct impulses *sum, const struct balance_mean *mean)
+static void balance_add_contacts(struct balance *b, const struct packing *p,
+                                 const struct contacts *s, const struct impulses *sum,
+                                 const struct balance_mean *mean)
 {
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
@@ -301,7 +306,8 @@ static bool narrow(struct bracket *b, const struct gain *g)
 }
 
 /* Sets the restitution of the contacts from i to end-1. */
-static void balance_set(const struct packing *p, struct contacts *s, int64_t i, int64_t end, double times)
+static void balance_set(const struct packing *p, struct contacts *s, int64_t i, int64_t end,
+                        double times)
 {
     for (; i < end; i++) {
         const double mu = s->c[i].mu;
@@ -312,7 +318,7 @@ static void balance_set(const struct packing *p, struct contacts *s, int64_t i, 
 }
 
 static int balance_find(struct rebound_search *o, const struct packing *p, const struct contacts *s,
-                struct failure *failure)
+                        struct failure *failure)
 {
     struct impulses sum;
     if (!impulses_init(&sum, p, s, false, failure)) balance_gains(o->gain, p, s, &sum, failure);

@@ -82,7 +82,8 @@ int impulses_init(struct impulses *sum, const struct packing *p, const struct co
     cell_predict(&p->cell, sum->ahead, sum->edge);
     if (!ended) cell_next_rate(&p->cell, p->t + p->dt, step_ahead(p), step_after(p), sum->next);
     if (freedoms_init(&sum->freedoms, p, sum->edge, ended, failure)) return failure->status;
-    const struct external_force *o = &p->outside; // what is not 0 to begin with is not set to 0 first
+    const struct external_force *o =
+        &p->outside; // what is not 0 to begin with is not set to 0 first
     sum->force = o->force ? malloc(n * sizeof *sum->force) : calloc(n, sizeof *sum->force);
     sum->moment = o->torque ? malloc(n * sizeof *sum->moment) : calloc(n, sizeof *sum->moment);
     sum->yield = calloc((size_t)sum->freedoms.n + 1, sizeof *sum->yield);

@@ -3,8 +3,8 @@
 
 #include "base/team.h"
 #include "contact/contact_law.h"
-#include "state/servo_box.h"
 #include "state/rotation.h"
+#include "state/servo_box.h"
 #include "step/project.h"
 
 #include <math.h>
@@ -160,7 +160,8 @@ int move_by(struct packing *p, const struct contacts *s, const struct impulses *
     return servo_box_check_growth(p, failure);
 }
 
-int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct failure *failure)
+int move_step(struct packing *p, const struct contacts *s, struct projected *did,
+              struct failure *failure)
 {
     struct impulses sum;
     if (!impulses_init(&sum, p, s, false, failure) && !move_by(p, s, &sum, failure) &&

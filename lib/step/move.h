@@ -10,13 +10,14 @@
 #ifndef NSD_MOVE_H
 #define NSD_MOVE_H
 
-#include "step/impulse.h"
 #include "state/report.h"
+#include "step/impulse.h"
 #include "step/project.h"
 
 /* The bodies and the freedoms move, by the contacts' reactions, and bodies apart where the packing
    needs it [step/project.h], did, or NULL: what that has done; step and t advance. Returns 0 or EX_SOFTWARE. */
-int move_step(struct packing *p, const struct contacts *s, struct projected *did, struct failure *failure);
+int move_step(struct packing *p, const struct contacts *s, struct projected *did,
+              struct failure *failure);
 
 /* The same where the sums of the reactions are there already; bodies are not moved apart. */
 int move_by(struct packing *p, const struct contacts *s, const struct impulses *sum,

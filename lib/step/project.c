@@ -282,8 +282,8 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
     vec3 *was = did ? malloc(((size_t)p->n + 1) * sizeof *was) : NULL;
     struct displacements o = { .d = malloc(((size_t)p->n + 1) * sizeof *o.d) };
     struct projected_contact *part = malloc(((size_t)s->n + 1) * sizeof *part);
-    bool room =
-        part && o.d && (was || !did) && !freedoms_init(&o.freedoms, p, p->cell.edge, false, failure);
+    bool room = part && o.d && (was || !did) &&
+                !freedoms_init(&o.freedoms, p, p->cell.edge, false, failure);
     room = room && (o.z = calloc((size_t)o.freedoms.n + 1, sizeof *o.z));
     if (!room) share = NULL; // the caller ends the others, who wait
     bool more = room && parts_make(p, s, &o, part);

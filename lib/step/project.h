@@ -41,7 +41,6 @@ struct levels {
 int levels_init(struct levels *l, const struct contacts *s, int64_t bodies);
 void levels_free(struct levels *l);
 
-
 /* A body, with what a sweep reads and changes of it side by side */
 struct displaced {
     vec3 d;    /* m */

@@ -2,18 +2,18 @@
 #include "step/step.h"
 
 #include "contact/depth.h"
-#include "state/rotation.h"
-#include "state/placement.h"
-#include "contact/time_of_impact.h"
 #include "contact/detect.h"
-#include "contact/tunnelling.h"
+#include "contact/time_of_impact.h"
 #include "contact/touching.h"
+#include "contact/tunnelling.h"
+#include "solve/device.h"
+#include "solve/prepare.h"
+#include "state/placement.h"
+#include "state/rotation.h"
+#include "step/balance.h"
 #include "step/move.h"
 #include "step/project.h"
 #include "step/sum_step.h"
-#include "solve/device.h"
-#include "solve/prepare.h"
-#include "step/balance.h"
 
 #include <stdlib.h>
 
@@ -23,7 +23,8 @@ bool step_sweeps(const struct solver *global)
 }
 
 /* Refuses what the solver asked for cannot solve. */
-static int check_solver(const struct problem *p, const struct solver *global, struct failure *failure)
+static int check_solver(const struct problem *p, const struct solver *global,
+                        struct failure *failure)
 {
     if (!p->kind.rolls || step_sweeps(global)) return 0;
     return failure_set(
@@ -48,7 +49,8 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
     const struct prepare_opt form = {
         .alpha = o->alpha, .rho_factor = o->solve.method->rho, .order = o->order, .kept = kept
     };
-    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, failure)) return failure->status;
+    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, failure))
+        return failure->status;
     if (check_solver(&p, o->solve.global, failure)) return problem_free(&p), failure->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
@@ -88,10 +90,11 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
 
 /* What is reported of a step before its solve */
 static int step_begin(struct step_makers *m,
-                 int measure(struct step_makers *m, const struct packing *p,
-                             const struct contacts *s, struct report *rep, struct failure *failure),
-                 const struct packing *p, const struct contacts *s, struct report *rep,
-                 struct failure *failure)
+                      int measure(struct step_makers *m, const struct packing *p,
+                                  const struct contacts *s, struct report *rep,
+                                  struct failure *failure),
+                      const struct packing *p, const struct contacts *s, struct report *rep,
+                      struct failure *failure)
 {
     rep->step = p->step + 1, rep->t = packing_next_time(p);
     return measure(m, p, s, rep, failure);
@@ -265,7 +268,7 @@ static bool report_is_finite(const struct report *rep)
 }
 
 static void step_foresee(struct step_makers *m, const struct packing *p, const struct impulses *sum,
-                    struct report *rep)
+                         struct report *rep)
 {
     if (!isfinite(rep->err.paper.eps_glob)) return;
     rep->endless = endless_after(p, sum);
@@ -275,7 +278,7 @@ static void step_foresee(struct step_makers *m, const struct packing *p, const s
 
 /* The balances and the motion */
 static int step_move(struct step_makers *m, struct packing *p, const struct contacts *s,
-                const struct step_opt *o, struct report *rep, struct failure *failure)
+                     const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct impulses sum = { 0 };
     struct projected did = { 0 };
@@ -364,7 +367,8 @@ static int watch_alone(struct step_makers *m, const struct packing *p, struct wi
 {
     struct step_memory *kept = ((struct alone *)m)->memory;
     struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, failure)) step_watch_whole(p, near->surface, watch, rep, failure);
+    if (!neighbours_surfaces(near, p, failure))
+        step_watch_whole(p, near->surface, watch, rep, failure);
     neighbours_free(&once);
     return failure->status;
 }

@@ -7,11 +7,11 @@
 
 #include "contact/neighbours.h"
 #include "contact/tunnelling.h"
+#include "solve/plan.h"
+#include "solve/solver.h"
 #include "step/balance.h"
 #include "step/impulse.h"
 #include "step/project.h"
-#include "solve/plan.h"
-#include "solve/solver.h"
 #include "step/substeps.h"
 
 struct step_opt {

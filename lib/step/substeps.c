@@ -81,7 +81,8 @@ void substeps_recall(struct substeps *s, struct packing *p)
 /* ---- contacts ---- */
 
 /* The reaction r of contact c, in the basis of another contact of the same two bodies */
-static void substeps_turn(double to[3], const struct contact *c, const double r[3], const struct contact *d)
+static void substeps_turn(double to[3], const struct contact *c, const double r[3],
+                          const struct contact *d)
 {
     const vec3 in_space = contact_in_space(c, r);
     to[0] = v3_dot(in_space, d->n), to[1] = v3_dot(in_space, d->t1);
@@ -126,7 +127,8 @@ static int substeps_join(struct contacts *had, struct contacts *now, struct fail
     }
     all.n = 0;
     for (int64_t k = 0; k < now->n; k++) {
-        while (i < had->n && contact_compare(&had->c[i], &now->c[k]) < 0) substeps_copy_one(&all, had, i++);
+        while (i < had->n && contact_compare(&had->c[i], &now->c[k]) < 0)
+            substeps_copy_one(&all, had, i++);
         substeps_copy_one(&all, now, k);
         if (i < had->n && contact_compare(&had->c[i], &now->c[k]) == 0) add_one(&all, had, i++);
     }

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-static void sum_step_add(struct face_sums *to, const struct packing *p, const struct contacts *s, int64_t i,
-                const struct impulses *sum)
+static void sum_step_add(struct face_sums *to, const struct packing *p, const struct contacts *s,
+                         int64_t i, const struct impulses *sum)
 {
     const struct contact *c = &s->c[i];
     const double *r = s->found[i].r, *moment = s->moment ? s->moment[i] : NULL;

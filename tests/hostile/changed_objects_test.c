@@ -97,8 +97,8 @@ static bool answers(hid_t file, struct failure *failure)
     if (!source_of_own(&s, file, failure) && !frame_read_open(&doc, s, failure) && doc.frames > 0 &&
         !frame_read_moment(&doc, 0, &f, failure))
         unknown_read(&unknown, s, true, failure);
-    bool good =
-        !failure->status || (failure->status == EX_DATAERR && *failure->text && !strchr(failure->text, '\n'));
+    bool good = !failure->status ||
+                (failure->status == EX_DATAERR && *failure->text && !strchr(failure->text, '\n'));
     struct failure other = { 0 };
     struct writer *w = NULL;
     if (!failure->status && f.packed) good = !packing_check(&f.packing, &other);
@@ -160,7 +160,8 @@ static void test_document(int k)
             replace(file, p, (enum change)change);
         else
             set_numbers(file, p, number[at / 2], at % 2);
-        bool good = answers(file, &failure), wrong = change == TEXT && !is_spare(p) && !failure.status;
+        bool good = answers(file, &failure),
+             wrong = change == TEXT && !is_spare(p) && !failure.status;
         H5Fclose(file);
         tried++, taken += !failure.status;
         if (good && !wrong) continue;

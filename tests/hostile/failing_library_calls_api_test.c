@@ -57,7 +57,7 @@ static int after(const struct nsd_run *r, int failed, uint32_t was, const char *
     do {                                                                                           \
         uint32_t was = state(r);                                                                   \
         int failed = (call);                                                                       \
-        if (after(r, failed, was, what, failure)) goto end;                                            \
+        if (after(r, failed, was, what, failure)) goto end;                                        \
     } while (0)
 
 /* Is it cut off, or without a key? */
@@ -117,7 +117,8 @@ static int acted(uint32_t *crc, struct failure *failure)
     if (now == 2) CALL("remove", nsd_remove(r, 1, &id));
     CALL("step", nsd_step(r, 1));
     CALL("measure", nsd_measure(r, "energy,displacement", &json));
-    if (json_lacks(json, "\"displacement\":")) return failure_set(failure, 1, "measure: half a line");
+    if (json_lacks(json, "\"displacement\":"))
+        return failure_set(failure, 1, "measure: half a line");
     CALL("names", nsd_names(r, &json));
     if (json_lacks(json, "\"named\":{")) return failure_set(failure, 1, "names: half of them");
     *crc = state(r);

@@ -5,8 +5,8 @@
 #include "contact/detect.h"
 #include "draw/images.h"
 #include "draw/page.h"
-#include "draw/svg.h"
 #include "draw/paint.h"
+#include "draw/svg.h"
 
 static struct packing packing;
 static struct contacts contacts;
@@ -19,7 +19,8 @@ static int page(uint32_t *crc, struct failure *failure)
     if (!out) return failure_set(failure, EX_SOFTWARE, "no file of the test's");
     if (!page_begin(&p, out, path, "a page", failure))
         for (int k = 0; k < 3; k++)
-            if (page_frame(&p, &packing, &contacts, failure) || page_value(&p, "a number", "m", k, failure))
+            if (page_frame(&p, &packing, &contacts, failure) ||
+                page_value(&p, "a number", "m", k, failure))
                 break;
     if (!failure->status) page_end(&p, failure);
     page_free(&p);
@@ -81,7 +82,8 @@ static int images(uint32_t *crc, struct failure *failure)
 static void make(int k)
 {
     struct failure failure = { 0 };
-    must(build(&packing, k, &failure) || detect_contacts(&contacts, &packing, 0.1, NULL, &failure), &failure);
+    must(build(&packing, k, &failure) || detect_contacts(&contacts, &packing, 0.1, NULL, &failure),
+         &failure);
     if (contacts_alloc_found(&contacts)) exit(1);
     for (int64_t i = 0; i < contacts.n; i++) contacts.found[i].r[0] = 1e-3 * (double)(i + 1);
 }

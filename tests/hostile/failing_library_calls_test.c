@@ -2,8 +2,8 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): asprintf
 #include "frames.h"
 
-#include "convert/format.h"
 #include "convert/fields_file.h"
+#include "convert/format.h"
 #include "file/frame_read.h"
 #include "measure/measures.h"
 
@@ -75,7 +75,8 @@ static int rewritten(const struct frame *f, uint32_t *crc, struct failure *failu
     const char *path = fresh(".h5");
     bool was = armed;
     armed = false;
-    if (!failure->status && !writer_open(&w, path, WRITER_STREAM, failure)) writer_frame(w, f, failure);
+    if (!failure->status && !writer_open(&w, path, WRITER_STREAM, failure))
+        writer_frame(w, f, failure);
     if (w) writer_close(w, failure);
     *crc = crc_of(path);
     armed = was;
@@ -130,16 +131,16 @@ static int problem_in_memory(bool global, uint32_t *crc, struct failure *failure
     hid_t file = H5Fcreate("memory", H5F_ACC_TRUNC, H5P_DEFAULT, access);
     H5Pclose(access);
     if (file < 0) return failure_set(failure, EX_SOFTWARE, "no file in memory");
-    if (fclib_write_problem(&problem[now], global, file, failure) || source_of_own(&s, file, failure) ||
-        fclib_read(&F, s, failure))
+    if (fclib_write_problem(&problem[now], global, file, failure) ||
+        source_of_own(&s, file, failure) || fclib_read(&F, s, failure))
         goto end;
     source_close(s), s = NULL;
     u = calloc((size_t)(F.W.n * F.W.d) + 1, sizeof *u),
     r = calloc((size_t)(F.W.n * F.W.d) + 1, sizeof *r);
     if (!u || !r) failure_set(failure, EX_SOFTWARE, "no memory of the test's");
     for (int64_t k = 0; u && r && k < F.W.n * F.W.d; k++) u[k] = r[k] = (double)k;
-    if (failure->status || fclib_store_solution(&F, file, u, r, failure) || source_of_own(&s, file, failure) ||
-        fclib_load_solution(&F, s, u, failure))
+    if (failure->status || fclib_store_solution(&F, file, u, r, failure) ||
+        source_of_own(&s, file, failure) || fclib_load_solution(&F, s, u, failure))
         goto end;
     *crc = document_crc(0, u, (size_t)(F.W.n * F.W.d) * sizeof *u);
     *crc = document_crc(*crc, F.W.q, (size_t)(F.W.n * F.W.d) * sizeof *u);
@@ -209,7 +210,8 @@ static int measure(uint32_t *crc, struct failure *failure)
     if (!out) return failure_set(failure, EX_SOFTWARE, "no file of the test's");
     with.normal = v3(1, 0, 0);
     snapshot_init(&s, &frame[now].packing, &frame[now].contacts, true, &with, failure);
-    if (!failure->status && !frame_memory_set(&first, &frame[now].packing, failure)) s.first = s.before = &first;
+    if (!failure->status && !frame_memory_set(&first, &frame[now].packing, failure))
+        s.first = s.before = &first;
     for (int k = 0; !failure->status && measure_at(k); k++) {
         struct table t = { 0 };
         if (!measure_run(&t, measure_at(k), &s, failure)) table_json(out, &t, measure_at(k)->list);

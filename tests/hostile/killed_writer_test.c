@@ -100,8 +100,9 @@ static bool holds(char *path, int64_t frames, struct failure *failure)
     struct reader *r;
     struct frame f = { 0 };
     int64_t n = 0;
-    bool good = !reader_open(&r, 1, &path, failure) && !reader_document(r, &n, failure) && n >= frames &&
-                is_whole(r, n - 1, &f, failure) && is_whole(r, frames - 1, &f, failure);
+    bool good = !reader_open(&r, 1, &path, failure) && !reader_document(r, &n, failure) &&
+                n >= frames && is_whole(r, n - 1, &f, failure) &&
+                is_whole(r, frames - 1, &f, failure);
     frame_free(&f);
     reader_close(r);
     return good;

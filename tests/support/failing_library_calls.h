@@ -213,7 +213,8 @@ static int now; /* which of them a run is about */
 __attribute__((unused)) static int build(struct packing *p, int k, struct failure *failure)
 {
     struct scene s;
-    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, failure)) return failure->status;
+    if (scene_parse(&s, scene_text[k], strlen(scene_text[k]), NULL, failure))
+        return failure->status;
     scene_build(p, &s, folder, failure);
     scene_free(&s);
     return failure->status;
@@ -262,7 +263,8 @@ __attribute__((unused)) static void each_fails(const char *name,
             bool good = run_failing(run, k, &crc, &failure);
             told += failure.status != 0;
             if (good || wrong++ > 3) continue;
-            diag("%ld: status %d, %s", k, failure.status, failure.status ? failure.text : "other bytes");
+            diag("%ld: status %d, %s", k, failure.status,
+                 failure.status ? failure.text : "other bytes");
         }
         if (total)
             ok(!wrong,

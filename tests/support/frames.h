@@ -7,8 +7,8 @@
 
 #include "failing_library_calls.h"
 
-#include "file/source.h"
 #include "file/reader.h"
+#include "file/source.h"
 #include "file/writer.h"
 #include "scene/inlet.h"
 #include "step/step.h"
@@ -60,12 +60,13 @@ static char *foreign(const char *path, const char *to)
     fwrite(bytes + DOCUMENT_USERBLOCK, 1, n - DOCUMENT_USERBLOCK, f);
     fclose(f);
     hid_t file = H5Fopen(to, H5F_ACC_RDWR, H5P_DEFAULT);
-    must(h5_write(file, "/mine/six", h5_array(H5T_NATIVE_DOUBLE, 2, shape, six), "m", &failure) ||
-             h5_write(file, "/mine/one", h5_vector(H5T_NATIVE_INT32, one, &whole), NULL, &failure) ||
-             h5_write_text(file, "/mine/text", "some words", &failure) ||
-             h5_attr(file, "/mine", "six", h5_vector(H5T_NATIVE_DOUBLE, 6, six), &failure) ||
-             h5_attr_text(file, "/mine/six", "by", "hand", &failure),
-         &failure);
+    must(
+        h5_write(file, "/mine/six", h5_array(H5T_NATIVE_DOUBLE, 2, shape, six), "m", &failure) ||
+            h5_write(file, "/mine/one", h5_vector(H5T_NATIVE_INT32, one, &whole), NULL, &failure) ||
+            h5_write_text(file, "/mine/text", "some words", &failure) ||
+            h5_attr(file, "/mine", "six", h5_vector(H5T_NATIVE_DOUBLE, 6, six), &failure) ||
+            h5_attr_text(file, "/mine/six", "by", "hand", &failure),
+        &failure);
     H5Fclose(file);
     return (char *)to;
 }
@@ -125,8 +126,8 @@ static void make_foreign(void)
     unlink(path);
     struct writer *w;
     path = (char *)fresh(".h5");
-    must(writer_open(&w, path, WRITER_STREAM, &failure) || writer_frame(w, &frame[SCENES], &failure) ||
-             writer_close(w, &failure),
+    must(writer_open(&w, path, WRITER_STREAM, &failure) ||
+             writer_frame(w, &frame[SCENES], &failure) || writer_close(w, &failure),
          &failure);
     document[SCENES] = foreign(path, fresh(".hdf5"));
 }

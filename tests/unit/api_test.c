@@ -1056,7 +1056,8 @@ int main(void)
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
-        test_failure(), test_endless(), test_errors(), test_random(), test_missing(), test_documents(), test_undone(), test_fork();
+        test_failure(), test_endless(), test_errors(), test_random(), test_missing(),
+        test_documents(), test_undone(), test_fork();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

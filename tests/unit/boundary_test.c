@@ -145,7 +145,8 @@ static void sheet(struct mesh *m, int n, double (*height)(double, double))
 {
     struct failure failure = { 0 };
     *m = (struct mesh){ 0 };
-    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &failure), &failure); // corners not exchange, as in STL
+    must(mesh_alloc(m, 6 * n * n, 2 * n * n, &failure),
+         &failure); // corners not exchange, as in STL
     for (int e = 0; e < 2 * n * n; e++)
         for (int k = 0; k < 3; k++) {
             static const int at[2][3][2] = { { { 0, 0 }, { 1, 0 }, { 1, 1 } },
@@ -192,7 +193,8 @@ static void test_minima(void)
         struct mesh m;
         struct surface s;
         sheet(&m, 8, of[k].height);
-        must(mesh_check(&m, 3, &failure) || surface_init(&s, &m, 0, m.elements, 0, &failure), &failure);
+        must(mesh_check(&m, 3, &failure) || surface_init(&s, &m, 0, m.elements, 0, &failure),
+             &failure);
         bool good = true;
         for (int i = 0; i < 200; i++) { // above inner points, edges and corners
             double y = i % 3 == 0 ? draw(0.3, 0.7) : i % 3 == 1 ? 0.5 : 0.5 + 1e-17;

@@ -1,9 +1,9 @@
 /* What must hold where the cell repeats: detection among images, and motion that knows no border. */
-#include "state/placement.h"
 #include "contact/detect.h"
-#include "step/move.h"
-#include "solve/assembly.h"
 #include "scene/scene_build.h"
+#include "solve/assembly.h"
+#include "state/placement.h"
+#include "step/move.h"
 #include "step/step.h"
 #include "tap.h"
 
@@ -184,7 +184,8 @@ static void test_bound(void)
     cloud(&p, 2, 10, 1, 1, all);
     ok(!detect_contacts(&s, &p, 0, NULL, &failure), "a body that fits into the cell is one");
     p.radius[3] *= 1.1;
-    ok(detect_contacts(&s, &p, 0, NULL, &failure) == EX_DATAERR && strstr(failure.text, "touch itself"),
+    ok(detect_contacts(&s, &p, 0, NULL, &failure) == EX_DATAERR &&
+           strstr(failure.text, "touch itself"),
        "a body larger than the cell is refused: %s", failure.text);
     contacts_free(&s), packing_free(&p);
 }
@@ -207,7 +208,8 @@ static void dense(struct packing *p, struct contacts *s, int dim, double e)
         dim == 2 ? "[[-0.5, 0], [0, -0.5]]" : "[[-0.5, 0, 0], [0, -0.5, 0], [0, 0, -0.5]]",
         dim == 2 ? 100 : 125, dim == 2 ? 0.035 : 0.07, dim == 2 ? 0.05 : 0.1,
         dim == 2 ? "" : ", \"z\": [0, 1]");
-    must(scene_parse(&scene, text, strlen(text), NULL, &failure) || scene_build(p, &scene, NULL, &failure),
+    must(scene_parse(&scene, text, strlen(text), NULL, &failure) ||
+             scene_build(p, &scene, NULL, &failure),
          &failure);
     scene_free(&scene);
     struct step_opt o = sweeps(30);

@@ -1,7 +1,7 @@
 /* Contacts that repeat one another are found in W, and the system solved without them is the same. */
 #include "solve/faces.h"
-#include "step/step.h"
 #include "solve/system.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <gsl/gsl_linalg.h>

@@ -1,7 +1,7 @@
 /* FCLIB problems: every stored one is read, what is written is what libfclib reads, and nothing
    wrong in a file is believed. */
-#include "file/source.h"
 #include "file/fclib.h"
+#include "file/source.h"
 #include "tap.h"
 
 #include </usr/include/fclib.h> // libfclib's own; ours stands before it in the path
@@ -85,7 +85,8 @@ static int read_problem(struct fclib *F, hid_t file, struct failure *failure)
 static int read_solution(const struct fclib *F, hid_t file, double *r, struct failure *failure)
 {
     struct source *s;
-    int e = source_of_own(&s, file, failure) ? failure->status : fclib_load_solution(F, s, r, failure);
+    int e =
+        source_of_own(&s, file, failure) ? failure->status : fclib_load_solution(F, s, r, failure);
     source_close(s);
     return e;
 }
@@ -140,7 +141,8 @@ static double global_residual(const struct fclib *F, const char *path, const dou
     snprintf(command, sizeof command, "cp %s %s && chmod u+w %s", path, scratch, scratch);
     if (strcmp(path, scratch) != 0 && system(command) != 0) return NAN;
     hid_t file = H5Fopen(scratch, H5F_ACC_RDWR, H5P_DEFAULT);
-    int e = fclib_store_solution(F, file, u, r, &failure) || fclib_store_solution(F, file, u, r, &failure);
+    int e = fclib_store_solution(F, file, u, r, &failure) ||
+            fclib_store_solution(F, file, u, r, &failure);
     H5Fclose(file);
     if (e) return diag("%s", failure.text), NAN;
     struct fclib_global *P = fclib_read_global(scratch);
@@ -236,7 +238,8 @@ static void put(hid_t file, const char *path, hid_t type, int64_t count, const v
     struct failure failure = { 0 };
     hsize_t n = (hsize_t)count;
     if (h5_has(file, path)) H5Ldelete(file, path, H5P_DEFAULT);
-    if (h5_write(file, path, h5_vector(type, n, x), NULL, &failure)) ok(false, "put: %s", failure.text);
+    if (h5_write(file, path, h5_vector(type, n, x), NULL, &failure))
+        ok(false, "put: %s", failure.text);
 }
 
 static void put_doubles(hid_t file, const char *path, int64_t count, const double *x)
@@ -687,8 +690,8 @@ static void test_wrong(const struct wrong *w)
     spoil(file, w);
     int e = read_problem(&F, file, &failure);
     if (!e) fclib_free(&F);
-    ok(good && e == EX_DATAERR && failure.status == e && strstr(failure.text, w->says), "%s: %s", w->what,
-       failure.text);
+    ok(good && e == EX_DATAERR && failure.status == e && strstr(failure.text, w->says), "%s: %s",
+       w->what, failure.text);
     H5Fclose(file);
 }
 
@@ -698,7 +701,8 @@ static void test_wrong_solution(void)
     struct failure failure = { 0 };
     struct fclib F = { 0 };
     double r[6] = { 1, 1, 1, 1, 1, 1 };
-    ok(!read_problem(&F, file, &failure) && !read_solution(&F, file, r, &failure) && norm(6, r) == 0,
+    ok(!read_problem(&F, file, &failure) && !read_solution(&F, file, r, &failure) &&
+           norm(6, r) == 0,
        "without a solution r = 0");
     put_doubles(file, "/solution/r", 5, r);
     ok(read_solution(&F, file, r, &failure) == EX_DATAERR, "a short one: %s", failure.text);

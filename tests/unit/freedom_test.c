@@ -1,11 +1,11 @@
 /* What must hold of loads: closed solutions, the same problem by all solvers, W by brute force, and the
    balances of energy and momentum. */
-#include "state/placement.h"
 #include "contact/detect.h"
-#include "step/move.h"
+#include "scene/scene_build.h"
 #include "solve/assembly.h"
 #include "solve/prepare.h"
-#include "scene/scene_build.h"
+#include "state/placement.h"
+#include "step/move.h"
 #include "step/step.h"
 #include "tap.h"
 
@@ -425,8 +425,9 @@ static void test_W(const struct place *where, int dim)
     struct problem problem;
     where->make(&p, dim, 0);
     must(detect_contacts(&s, &p, 0, NULL, &failure) || contacts_alloc_found(&s), &failure);
-    must(prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &failure),
-         &failure);
+    must(
+        prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &failure),
+        &failure);
     const struct delassus *W = problem.W;
     size_t size = (size_t)(s.n * dim) + 4;
     double *free_u = calloc(size, 8), *u = calloc(size, 8), *r = calloc(size, 8),
@@ -538,7 +539,8 @@ static void test_untouched(void)
     struct scene sc;
     struct step_opt o = options(&solver_auto, &local_exact, 1e-4);
     for (int k = 0; k < 2; k++) {
-        must(scene_paper(&sc, 3, 60, &failure) || scene_build(&p[k], &sc, NULL, &failure), &failure);
+        must(scene_paper(&sc, 3, 60, &failure) || scene_build(&p[k], &sc, NULL, &failure),
+             &failure);
         scene_free(&sc);
         struct wall *wall = realloc(p[k].wall, (size_t)(p[k].walls + 1) * sizeof *wall);
         must(!wall, &failure);
@@ -578,7 +580,8 @@ static void test_checks(void)
     for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
         failure = (struct failure){ 0 };
         p.wall[1].load = bad[k].load;
-        ok(packing_check(&p, &failure) == EX_DATAERR, "a bad %s is refused: %s", bad[k].what, failure.text);
+        ok(packing_check(&p, &failure) == EX_DATAERR, "a bad %s is refused: %s", bad[k].what,
+           failure.text);
     }
     packing_free(&p);
 }

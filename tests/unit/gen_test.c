@@ -45,7 +45,8 @@ static int build_file(struct packing *p, const char *path, struct failure *failu
     return failure->status;
 }
 
-static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed, struct failure *failure)
+static int build_paper(struct packing *p, int dim, int64_t n, uint64_t seed,
+                       struct failure *failure)
 {
     struct scene s;
     *failure = (struct failure){ 0 };
@@ -113,7 +114,8 @@ static void test_family(int dim, int64_t n, double lo, double hi)
     struct failure failure;
     const char *what = dim == 2 ? "discs" : "balls";
     long long k = n;
-    if (!ok(!build_paper(&p, dim, n, 0, &failure), "%lld %s are made %s", k, what, failure.text)) return;
+    if (!ok(!build_paper(&p, dim, n, 0, &failure), "%lld %s are made %s", k, what, failure.text))
+        return;
     double min = INFINITY, max = 0;
     for (int64_t i = 0; i < p.n; i++) min = fmin(min, p.radius[i]), max = fmax(max, p.radius[i]);
     ok(p.n == n && p.walls == 2 * dim - 1, "%lld %s: a floor and its sides, no lid", k, what);
@@ -232,7 +234,8 @@ static void test_bells(void)
              "{\"dt\": 1, \"bodies\": [{\"count\": 1, %s, \"radius\": {\"lognormal\":"
              "{\"median\": 3e-4, \"sigma\": 0, \"min\": 3e-4, \"max\": 3e-4}}}]}",
              box);
-    if (ok(!build(&p, text, NULL, &failure), "a lognormal law without width ends %s", failure.text)) {
+    if (ok(!build(&p, text, NULL, &failure), "a lognormal law without width ends %s",
+           failure.text)) {
         ok(p.radius[0] == 3e-4, "and gives its median");
         packing_free(&p);
     }
@@ -404,7 +407,8 @@ static void test_table(void)
         packing_free(&p);
     }
     put("flat", "0 0 1\n5 1 2");
-    if (ok(!build(&p, "{\"dt\": 1, \"dim\": 2, \"bodies\": [{\"file\": \"flat\"}]}", folder, &failure),
+    if (ok(!build(&p, "{\"dt\": 1, \"dim\": 2, \"bodies\": [{\"file\": \"flat\"}]}", folder,
+                  &failure),
            "a table in the plane %s", failure.text)) {
         ok(p.n == 2 && p.x[1].y == 1 && p.x[1].z == 0 && p.radius[1] == 2, "x y r in the plane");
         packing_free(&p);
@@ -417,7 +421,8 @@ static void test_table(void)
         diag("../shared/problems is not there: the packing of other codes was not read");
         return;
     }
-    if (!ok(!build(&p, others, "../shared/problems", &failure), "other codes' packing %s", failure.text))
+    if (!ok(!build(&p, others, "../shared/problems", &failure), "other codes' packing %s",
+            failure.text))
         return;
     ok(p.n == 500 && least_gap(&p) > 0 && least_wall_gap(&p) > 0, "its 500 balls lie in the box");
     packing_free(&p);
@@ -714,7 +719,8 @@ static void try_change(const char *path, const char *what, bool wrong)
     free(text);
     if (e) {
         int line, column;
-        if (e != EX_DATAERR || failure.status != e || sscanf(failure.text, "%d:%d: ", &line, &column) < 2 ||
+        if (e != EX_DATAERR || failure.status != e ||
+            sscanf(failure.text, "%d:%d: ", &line, &column) < 2 ||
             (wrong && !says_where(failure.text, path)))
             odd(path, what, &failure);
         return;
@@ -724,7 +730,8 @@ static void try_change(const char *path, const char *what, bool wrong)
     if (turn.builds && !scene_build(&p, &s, NULL, &failure)) {
         if (packing_check(&p, &failure)) odd(path, what, &failure); // no reader would take it
         packing_free(&p);
-    } else if (turn.builds && (failure.status != EX_DATAERR || !*failure.text || strchr(failure.text, '\n'))) {
+    } else if (turn.builds &&
+               (failure.status != EX_DATAERR || !*failure.text || strchr(failure.text, '\n'))) {
         odd(path, what, &failure);
     }
     scene_free(&s);

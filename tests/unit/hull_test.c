@@ -3,8 +3,8 @@
  * to 1e-2 of its size; bodies turned, moved and scaled. Their volumes are known. The hull must be one that a shape
  * accepts, with that volume to the noise, and the faces of the body where noise is below 1e-8.
  */
-#include "shape/solid.h"
 #include "scene/hull.h"
+#include "shape/solid.h"
 #include "tap.h"
 
 #include <string.h>

@@ -102,7 +102,9 @@ static void build(struct packing *p, const char *text)
 {
     struct failure failure = { 0 };
     struct scene sc;
-    must(scene_parse(&sc, text, strlen(text), NULL, &failure) || scene_build(p, &sc, NULL, &failure), &failure);
+    must(scene_parse(&sc, text, strlen(text), NULL, &failure) ||
+             scene_build(p, &sc, NULL, &failure),
+         &failure);
     scene_free(&sc);
     p->overlap =
         OVERLAP_GAP; // a projection ends after a few sweeps: what it leaves depends on their order

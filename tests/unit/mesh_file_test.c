@@ -17,7 +17,8 @@ int main(void)
     FILE *f = fdopen(mkstemp(name), "w");
     fputs(text, f), fclose(f);
     mesh_file_read(&mesh, &files, name, 2, &left_out, &failure);
-    ok(!failure.status && files.mesh_bytes == (int64_t)strlen(text), "bytes that are read are counted");
+    ok(!failure.status && files.mesh_bytes == (int64_t)strlen(text),
+       "bytes that are read are counted");
     ok(mesh.elements == 1 && mesh.vertex[1].x == 2,
        "a unit of the file is as long as it is said to be");
     files.mesh_bytes = MESH_BYTES_MOST - (int64_t)strlen(text) + 1;

@@ -1,7 +1,7 @@
 /* tests/unit/plan_test.c: a plan is kept where, and only where, a new one would be the same. */
 #include "contact/detect.h"
-#include "solve/plan.h"
 #include "scene/scene_build.h"
+#include "solve/plan.h"
 #include "step/step.h"
 #include "tap.h"
 
@@ -119,7 +119,8 @@ static void test_run(const char *what, int steps, bool warm, int least, int most
                                      .local = { .newton_eps = 1e-13, .newton_max = 100 } } };
     int kept = 0;
     bool equal = true;
-    must(scene_paper(&scene, 3, 20, &failure) || scene_build(&p[0], &scene, NULL, &failure), &failure);
+    must(scene_paper(&scene, 3, 20, &failure) || scene_build(&p[0], &scene, NULL, &failure),
+         &failure);
     for (int k = 0; k < (warm ? 1500 : 0); k++)
         must(step_advance(&p[0], &s[0], NULL, &o, &rep, &failure), &failure);
     must(packing_copy(&p[1], &p[0], &failure) || contacts_copy(&s[1], &s[0]), &failure);

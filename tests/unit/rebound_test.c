@@ -58,7 +58,9 @@ static void throw(struct packing * p, const struct grains *g, bool newton)
         uniform(0, 1) < 0.5 ? 0 : uniform(0, 1), newton ? "newton" : "bounded", g->shape,
         g->dim == 3 ? ", 0" : "", g->dim == 3 ? "0, " : "", g->dim == 3 ? "0, " : "",
         g->dim == 3 ? "0, " : "");
-    must(scene_parse(&sc, text, strlen(text), NULL, &failure) || scene_build(p, &sc, NULL, &failure), &failure);
+    must(scene_parse(&sc, text, strlen(text), NULL, &failure) ||
+             scene_build(p, &sc, NULL, &failure),
+         &failure);
     scene_free(&sc);
     p->overlap = OVERLAP_GAP;
     for (int i = 0; i < 2; i++) {

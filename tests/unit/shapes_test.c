@@ -1,15 +1,15 @@
 /* shapes_test.c: volumes and moments of shapes, how they turn, where they meet, what contacts give. */
-#include "state/rotation.h"
 #include "contact/detect.h"
+#include "scene/hull.h"
+#include "scene/scene_build.h"
 #include "shape/gjk.h"
 #include "shape/meet.h"
 #include "shape/solid.h"
-#include "step/move.h"
 #include "solve/apply.h"
 #include "solve/assembly.h"
 #include "solve/prepare.h"
-#include "scene/hull.h"
-#include "scene/scene_build.h"
+#include "state/rotation.h"
+#include "step/move.h"
 #include "step/step.h"
 #include "tap.h"
 
@@ -40,7 +40,8 @@ static struct packing build(const char *text)
     struct scene s;
     struct packing p;
     struct failure failure = { 0 };
-    if (scene_parse(&s, text, strlen(text), NULL, &failure) || scene_build(&p, &s, NULL, &failure)) {
+    if (scene_parse(&s, text, strlen(text), NULL, &failure) ||
+        scene_build(&p, &s, NULL, &failure)) {
         printf("Bail out! %s\n", failure.text);
         exit(1);
     }

@@ -1,12 +1,12 @@
 /* The solvers of a whole problem end where Gauss-Seidel ends, and in the same bytes on any machine. */
 #include "contact/detect.h"
-#include "solve/backend.h"
 #include "scene/scene_build.h"
 #include "solve/arc.h"
+#include "solve/backend.h"
 #include "solve/ipm.h"
 #include "solve/nlgs.h"
-#include "step/step.h"
 #include "solve/subset.h"
+#include "step/step.h"
 #include "tap.h"
 
 #include <stdlib.h>

@@ -206,7 +206,8 @@ static void test_death(int signal, int status, const char *words)
     struct source_document d;
     struct failure failure = { 0 }, after = { 0 };
     bool more = false;
-    bool begun = !source_open(&s, 1, file, &failure) && !source_next(s, &d, &more, &failure) && more;
+    bool begun =
+        !source_open(&s, 1, file, &failure) && !source_next(s, &d, &more, &failure) && more;
     if (!begun) {
         ok(false, "a document is opened: %s", failure.text);
         source_close(s);
@@ -239,8 +240,8 @@ static void test_two(void)
         struct failure failure = { 0 };
         bool more, good = true;
         for (int i = 0; i < 2; i++)
-            good &= !source_open(&s[i], 1, file, &failure) && !source_next(s[i], &d, &more, &failure) &&
-                    more && source_has(s[i], "/x");
+            good &= !source_open(&s[i], 1, file, &failure) &&
+                    !source_next(s[i], &d, &more, &failure) && more && source_has(s[i], "/x");
         source_close(s[k]);
         good &= !source_next(s[1 - k], &d, &more, &failure) && !more;
         source_close(s[1 - k]);

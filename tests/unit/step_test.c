@@ -1,7 +1,7 @@
 /* What must hold of whole steps: detection, momentum, energy, closed solutions, agreement. */
 #include "contact/detect.h"
-#include "step/move.h"
 #include "scene/scene_build.h"
+#include "step/move.h"
 #include "step/step.h"
 #include "tap.h"
 
@@ -121,7 +121,8 @@ static int searches(struct packing *p, int steps, bool leaps)
     int searched = 0;
     for (int k = 0; k < steps && searched >= 0; k++) {
         vec3 was = near.listed ? near.listed[0] : v3(NAN, 0, 0);
-        must(detect_contacts(&kept, p, 0, &near, &failure) || detect_contacts(&anew, p, 0, NULL, &failure),
+        must(detect_contacts(&kept, p, 0, &near, &failure) ||
+                 detect_contacts(&anew, p, 0, NULL, &failure),
              &failure);
         searched += memcmp(&was, &near.listed[0], sizeof was) != 0;
         if (kept.n != anew.n || (kept.n && memcmp(kept.c, anew.c, (size_t)kept.n * sizeof *kept.c)))
@@ -329,7 +330,8 @@ static void test_agreement(const struct packing *start, const char *what)
         struct report rep = { 0 };
         struct step_opt o = options(methods[m], 1e-11, 100000);
         o.solve.relax = m >= 2 ? 1.5 : 1; // no over-relaxation of what is itself a long step
-        must(packing_copy(&p, start, &failure) || step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
+        must(packing_copy(&p, start, &failure) || step_advance(&p, &s, NULL, &o, &rep, &failure),
+             &failure);
         if (m == 4) exact = p;
         double d = largest_difference(&p, &exact);
         ok(rep.converged && d < 1e-8,
@@ -363,7 +365,9 @@ static void test_threads(const struct packing *start)
             o.order = (enum order)order;
             o.solve.threads = k < 3 ? 1 << k : 1;
             o.solve.every_sweep = k == 3;
-            must(packing_copy(&p, start, &failure) || step_advance(&p, &s, NULL, &o, &rep, &failure), &failure);
+            must(packing_copy(&p, start, &failure) ||
+                     step_advance(&p, &s, NULL, &o, &rep, &failure),
+                 &failure);
             if (k == 0)
                 one = p, sweeps = rep.sweeps;
             else

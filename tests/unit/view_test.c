@@ -481,8 +481,8 @@ static void test_extremes(void)
     struct failure failure = { 0 };
     view_extend(&v, &p, &failure);
     p.dim = 3;
-    ok(!failure.status && view_extend(&v, &p, &failure) == EX_DATAERR, "discs and balls in a series: %s",
-       failure.text);
+    ok(!failure.status && view_extend(&v, &p, &failure) == EX_DATAERR,
+       "discs and balls in a series: %s", failure.text);
     packing_free(&p);
 }
 

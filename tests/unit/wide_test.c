@@ -4,8 +4,8 @@
  * are not those of balls.
  */
 #include "contact/detect.h"
-#include "solve/backend.h"
 #include "scene/scene_build.h"
+#include "solve/backend.h"
 #include "solve/scaled.h"
 #include "step/step.h"
 #include "tap.h"

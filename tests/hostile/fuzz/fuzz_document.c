@@ -5,10 +5,10 @@
  * is a finished document, an unfinished or a foreign one.
  */
 #define _GNU_SOURCE
-#include "fuzz.h"
-#include "file/stream.h"
 #include "file/reader.h"
+#include "file/stream.h"
 #include "file/writer.h"
+#include "fuzz.h"
 
 #include <fcntl.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
  * Packings of other programs as text: bytes as the readers of LAMMPS' data files and dumps and of Yade's tables get
  * them; the first byte of the input says the dimension, the frame and what repeats.
  */
-#include "fuzz.h"
 #include "convert/import_file.h"
+#include "fuzz.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,9 +3,9 @@
  * name the file has. What is read is made a grain, too, if it has few corners.
  */
 #include "fuzz.h"
-#include "shape/solid.h"
 #include "scene/mesh_file.h"
 #include "scene/surface_parts.h"
+#include "shape/solid.h"
 
 #include <stdlib.h>
 #include <string.h>

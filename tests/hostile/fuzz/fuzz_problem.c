@@ -3,9 +3,9 @@
  * read again, so that what is fuzzed is not HDF5 but our checks of matrices and vectors. A problem
  * that passes them is solved for some sweeps.
  */
-#include "fuzz.h"
-#include "file/source.h"
 #include "file/fclib.h"
+#include "file/source.h"
+#include "fuzz.h"
 #include "step/step.h"
 
 #include <stdlib.h>

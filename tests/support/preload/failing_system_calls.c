@@ -36,20 +36,22 @@ static const struct {
     { "read", { SYS_read, SYS_pread64, SYS_readv, SYS_preadv, -1 } },
     { "write", { SYS_write, SYS_pwrite64, SYS_writev, SYS_pwritev, -1 } },
     { "sync", { SYS_fsync, SYS_fdatasync, -1 } },
-    { "rename", { SYS_renameat, SYS_renameat2,
+    { "rename",
+      { SYS_renameat, SYS_renameat2,
 #ifdef SYS_rename
-                  SYS_rename,
+        SYS_rename,
 #endif
-                  -1 } },
+        -1 } },
     { "close", { SYS_close, -1 } },
     { "resize", { SYS_ftruncate, -1 } },
     { "reserve", { SYS_fallocate, -1 } },
     { "message", { SYS_sendto, SYS_recvfrom, SYS_wait4, -1 } },
-    { "process", { SYS_clone,
+    { "process",
+      { SYS_clone,
 #ifdef SYS_fork
-                   SYS_fork,
+        SYS_fork,
 #endif
-                   -1 } },
+        -1 } },
     { "socket", { SYS_socketpair, -1 } },
 };
 
