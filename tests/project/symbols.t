@@ -60,12 +60,12 @@ is "and the Python module knows them" "$(in_python)" ""
 # ---- what runs share: each has its reason ----
 
 # team, busy, judgement: the team of the process, which one thread has at a time. list, owner, running and their locks: files and
-# readers, locked. hdf5, printer, printer_data: libhdf5, locked. guest, chosen, once: set once. limit, options: the tools' own, which
+# readers, locked. hdf5, printer, printer_data: libhdf5, locked. embedded, chosen, once: set once. limit, options: the tools' own, which
 # the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together, held: a thread's own. watched: set once.
 # writers: those that write, with the lock of libhdf5.
 cat >"$tmp/known" <<'EOT'
 busy
-guest
+embedded
 hdf5
 held
 judgement
