@@ -495,11 +495,10 @@ static void set_made(json_t *of, double began)
 
 static void set_times(json_t *j, const struct packing *p)
 {
-    size_t k;
-    json_t *pair;
+    const json_t *pairs = json_object_get(j, "pairs");
     double began = json_number_value(json_object_get(j, "time"));
     set_made(j, began);
-    json_array_foreach(json_object_get(j, "pairs"), k, pair) set_made(pair, began);
+    for (size_t k = 0; k < json_array_size(pairs); k++) set_made(json_array_get(pairs, k), began);
     set_passages(json_object_get(j, "pour"), "poured", p->poured, p->pours, began);
     set_passages(json_object_get(j, "remove"), "removed", p->removed, p->removals, began);
     json_object_set_new(j, "time", json_real(p->t));

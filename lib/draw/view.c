@@ -116,7 +116,8 @@ static int follow_first(struct view *v, const struct packing *p, struct failure 
 static int extend_window(struct view *v, const struct packing *p, struct failure *failure)
 {
     struct extent r;
-    if (!(v->strays ? region_of : region_near)(&r, p))
+    const bool seen = v->strays ? region_of(&r, p) : region_near(&r, p);
+    if (!seen)
         return failure_set(failure, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
     for (int64_t i = 0; i < p->n; i++)

@@ -13,8 +13,7 @@ mkdir "$work/scenes"
 for s in scenes/*.json; do cp "$s" "$work/scenes/"; done
 for c in cookbook/*/; do
     mkdir -p "$work/cookbook/$(basename "$c")"
-    find "$c" -maxdepth 1 -name '*.json' -o -maxdepth 1 -name '*.obj' -o -maxdepth 1 -name '*.data' -o -maxdepth 1 -name '*.stl' |
-        xargs -r cp -t "$work/cookbook/$(basename "$c")"
+    find "$c" -maxdepth 1 '(' -name '*.json' -o -name '*.obj' -o -name '*.data' -o -name '*.stl' ')' -exec cp -t "$work/cookbook/$(basename "$c")" {} +
 done
 
 jobs=()
@@ -31,7 +30,7 @@ for s in "$top"/scenes/*.json; do
 done
 # Each recipe of the cookbook that is one scene
 for c in "$top"/cookbook/*/scene.json; do
-    [ -z "$(grep -l blade.stl "$c")" ] || continue # which run.sh writes
+    ! grep -q blade.stl "$c" || continue # which run.sh writes
     n=$(basename "$(dirname "$c")")
     frozen "recipe-$n" "cd cookbook/$n; nsd-gen scene.json >in.h5; cat in.h5; nsd-step -n 4 --contacts \$(sums scene.json) in.h5 -o out.h5; cat out.h5; nsd-info -p -l out.h5; nsd-info --scene out.h5"
 done
@@ -78,4 +77,5 @@ one() # NAME<TAB>COMMAND
 }
 export -f one sums
 export work
+# shellcheck disable=SC2016 # $1 is that of the inner bash
 printf '%s\0' "${jobs[@]}" | xargs -0 -P 2 -I{} bash -c 'one "$1"' _ {} | sort
