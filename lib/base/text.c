@@ -30,7 +30,7 @@ char *text_close(struct text *t, FILE *stream, size_t *size)
     bool bad = !stream || ferror(stream);
     if (stream && fclose(stream)) bad = true;
     if (!bad && !t->bytes) text_put(t, "", 0);
-    if (bad || t->lost) return free(t->bytes), NULL;
+    if (bad || t->lost || !t->bytes) return free(t->bytes), NULL;
     t->bytes[t->size] = 0;
     *size = t->size;
     return t->bytes;

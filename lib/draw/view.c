@@ -117,8 +117,7 @@ static int extend_window(struct view *v, const struct packing *p, struct failure
 {
     struct extent r;
     const bool seen = v->strays ? region_of(&r, p) : region_near(&r, p);
-    if (!seen)
-        return failure_set(failure, EX_DATAERR, "neither bodies nor walls: nothing to see");
+    if (!seen) return failure_set(failure, EX_DATAERR, "neither bodies nor walls: nothing to see");
     v->region = v->started ? region_join(v->region, r) : r;
     for (int64_t i = 0; i < p->n; i++)
         if (is_in_region(v, p, i)) window_add(&v->window, &v->camera, p->x[i], p->radius[i]);

@@ -52,7 +52,7 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct fai
     // boundary w at [w], fixed bodies behind them
     struct boundaries_push *push = calloc((size_t)p->walls + 1, sizeof *push);
     if (!push) return failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
-    for (int64_t i = 0; i < s->s->n; i++) {
+    for (int64_t i = 0; s->s->found && i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
             boundaries_add(&push[-1 - c->a], s, i, -1);
@@ -116,7 +116,7 @@ static int boundaries_names_rows(struct table *t, const struct snapshot *s, stru
     if (failure->status || face_of_init(&faces, p, true, failure)) goto end;
     if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;
-    for (int64_t i = 0; i < s->s->n && s->s->c[i].a < 0; i++) {
+    for (int64_t i = 0; s->s->found && i < s->s->n && s->s->c[i].a < 0; i++) {
         const struct contact *c = &s->s->c[i];
         int32_t face = face_of_contact(&faces, p, c, 0);
         for (int32_t k = 0; k < p->names.n; k++)

@@ -125,7 +125,7 @@ int nsd_from_scene(struct nsd_run **run, const char *text, const char *folder)
     if (!text) return failure_set(failure, NSD_USAGE, "there is no text of a scene");
     struct nsd_run *r = new_run(failure);
     if (r) build(r, text, strlen(text), NULL, folder, failure);
-    return run_done(run, r, failure);
+    return run_done(run, r, failure); // NOLINT(clang-analyzer-unix.Malloc): nsd_close()
 }
 
 int nsd_from_scene_file(struct nsd_run **run, const char *path)
@@ -175,9 +175,9 @@ int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
                     const struct nsd_bodies *bodies)
 {
     struct failure *failure = place_for(run);
-    struct nsd_run *r;
+    struct nsd_run *r = NULL;
     if (!failure) return NSD_USAGE;
-    if (nsd_from_scene(&r, scene, folder)) return failure->status;
+    if (nsd_from_scene(&r, scene, folder) || !r) return failure->status;
     if (r->f.packing.n)
         failure_set(failure, NSD_DATA,
                     "the scene has bodies of its own: arrays are for one without");

@@ -386,7 +386,7 @@ static double fall_of_bodies(const struct packing *p, vec3 up)
         column_add(&column[at[0] * n[1] + at[1]], &ground, i, rests && rests[i]);
     }
     for (int k = 0; k < n[0] * n[1]; k++) {
-        double settled = column[k].volume / (SETTLED[p->dim] * width[0] * width[1]);
+        double settled = column[k].volume / (SETTLED[p->dim == 2 ? 2 : 3] * width[0] * width[1]);
         double bottom = dmax(column[k].floor, column[k].bottom);
         if (settled > 0) most = dmax(most, column[k].top - bottom - settled);
     }

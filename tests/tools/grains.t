@@ -349,9 +349,9 @@ like "grains that do not go in: the search ends, with what is free" "$(cat start
 for body in '{"random": {"count": 2147483647}, "radius": 0.1, '"$box3"'}' '{"count": 2147483647, "radius": 0.1, "box": {"x": [0, 1], "y": [0, 1], "z": [0, null]}}' \
     '{"count": 2000000000, "cells": "own", "radius": 1e-6, "box": {"x": [0, 1], "y": [0, 1], "z": [0, 1]}}'; do
     jq -n --argjson b "$body" '{dt: 1e-4, bodies: [$b]}' >many.json
-    few() { (ulimit -v 3000000 && timeout 20 nsd-gen many.json); }
+    few() { ({ [ -n "$thin" ] || ulimit -v 3000000; } && timeout 20 nsd-gen many.json); } # sanitizers map terabytes
     refuses 65 "two thousand million bodies, before one is made" few
-    like "with what they take" "$(cat "$tmp/err")" 'bodies take .* GB of memory and more, and this process has 3.07 GB: a smaller count'
+    like "with what they take" "$(cat "$tmp/err")" 'bodies take .* GB of memory and more, and this process has [0-9.]* GB: a smaller count'
 done
 for body in '{"count": 1, "radius": 1e308, "box": {"x": [-1e308, 1e308], "y": [0, 1], "z": [0, null]}}' \
     '{"random": {"phi": 0.5}, "radius": 1e90, "box": {"x": [0, 1e307], "y": [0, 1e307], "z": [0, 1e307]}}'; do
