@@ -256,7 +256,7 @@ else
     skip "at a terminal, FILE is appended to" "no python3"
 fi
 cp base.h5 kept.h5
-refuses 65 "what is damaged is refused" eval 'tail -c +513 base.h5 | head -c 3000 >broken.h5; cp broken.h5 broken.was; nsd-step -i broken.h5'
+refuses 65 "what is damaged is refused" eval 'head -c 3512 base.h5 | tail -c +513 >broken.h5; cp broken.h5 broken.was; nsd-step -i broken.h5'
 refuses 64 "one file at a time" nsd-step -i base.h5 kept.h5
 refuses 64 "a time-step rule of its own is refused" nsd-step -i --theta 0.7 kept.h5
 ok "and the file is as it was" cmp base.h5 kept.h5
