@@ -78,7 +78,7 @@ unnamed()
     local names
     names=$(tr '\n' ' ' <README.md | grep -oiE '`make check` skips [^.]*[.]')
     sed 's/.*: //' "$skipped" | sort -u | while IFS= read -r reason; do
-        name=$(sed -E 's/^(there is )?no //; s/[ ,:(].*//' <<<"$reason")
+        name=$(sed -E 's/^(there is )?no //; s/[ ,:(.].*//' <<<"$reason")
         grep -qiwF -- "$name" <<<"$names" || echo "$reason"
     done
 }
