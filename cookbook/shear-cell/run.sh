@@ -1,11 +1,9 @@
 #!/usr/bin/env bash
 set -euo pipefail
 nsd-gen scene.json | nsd-step --overlap gap --until "${UNTIL:-0.15}" --every 8 --contacts -o load.h5
-# the lid held at the median of its heights since the middle of the run: no load, the same velocity along x
-read -r step height < <(nsd-info -w load.h5 |
-    jq -rs 'map(select(.wall == 1)) | .[length / 2 | floor:] | sort_by(.point[1]) | .[length / 2 | floor] | "\(.step) \(.point[1])"')
-nsd-cat --steps "$step:$step" load.h5 >median.h5
-nsd-info --scene median.h5 | jq --argjson h "$height" '.walls[1] = { point: [0, $h], normal: [0, -1], velocity: [0.2, 0] }' |
+# the lid held where it is: no load, the same velocity along x
+nsd-info --last -w load.h5 | jq -s '.[1].point[1]' >height
+nsd-info --scene load.h5 | jq --argjson h "$(cat height)" '.walls[1] = { point: [0, $h], normal: [0, -1], velocity: [0.2, 0] }' |
     nsd-gen - | nsd-step --overlap gap -n 1500 --every 40 --contacts -o volume.h5
 nsd-view --network load.h5 >shear-cell.png
 for n in load volume; do
