@@ -4,7 +4,7 @@
 
 cd "$tmp"
 nsd-gen 60 >start.h5
-long=(env --default-signal=HUP,INT,QUIT nsd-step -n 100000000 --every 100000000)
+long=(env '--default-signal=HUP,INT,QUIT' nsd-step -n 100000000 --every 100000000)
 steps_of() { nsd-info "$1" | jq -c -s 'map(select(.step != null).step)'; }
 last() { nsd-info -p --last "$1"; }
 until_there() { for ((w = 0; w < 1000; w++)); do [ ! -e "$1" ] || return 0; sleep 0.01; done; }
