@@ -7,7 +7,7 @@ tap=$PWD/build/tap
 rm -rf "$tap"
 mkdir -p "$tap"
 status=0
-PERL_TEST_HARNESS_DUMP_TAP=$tap prove -j2 --timer "$@" | tee "$tap/log" || status=$?
+PERL_TEST_HARNESS_DUMP_TAP=$tap prove -j2 --timer --exec tests/support/bounded "$@" | tee "$tap/log" || status=$?
 
 echo
 echo "The ten slowest, in seconds:"
