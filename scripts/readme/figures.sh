@@ -37,14 +37,23 @@ for f in docs/peers/*.json; do
         ($v.nsd.runs[0].cpu / $v.nsd.runs[0].span) / ($v["liggghts-soft"].runs[0].cpu / $v["liggghts-soft"].runs[0].span)] |
         "peers_jobs\t\(length)", "peers_less\t\(map(select(. < 0.995)) | length)", "peers_least\t\(min * 100 | round / 100)",
         "peers_most\t\(max * 10 | round / 10)", "peers_median\t\(sort | (.[length / 2 | floor] + .[(length - 1) / 2 | floor]) / 2 * 100 | round / 100)"' "$f"
+    jq -r '[.jobs[].variants | select(.nsd and ."liggghts-soft")] |
+        def cost: .runs[0] | .cpu / .span;
+        ([.[].nsd.runs[0].overlap // empty]) as $deep |
+        ([.[] | select(."nsd-auto".runs[0].steps > 10) | (."nsd-auto" | cost) / (."liggghts-soft" | cost)]) as $auto |
+        "peers_deep\t\($deep | map(select(. > 0.1)) | length)", "peers_deepest\t\($deep | max * 10 | round / 10)",
+        "peers_auto_least\t\($auto | min * 100 | round / 100)", "peers_auto_most\t\($auto | max * 10 | round / 10)"' "$f"
 done | sort -u
 
 jq -rs 'map(.rows[]) | "gallery_rows\t\(length)", "gallery_within\t\(map(select(.holds)) | length)",
-    "gallery_differ\t\(map(select(.holds | not)) | length)"' docs/gallery/*/result.json
+    "gallery_differ\t\(map(select(.holds | not)) | length)",
+    "gallery_read\t\(map(select(.read)) | length)", "gallery_unread\t\(map(select(.read | not)) | length)",
+    "gallery_identities\t\(map(select(.source == "momentum")) | length)",
+    "gallery_one_sided\t\(map(select(.low == null or .high == null)) | length)"' docs/gallery/*/result.json
 printf 'gallery_small\t%s\n' "$(jq -rs 'map(select(.quick) | .name) | if length > 0 then join(", ") else "none" end' docs/gallery/*/result.json)"
 printf 'gallery_experiments\t%s\n' "$(find docs/gallery -name result.json | wc -l)"
 
-# the ball that slides, then rolls: 5/7 of its speed
+# the ball or disc that slides, then rolls
 awk -F'\t' 'NR > 1 { n++; if ($5 < 1e-10) good++ } END { print "closed_runs\t" n; print "closed_good\t" good }' docs/paper/tables/closed.tsv
 
 # one update of a contact, and memory
