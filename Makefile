@@ -100,7 +100,7 @@ RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/mpi/*.c) l
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
-all: $(TOOLS) $(MPI) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
+all: $(TOOLS) $(MPI) $B/nsd-fit $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
@@ -149,6 +149,11 @@ $B/tools/%.o: tools/%.c Makefile
 	@mkdir -p $(@D)
 	$(call Q,CC,$<)$(CC) $(CPPFLAGS) $(NSD_CFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
+# The tool that is Python; the module is beside it: in python/, or installed.
+$B/nsd-fit: tools/nsd-fit Makefile
+	@mkdir -p $B
+	@sed 's/@VERSION@/$(VERSION)/; s,"../python","$(CURDIR)/python",' $< >$@ && chmod 755 $@
+
 $B/%: $B/tools/%.o $B/lib/run/main.o $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(NSD_LDLIBS)
 
@@ -161,7 +166,7 @@ $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
 $B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/run/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
-tests: $(TOOLS) $(MPI) $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
+tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -178,7 +183,7 @@ REST  := $(patsubst %,tests/%.t,project/frozen project/lint whole/paper project/
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := tests/project/frozen.t $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/english project/readme project/symbols tools/examples tools/campaign whole/rest)
+PLAIN := tests/project/frozen.t $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -410,7 +415,7 @@ install-tools: all completions
 	install -d $(TO)/bin $(addprefix $(TO)/share/man/man,1 5 7) $(TO)/share/nsd/scenes/paper \
 	    $(TO)/share/bash-completion/completions $(TO)/share/zsh/site-functions
 	install -m 755 $(TOOLS) $(MPI) $(TO)/bin
-	for m in $(filter-out $(PYTHON_MANUAL) %.3,$(MANUALS)); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
+	for m in $(filter-out $(PYTHON_MANUALS) %.3,$(MANUALS)); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 	install -m 644 scenes/*.json $(TO)/share/nsd/scenes
 	install -m 644 scenes/paper/*.json $(TO)/share/nsd/scenes/paper
 	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
@@ -441,14 +446,16 @@ install-dev: $B/libnsd.a
 
 # Where python3 looks, where PREFIX is /usr; elsewhere PYTHONPATH names it.
 PYTHONDIR     ?= $(PREFIX)/lib/python3/dist-packages
-PYTHON_MANUAL := man/nsd-python.7
+PYTHON_MANUALS := man/nsd-python.7 man/nsd-fit.1
 install-python:
-	install -d $(DESTDIR)$(PYTHONDIR)/nsd $(TO)/share/man/man7
+	install -d $(DESTDIR)$(PYTHONDIR)/nsd/fit $(addprefix $(TO)/share/man/man,1 7) $(TO)/bin
 	install -m 644 python/nsd/*.py python/nsd/py.typed $(DESTDIR)$(PYTHONDIR)/nsd
-	install -m 644 $(PYTHON_MANUAL) $(TO)/share/man/man7
+	install -m 644 python/nsd/fit/*.py $(DESTDIR)$(PYTHONDIR)/nsd/fit
+	sed 's/@VERSION@/$(VERSION)/; s,"../python"\, ,,' tools/nsd-fit >$(TO)/bin/nsd-fit && chmod 755 $(TO)/bin/nsd-fit
+	for m in $(PYTHON_MANUALS); do install -m 644 $$m $(TO)/share/man/man$${m##*.}; done
 
 uninstall:
-	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi
+	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi nsd-fit
 	for m in $(MANUALS); do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
 	for t in $(notdir $(TOOLS)); do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \

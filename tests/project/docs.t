@@ -56,7 +56,7 @@ ok "and a heading that is missing" broken '^\.Sh EXIT STATUS' '.Sh STATUS'
 
 # ---- options, tools, pages ----
 
-tools() { for t in tools/*.c; do basename "$t" .c; done; }
+tools() { for t in tools/nsd-*; do basename "$t" .c; done; }
 of_help() { "$1" --help | sed -n '/^Examples/q; s/^ *\(-., \)\{0,1\}\(--[a-z0-9-]*\).*/\2/p' | sort -u; }
 of_manual() { sed -n '/^\.Sh OPTIONS/,/^\.Sh EXIT/s/^\.It //p' "$1" | grep '^Fl' | grep -oE ' -[a-z0-9][a-z0-9-]+' | sed 's/^ /-/' | sort -u; }
 of_synopsis() { sed -n '/^\.Sh SYNOPSIS/,/^\.Sh DESCRIPTION/p' "$1" | grep -oE 'Fl -[a-z0-9][a-z0-9-]+' | sed 's/^Fl /-/' | sort -u; }

@@ -1,0 +1,125 @@
+"""What the evaluations say of the parameters.
+
+Each measure is a Gaussian process of the parameters, scaled to 0 .. 1, with the scatter of the seeds as noise (scikit-learn). With
+the targets t and their standard errors e the parameters have, uniform in their ranges, the density
+
+    p ~ prod over the targets of  exp(-(f - t)^2 / (2 v)) / sqrt(v),    v = e^2 + s^2,
+
+where f and s are the mean and the standard deviation of the process. It is sampled at Sobol points of a box that shrinks to where
+the density is.
+"""
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from .problem import Problem
+
+SAMPLES = 1 << 13
+BOXES = 8  # at most
+NEGLIGIBLE = 15.0  # the logarithm of a density below the largest one
+
+
+class Surrogate:
+    def __init__(self, problem: Problem, x: np.ndarray, measures: np.ndarray):
+        """x [n][d] from 0 to 1, measures [n][targets]"""
+        from sklearn.gaussian_process import GaussianProcessRegressor
+        from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
+        self.targets = problem.targets
+        self.process, self.scatter = [], []
+        for k in range(len(problem.targets)):
+            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * RBF(np.full(x.shape[1], 0.5), (0.05, 20.0))
+                      + WhiteKernel(0.1, (1e-8, 1.0)))
+            y, size = measures[:, k], measures[:, k].std() or 1.0
+            process = GaussianProcessRegressor(kernel, n_restarts_optimizer=3, random_state=0)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                process.fit(x, (y - y.mean()) / size)
+            noise = process.kernel_.k2.noise_level
+            self.process.append((process, y.mean(), size, noise))
+            self.scatter.append(float(np.sqrt(noise) * size))
+
+    def error_of(self, k: int) -> float:
+        """Of target k: its own standard error, or where it has none, the scatter of the seeds."""
+        return self.targets[k].error or max(self.scatter[k], 1e-12 * abs(self.targets[k].value), 1e-300)
+
+    def predict(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Means and standard deviations of the measures, without the scatter of the seeds [n][targets]"""
+        mean, deviation = np.empty((len(x), len(self.targets))), np.empty((len(x), len(self.targets)))
+        for k, (process, y, size, noise) in enumerate(self.process):
+            m, s = process.predict(x, return_std=True)
+            mean[:, k], deviation[:, k] = y + size * m, size * np.sqrt(np.maximum(s * s - noise, 0))
+        return mean, deviation
+
+    def misfit(self, measures: np.ndarray) -> np.ndarray:
+        """Sum over the targets of ((measure - value)/error)^2"""
+        return sum(((measures[:, k] - t.value) / self.error_of(k)) ** 2 for k, t in enumerate(self.targets))
+
+    def log_density(self, x: np.ndarray) -> np.ndarray:
+        mean, deviation = self.predict(x)
+        total = np.zeros(len(x))
+        for k, t in enumerate(self.targets):
+            v = self.error_of(k) ** 2 + deviation[:, k] ** 2
+            total -= 0.5 * ((mean[:, k] - t.value) ** 2 / v + np.log(v))
+        return total
+
+
+@dataclass
+class Posterior:
+    x: np.ndarray  # [n][d] from 0 to 1
+    weight: np.ndarray  # [n], sum 1
+    misfit: np.ndarray  # [n], of the means
+    spread: np.ndarray  # [n], of the densities' deviations over the errors, the largest of the targets
+
+    def quantile(self, j: int, share: float) -> float:
+        order = np.argsort(self.x[:, j])
+        sums = np.cumsum(self.weight[order])
+        return float(np.interp(share, sums - 0.5 * self.weight[order], self.x[order, j]))
+
+    def interval(self, j: int) -> tuple[float, float]:
+        """That has 90 %."""
+        return self.quantile(j, 0.05), self.quantile(j, 0.95)
+
+    def best(self) -> np.ndarray:
+        return self.x[np.argmin(self.misfit)]
+
+
+def sobol(d: int, n: int, seed: int) -> np.ndarray:
+    from scipy.stats import qmc
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return qmc.Sobol(d, seed=seed).random(n)
+
+
+def posterior(model: Surrogate, d: int) -> Posterior:
+    low, high = np.zeros(d), np.ones(d)
+    for k in range(BOXES):
+        x = low + (high - low) * sobol(d, SAMPLES, k)
+        log = model.log_density(x)
+        near = x[log > log.max() - NEGLIGIBLE]
+        margin = 0.1 * (near.max(0) - near.min(0)) + 1e-4
+        inner_low, inner_high = np.maximum(near.min(0) - margin, 0), np.minimum(near.max(0) + margin, 1)
+        if np.prod(inner_high - inner_low) > 0.7 * np.prod(high - low):
+            break
+        low, high = inner_low, inner_high
+    weight = np.exp(log - log.max())
+    mean, deviation = model.predict(x)
+    error = np.array([model.error_of(k) for k in range(len(model.targets))])
+    return Posterior(x, weight / weight.sum(), model.misfit(mean), (deviation / error).max(1))
+
+
+def next_points(p: Posterior, known: np.ndarray, n: int, seed: int) -> np.ndarray:
+    """Points to evaluate: of a sample of the density those that are far from what is known and from each other, by the widths of
+    the density."""
+    random = np.random.default_rng(seed)
+    candidates = p.x[random.choice(len(p.x), size=16 * n, p=p.weight)]
+    width = np.array([max(b - a, 1e-6) for a, b in map(p.interval, range(p.x.shape[1]))])
+    chosen: list[np.ndarray] = []
+    distance = np.min(np.linalg.norm((candidates[:, None, :] - known[None, :, :]) / width, axis=2), axis=1)
+    for _ in range(n):
+        k = int(np.argmax(distance))
+        chosen.append(candidates[k])
+        distance = np.minimum(distance, np.linalg.norm((candidates - candidates[k]) / width, axis=1))
+    return np.array(chosen)
