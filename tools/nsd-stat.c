@@ -3,6 +3,8 @@
 #include "convert/fields_file.h"
 #include "file/reader.h"
 #include "measure/measures.h"
+#include "measure/photo.h"
+#include "measure/silhouette.h"
 #include "run/cli.h"
 #include "run/tool_filter.h"
 
@@ -13,6 +15,7 @@
 #include <string.h>
 
 static const char *names, *only, *box, *layers, *point, *plane, *tracer, *steps, *fields_to;
+static const char *view, *window, *photo, *silhouette_to;
 static bool list, tsv, last, grains;
 static double width, spacing;
 static struct asked asked = ASKED_DEFAULT;
@@ -52,6 +55,17 @@ static const struct cli_option own[] = {
       .help = "measure mixing of this kind, or of large bodies [kind of the first, or large]" },
     { CLI_ABOVE, 0, "sample", &asked.sample, "M",
       .help = "set the edge of the samples of mixing, m [3 mean diameters]", .max = 1e300 },
+    { CLI_TEXT, 0, "view", &view, "AXIS",
+      .help = "project silhouettes along x, y or z [y, 2D: z]" },
+    { CLI_TEXT, 0, "window", &window, "X0,X1,Z0,Z1",
+      .help = "set the edges of their picture: left, right, lower, upper, m" },
+    { CLI_INT, 0, "pixels", &asked.pixels, "N",
+      .help = "set their pixels across [400, those of the photograph]", .min = 1,
+      .max = PHOTO_MOST },
+    { CLI_TEXT, 0, "photo", &photo, "FILE.png",
+      .help = "compare silhouettes with a photograph, dark on a bright ground" },
+    { CLI_TEXT, 0, "silhouette", &silhouette_to, "FILE.png",
+      .help = "also write the silhouette of all frames, and what differs, as a picture" },
     { CLI_TEXT, 'f', "fields", &fields_to, "FILE",
       .help = "also write coarse-grained fields: FILE.h5 or 'f%05d.vti'" },
     { CLI_ABOVE, 0, "width", &width, "M",
@@ -104,6 +118,13 @@ static void choose_all(void)
         die_usage("--tsv: a table has one measure of many rows, or many of one row");
 }
 
+static void choose_silhouette(void)
+{
+    if (!window) die_usage("--silhouette: the picture has no edges: give --window");
+    if (tsv) die_usage("--silhouette and --tsv exclude each other");
+    choose(measure_named("silhouette", 10));
+}
+
 static void parse_one(const char *name, const char *text)
 {
     struct failure failure = { 0 };
@@ -115,6 +136,7 @@ static void parse(void)
     parse_one("layers", layers), parse_one("point", point);
     parse_one("plane", plane), parse_one("box", box), parse_one("only", only);
     parse_one("tracer", tracer);
+    parse_one("view", view), parse_one("window", window), parse_one("photo", photo);
 }
 
 /* ---- output ---- */
@@ -301,6 +323,8 @@ static void run(struct reader *in)
     }
     progress_end();
     if (coarse.file && !failure.status) fields_file_close(coarse.file, &failure);
+    if (silhouette_to && before.cover && !failure.status)
+        silhouette_write(silhouette_to, &before, &asked, &failure);
     if (failure.status) die_why(&failure);
     if (!k) die(EX_DATAERR, "%s: no such frame", reader_where(in));
     say_missed(k);
@@ -319,12 +343,16 @@ int tool_main(int argc, char **argv)
     }
     parse();
     choose_all();
+    if (silhouette_to) choose_silhouette();
     if (fields_to && !ends(fields_to, ".h5") && !ends(fields_to, ".vti"))
         die_usage("--fields: '%s' does not end in .h5 or .vti", fields_to);
     if (fields_to && ends(fields_to, ".vti")) number_in(fields_to);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (fields_to && reader_reads(argc, argv, fields_to))
         die_usage("%s: is also the input", fields_to);
+    if (silhouette_to &&
+        (reader_reads(argc, argv, silhouette_to) || (photo && !strcmp(photo, silhouette_to))))
+        die_usage("%s: is also the input", silhouette_to);
     run(in);
     reader_close(in);
     finish_stdout();

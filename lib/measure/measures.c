@@ -2,6 +2,7 @@
 
 #include "base/number.h"
 #include "measure/follow.h"
+#include "measure/photo.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -39,6 +40,7 @@ static const struct measure *const measures[] = {
     &measure_departures,
     &measure_lifetimes,
     &measure_separations,
+    &measure_silhouette,
     NULL,
 };
 
@@ -233,6 +235,49 @@ static int set_tracer(struct asked *a, const char *name, const char *text, struc
     return 0;
 }
 
+static int set_view(struct asked *a, const char *name, const char *text, struct failure *failure)
+{
+    static const char axes[] = "xyz";
+    if (strlen(text) != 1 || !strchr(axes, *text))
+        return failure_set(failure, EX_USAGE, "--%s: '%s' is not x, y or z", name, text);
+    a->view = (int)(strchr(axes, *text) - axes);
+    return 0;
+}
+
+static int set_window(struct asked *a, const char *name, const char *text, struct failure *failure)
+{
+    double w[4];
+    if (!measures_numbers(name, text, w, 4, 4, failure)) return failure->status;
+    const double ratio = (w[1] - w[0]) / (w[3] - w[2]);
+    if (!(w[0] < w[1] && w[2] < w[3] && ratio > 1e-3 && ratio < 1e3))
+        return failure_set(failure, EX_USAGE, "--%s: '%s' is not LEFT,RIGHT,LOWER,UPPER", name,
+                           text);
+    memcpy(a->window, w, sizeof w);
+    return 0;
+}
+
+static int set_pixels(struct asked *a, const char *name, const char *text, struct failure *failure)
+{
+    double x = 0;
+    if (measures_set_number(&x, name, text, failure)) return failure->status;
+    if (x != floor(x) || x > PHOTO_MOST)
+        return failure_set(failure, EX_USAGE, "--%s: %s must be a whole number, 1 to %d", name,
+                           text, PHOTO_MOST);
+    a->pixels = (int64_t)x;
+    return 0;
+}
+
+static int set_photo(struct asked *a, const char *name, const char *text, struct failure *failure)
+{
+    struct photo photo;
+    struct failure why = { 0 };
+    if (photo_read(&photo, text, &why))
+        return failure_set(failure, EX_USAGE, "--%s: %.300s", name, why.text);
+    free(a->photo.grey);
+    a->photo = photo;
+    return 0;
+}
+
 static const struct {
     const char *name;
     int (*set)(struct asked *, const char *name, const char *text, struct failure *);
@@ -240,7 +285,8 @@ static const struct {
     { "box", measures_set_box },  { "layers", set_layers }, { "point", set_point },
     { "plane", set_plane },       { "radius", set_radius }, { "bins", set_bins },
     { "distance", set_distance }, { "only", set_only },     { "wear", set_wear },
-    { "sample", set_sample },     { "tracer", set_tracer },
+    { "sample", set_sample },     { "tracer", set_tracer }, { "view", set_view },
+    { "window", set_window },     { "pixels", set_pixels }, { "photo", set_photo },
 };
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 
@@ -300,6 +346,11 @@ int measured_keep(const struct measure *const *chosen, const struct snapshot *s,
     for (int k = 0; chosen[k]; k++) pairs = pairs || chosen[k]->needs == NEEDS_CONTACTS_BEFORE;
     if (!s->first && frame_memory_set(first, s->p, failure)) return failure->status;
     if (follow(&now, s, pairs, failure)) return failure->status;
+    for (int k = 0; chosen[k]; k++)
+        if (chosen[k]->keep && chosen[k]->keep(&now, s, failure)) {
+            frame_memory_free(&now);
+            return failure->status;
+        }
     frame_memory_free(before);
     *before = now;
     return 0;

@@ -35,6 +35,8 @@ struct measure {
     enum needs needs;
     enum keeps_to keeps_to;
     bool remembers; /* it looks at frames before this one, where there are any */
+    /* Adds to what is remembered of a frame what only this measure needs; NULL: nothing. Returns 0 or EX_SOFTWARE. */
+    int (*keep)(struct frame_memory *now, const struct snapshot *s, struct failure *failure);
     /* Fills the table. A number that there is not is left NaN, with the reason by table_null().
        Returns 0 or EX_SOFTWARE. */
     int (*rows)(struct table *t, const struct snapshot *s, struct failure *failure);
@@ -46,7 +48,7 @@ extern const struct measure measure_fraction, measure_coordination, measure_cont
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
     measure_surface, measure_flux, measure_grains, measure_strain, measure_names, measure_sums,
     measure_sums_by_name, measure_sums_by_face, measure_mixing, measure_residence,
-    measure_departures, measure_lifetimes, measure_separations;
+    measure_departures, measure_lifetimes, measure_separations, measure_silhouette;
 
 /* The k-th; NULL past the last. */
 const struct measure *measure_at(int k);
@@ -66,10 +68,10 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
    with enough contacts in each where there are a thousand */
 #define ASKED_DEFAULT                                                                              \
     {                                                                                              \
-        .axis = -1, .layers = 20, .bins = 50, .radius = INFINITY                                   \
+        .axis = -1, .layers = 20, .bins = 50, .radius = INFINITY, .view = 1, .pixels = 400         \
     }
 /* box X0,X1,Y0,Y1[,Z0,Z1]; layers AXIS:N; point X,Y,Z; plane NX,NY,NZ; radius M; bins N; distance M; only NAME,...; wear K;
-   tracer KIND, or large; sample M.
+   tracer KIND, or large; sample M; view AXIS; window LEFT,RIGHT,LOWER,UPPER; pixels N; photo FILE.
    Returns 0, or EX_USAGE with "--name: trouble", where nothing has changed. */
 int asked_set(struct asked *asked, const char *name, const char *text, struct failure *failure);
 /* Is there one of that name? */

@@ -127,7 +127,7 @@ int frame_memory_set(struct frame_memory *k, const struct packing *p, struct fai
 
 void frame_memory_free(struct frame_memory *k)
 {
-    free(k->body), free(k->pair);
+    free(k->body), free(k->pair), free(k->cover);
     sums_free(&k->sums);
     *k = (struct frame_memory){ 0 };
 }

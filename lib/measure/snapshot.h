@@ -58,6 +58,10 @@ struct frame_memory {
         bool whole;        /* as above */
     } * pair;              /* [pairs] that touch, sorted; NULL: not looked at */
     struct wall_sums sums; /* over steps, of boundaries */
+    /* bodies in front of each pixel, over `covered` frames [measure/silhouette.h]; NULL: not looked at */
+    uint32_t *cover;
+    int64_t covered;
+    int dim;
 };
 
 /* k = the packing now, in place of what was kept; all zero to begin with. Returns 0 or EX_SOFTWARE. */
@@ -75,6 +79,12 @@ vec3 frame_memory_place(const struct packing *p, int64_t i);
 /* m: from the kept place to the present one, the shortest among images where the cell repeats */
 vec3 frame_memory_way(const struct packing *p, vec3 from, vec3 to);
 
+/* A photograph: bytes by rows, the lowest one first; 0 is black */
+struct photo {
+    int64_t w, h;
+    uint8_t *grey; /* NULL: there is none */
+};
+
 /* What the user asks for in addition to the measures' names; the same for all frames */
 struct asked {
     bool boxed;
@@ -91,7 +101,11 @@ struct asked {
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
     char tracer
         [64]; /* the kind whose mixing with the others is measured, or large; "": see measure/mixing.c */
-    double sample; /* m: edge of the samples of a mixture; 0: three mean diameters */
+    double sample;    /* m: edge of the samples of a mixture; 0: three mean diameters */
+    int view;         /* axis of the projection of a silhouette: 0 x, 1 y, 2 z */
+    double window[4]; /* m: its left, right, lower and upper edge; all 0: none is asked for */
+    int64_t pixels;   /* across, where there is no photograph */
+    struct photo photo;
 };
 
 struct snapshot {
