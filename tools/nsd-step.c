@@ -34,16 +34,6 @@ static const char *output, *save;
 static const char *dt; /* as it is given: a number, or auto:TOL */
 static double tol;     /* radii: TOL; 0: dt does not adapt */
 
-/* By index: options.cut */
-static struct cli_choice cut_choice(int index)
-{
-    static const struct cli_choice cuts[] = {
-        { "bisection", "boxes, by recursive bisection" },
-        { "hypergraph", "cells of a grid, with the fewest shared bodies" },
-    };
-    return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
-}
-
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
@@ -63,8 +53,6 @@ static const struct cli_option own[] = {
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,
       .help = "start each solve from reactions 0, as in the paper", .usual = options_usual },
-    { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
-      .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; default if standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,

@@ -64,7 +64,7 @@ static enum mpi_processes_word mpi_processes_next(enum mpi_processes_word w)
 
 static void mpi_processes_begin(enum mpi_processes_word w, const struct packing *p)
 {
-    struct decomposition *space = decomposition_new(&self.comm, options.cut);
+    struct decomposition *space = decomposition_new(&self.comm);
     rank_step_begin(&self.step, &self.comm, space, p, w == BEGIN_ROWS ? &self.rows : NULL);
     self.begun = true;
 }

@@ -44,7 +44,7 @@ for lanes in 2 4 8; do
     frozen "heap-lanes$lanes" "$heap; export NSD_LANES=$lanes; nsd-step -n 5 --contacts -m exact -o out.h5 heap.h5; cat out.h5"
 done
 if command -v mpirun >/dev/null && command -v nsd-step-mpi >/dev/null; then
-    for way in '' '--order block -m exact' '--cut hypergraph'; do
+    for way in '' '--order block -m exact'; do
         frozen "heap-ranks3${way// /}" "$heap; mpirun --oversubscribe --bind-to none -n 3 nsd-step -n 5 --contacts $way -o out.h5 heap.h5 </dev/null; cat out.h5"
     done
     frozen "silo-ranks3" "nsd-gen scenes/silo.json >in.h5; mpirun --oversubscribe --bind-to none -n 3 nsd-step -n 8 --sums --contacts -o out.h5 in.h5 2>said </dev/null; cat out.h5"
