@@ -427,12 +427,14 @@ static bool is_last(const struct packing *p, int64_t step, int64_t k)
     return k == steps || is_then(p, step);
 }
 
-/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it. */
+/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it,
+   or all steps where dt adapts, for which the leader needs all bodies. */
 static bool is_bare(const struct run *r, int64_t k, bool last)
 {
     const struct packing *p = &r->f.packing;
     const bool gathers = processes_size() > 1 && r->o.order == ORDER_BLOCK;
     if (loop_asks() || options.log || last || (options_end_on_failure() && !gathers)) return false;
+    if (tol > 0 && gathers) return false;
     return !is_kept(p, p->step + 1, k);
 }
 
@@ -601,9 +603,6 @@ static double read_dt(void)
             "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
             "radius above 0 and at most 1",
             dt);
-    if (adapts && processes_size() > 1)
-        die_usage("--dt auto: needs a single process, and %d run: use threads, nsd-step -j",
-                  processes_size());
     if (adapts) tol = x;
     return adapts ? 0 : x;
 }
@@ -611,13 +610,7 @@ static double read_dt(void)
 /* Without --dt: an automatic dt adapts. */
 static void take_tolerance(const struct packing *p)
 {
-    if (dt || !(p->tolerance > 0)) return;
-    if (processes_size() > 1)
-        warn("dt stays %g s, because an automatic one adapts in a single process only; --dt DT "
-             "sets another",
-             p->dt);
-    else
-        tol = p->tolerance;
+    if (!dt && p->tolerance > 0) tol = p->tolerance;
 }
 
 /* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
@@ -724,9 +717,10 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
-    // a program in the loop needs all bodies, and their contacts, in one place
-    struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
-    reader_hands_over(in, loop_asks() ? NULL : others);
+    // a program in the loop needs all bodies, and their contacts, in one place; and --dt auto all bodies
+    struct distributed *others =
+        processes_take_bodies(contacts || forces || sums || loop_asks(), !dt);
+    reader_hands_over(in, loop_asks() || tol > 0 ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

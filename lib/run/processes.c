@@ -57,9 +57,9 @@ int processes_follow(void)
     return 0;
 }
 
-struct distributed *processes_take_bodies(bool contacts)
+struct distributed *processes_take_bodies(bool contacts, bool adapts)
 {
-    (void)contacts;
+    (void)contacts, (void)adapts;
     return NULL;
 }
 
