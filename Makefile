@@ -266,7 +266,7 @@ FUZZCC  := clang
 FUZZSAN := -fsanitize=address,undefined -fno-sanitize-recover=undefined
 F       := build/fuzz
 # nsd's own readers and what solves: not the command line, nor what draws and exports
-NOT_READ := $(COMMAND_LINE) $(addprefix convert/,fields_file format gsd lammps ondem sheet sheet_walls stl text vtk xyz)
+NOT_READ := $(COMMAND_LINE) $(addprefix convert/,fields_file format gsd lammps sheet sheet_walls stl text vtk xyz)
 FLIB    := $(patsubst $B/%,$F/%,$(filter-out $B/lib/draw/% $(NOT_READ:%=$B/lib/%.o),$(LIB)))
 
 $F/lib/%.o: lib/%.c

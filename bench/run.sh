@@ -62,7 +62,6 @@ whole_runs() {
     start="nsd-gen 500"
     nsd-gen 500 > "$work/start.h5"
     thousand 25 --eps 0 --max-sweeps 5000 --order colour
-    thousand 15 --eps 0 --max-sweeps 5000 --order halves -j 2
     thousand "" --eps 1e-8
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm

@@ -275,6 +275,11 @@ static enum target target_of(const struct format **format)
     bool given = cli_given(&to);
     *format = given ? format_at(to) : output && !in_directory ? format_of_name(output) : NULL;
     if (in_directory && !given) *format = format_at(0);
+    if (!*format && output && strstr(output, ".vtkhdf"))
+        die_usage(
+            "%s: python3 -m nsd.ondem write FILE -o %s writes ON-DEM's format, and nsd-cat --vtk "
+            "a document for ParaView",
+            output, output);
     if (!*format) die_usage("no format: give --to FORMAT, or an --output with its suffix");
     if (!(*format)->parts && part != PART_GRAINS)
         die_usage("--part: %s has grains only", (*format)->name);

@@ -28,7 +28,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 'd', "dim", &dim, "2|3", .min = 2, .max = 3,
       .help = "with N, make balls (3) or discs (2) [3]" },
     { CLI_TEXT, 0, "from", &from, "FILE",
-      .help = "read a LAMMPS, LIGGGHTS, Yade or ON-DEM file instead of a scene" },
+      .help = "read a LAMMPS, LIGGGHTS or Yade file instead of a scene" },
     { CLI_FLAG, 0, "check", &check,
       .help = "print a suitable time step, masses and sizes as JSON, no document" },
     { 0 },
@@ -81,38 +81,20 @@ static bool is_number(const char *text, double *x)
 
 /* ---- the file of another program alone ---- */
 
-/* What the file says of each pair of kinds */
-static json_t *pairs_json(const struct packing *p)
-{
-    json_t *list = json_array();
-    for (int32_t i = 0; i < p->kinds; i++)
-        for (int32_t j = i; j < p->kinds; j++) {
-            const int32_t k = i * p->kinds + j;
-            json_array_append_new(list, json_pack("{s:[s, s], s:f, s:f, s:f}", "pair",
-                                                  p->kind_name[i], p->kind_name[j], "mu", p->mu[k],
-                                                  "e_n", p->en[k], "e_t", p->et[k]));
-        }
-    return list;
-}
-
-/* A scene of the file alone, with the kinds that it has, and its time step, gravity and friction where it says them */
-static void scene_around(struct scene *s, struct packing *p, const struct import_said *said,
-                         const char *path)
+/* A scene of the file alone, with the kinds that it has */
+static void scene_around(struct scene *s, struct packing *p, const char *path)
 {
     struct failure failure = { 0 };
     json_t *kinds = json_object();
-    for (int32_t k = 0; k < p->kinds && (p->kinds > 1 || said->laws); k++)
+    for (int32_t k = 0; k < p->kinds && p->kinds > 1; k++)
         json_object_set_new(kinds, p->kind_name[k], json_object());
     json_t *scene =
-        json_pack("{s:o, s:o, s:[{s:s}]}", "dt", said->dt ? json_real(p->dt) : json_string("auto"),
-                  "kinds", kinds, "bodies", "import", path);
-    if (said->gravity) json_object_set_new(scene, "gravity", json_vec(p->g));
-    if (said->laws) json_object_set_new(scene, "pairs", pairs_json(p));
+        json_pack("{s:s, s:o, s:[{s:s}]}", "dt", "auto", "kinds", kinds, "bodies", "import", path);
     char *text = scene ? json_dumps(scene, JSON_COMPACT) : NULL;
     if (!text) die(EX_DATAERR, "%s: a name that is no UTF-8", path);
     if (scene_parse(s, text, strlen(text), NULL, &failure)) die_why(&failure);
     free(text), json_decref(scene);
-    s->bodies[0].document = p, s->bodies[0].unsaid = !said->masses;
+    s->bodies[0].document = p;
 }
 
 static void read_from(struct scene *s, const char *path)
@@ -120,12 +102,11 @@ static void read_from(struct scene *s, const char *path)
     struct failure failure = { 0 };
     struct packing *p = calloc(1, sizeof *p);
     const struct import_wish wish = { .dim = (int)dim, .frame = -1 };
-    struct import_said said;
     if (!p) die(EX_SOFTWARE, "no memory for a packing");
     progress("reading %s", path);
-    if (import_file(p, path, &wish, &said, &failure)) die_why(&failure);
+    if (import_file(p, path, &wish, &failure)) die_why(&failure);
     progress_end();
-    scene_around(s, p, &said, path);
+    scene_around(s, p, path);
 }
 
 /* As a reason, for the name is out of a file */

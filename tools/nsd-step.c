@@ -3,6 +3,7 @@
 #include "file/reader.h"
 #include "file/writer.h"
 #include "run/cli.h"
+#include "run/driver.h"
 #include "run/loop.h"
 #include "run/options.h"
 #include "run/processes.h"
@@ -34,16 +35,6 @@ static const char *output, *save;
 static const char *dt; /* as it is given: a number, or auto:TOL */
 static double tol;     /* radii: TOL; 0: dt does not adapt */
 
-/* By index: options.cut */
-static struct cli_choice cut_choice(int index)
-{
-    static const struct cli_choice cuts[] = {
-        { "bisection", "boxes, by recursive bisection" },
-        { "hypergraph", "cells of a grid, with the fewest shared bodies" },
-    };
-    return index < 2 ? cuts[index] : (struct cli_choice){ 0 };
-}
-
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
@@ -63,8 +54,6 @@ static const struct cli_option own[] = {
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,
       .help = "start each solve from reactions 0, as in the paper", .usual = options_usual },
-    { CLI_CHOICE, 0, "cut", &options.cut, .choice = cut_choice,
-      .help = "divide space among MPI processes in this way [bisection]" },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; default if standard output is a terminal" },
     { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
@@ -300,16 +289,11 @@ struct run {
     struct frame f;
     struct writer *out;
     struct background_writer *background; /* NULL: one thread makes the steps, and writes */
-    struct flow flow;
-    struct step_memory memory;
-    struct neighbours ahead; /* of where bodies would be at the end of a step */
-    bool other_bodies;       /* than in the step before */
-    bool fails;              /* the run ends with the step that was made */
-    char end[200];           /* why the next step was not made, or "" */
-    struct control acts;     /* what a program in the loop has answered */
+    struct driver driver;
+    bool fails;           /* the run ends with the step that was made */
+    char end[200];        /* why the next step was not made, or "" */
     struct failure ended; /* why that program has ended the run; status 0: it said so, or has not */
     bool told_to_stop;
-    struct step_opt o;
     double saved;    /* s of real time: when the state was saved last */
     char *save_path; /* where; NULL: nowhere */
 };
@@ -354,8 +338,9 @@ static struct frame with_forces(struct run *r)
     struct failure failure = { 0 };
     struct frame f = r->f;
     if (loop_asks() || !steps) return f;
-    if (r->acts.id && control_arrays(&r->acts, &r->f.packing, &failure)) die_why(&failure);
-    f.packing.outside.lasts = control_lend(&r->acts, f.packing.walls);
+    if (r->driver.acts.id && control_arrays(&r->driver.acts, &r->f.packing, &failure))
+        die_why(&failure);
+    f.packing.outside.lasts = control_lend(&r->driver.acts, f.packing.walls);
     return f;
 }
 
@@ -385,52 +370,34 @@ static void save_end(struct run *r)
 
 /* ---- steps ---- */
 
-/* Bodies come and go, as the step begins. */
-static void flow(struct run *r)
-{
-    struct failure failure = { 0 };
-    if (flow_step(&r->flow, &r->f.packing, &r->f.contacts, &r->other_bodies, &failure))
-        die_why(&failure);
-}
-
-/* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings
-   of dt, of its product with the step, and of the time given */
-static double slack(const struct packing *p, double t)
-{
-    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
-}
-
 /* Is the frame after a step, the k-th of this run, one to keep? By seconds: the first at or after each
    multiple of them, wherever the run began. */
 static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 {
     if (every.steps) return k % every.steps == 0;
     double now = packing_time(p, step), before = packing_time(p, step - 1);
-    return floor((now + slack(p, now)) / every.seconds) >
-           floor((before + slack(p, before)) / every.seconds);
+    return floor((now + driver_slack(p, now)) / every.seconds) >
+           floor((before + driver_slack(p, before)) / every.seconds);
 }
 
-/* dt of the step to come */
-static void adapt(struct run *r)
+/* The step to come begins, with the dt that it has. */
+static void begin_step(struct run *r)
 {
     struct failure failure = { 0 };
     struct packing *p = &r->f.packing;
-    double had = p->dt;
-    if (!(tol > 0)) return;
-    if (adapt_step(p, tol, &r->ahead, &failure)) die_why(&failure);
-    if (p->dt == had) return;
-    if (p->halved == ADAPT_MOST && !total.shortest++)
+    const double had = p->dt;
+    if (driver_begin(&r->driver, p, tol, &r->f.contacts, &failure)) die_why(&failure);
+    if (p->dt != had && p->halved == ADAPT_MOST && !total.shortest++)
         warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
              "fast "
              "for that",
              (long long)p->step + 1, p->dt);
-    r->o.solve.local.newton_abs *= p->dt / had;
 }
 
 /* Does dt adapt until a time, and is it this step's? How many steps that takes nobody knows before. */
 static bool is_then(const struct packing *p, int64_t step)
 {
-    return tol > 0 && cli_given(&until) && packing_time(p, step) >= until - slack(p, until);
+    return tol > 0 && cli_given(&until) && packing_time(p, step) >= until - driver_slack(p, until);
 }
 
 /* Does the run end with this step, the k-th? */
@@ -439,12 +406,14 @@ static bool is_last(const struct packing *p, int64_t step, int64_t k)
     return k == steps || is_then(p, step);
 }
 
-/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it. */
+/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it,
+   or all steps where dt adapts, for which the leader needs all bodies. */
 static bool is_bare(const struct run *r, int64_t k, bool last)
 {
     const struct packing *p = &r->f.packing;
-    const bool gathers = processes_size() > 1 && r->o.order == ORDER_BLOCK;
+    const bool gathers = processes_size() > 1 && r->driver.o.order == ORDER_BLOCK;
     if (loop_asks() || options.log || last || (options_end_on_failure() && !gathers)) return false;
+    if (tol > 0 && gathers) return false;
     return !is_kept(p, p->step + 1, k);
 }
 
@@ -454,14 +423,13 @@ static bool advance(struct run *r, int64_t k, bool saves)
     struct failure failure = { 0 };
     struct frame *f = &r->f;
     struct report *rep = &f->report;
-    adapt(r);
-    flow(r);
+    begin_step(r);
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
-    if (control_begin(&r->acts, &f->packing, &failure)) die_why(&failure);
-    r->o.bare = !saves && is_bare(r, k, last);
-    const struct changes changes = { r->other_bodies, loop_asks() || control_any(&r->acts) };
-    if (processes_step(f, &r->memory, changes, &r->o, &failure)) die_why(&failure);
+    r->driver.o.bare = !saves && is_bare(r, k, last);
+    const struct changes changes = { r->driver.other_bodies,
+                                     loop_asks() || control_any(&r->driver.acts) };
+    if (processes_step(f, &r->driver.memory, changes, &r->driver.o, &failure)) die_why(&failure);
     f->reported = f->moved = true;
     count(rep);
     const bool good = report_made(rep);
@@ -523,18 +491,18 @@ static void begin(struct run *r)
 {
     struct failure failure = { 0 };
     struct frame *f = &r->f;
-    r->o = options_step(f->packing.dt, false);
-    warn_small(f, r->o.order);
-    if (flow_read(&r->flow, &f->packing, &failure)) die_why(&failure);
+    r->driver.o = options_step(f->packing.dt, false);
+    warn_small(f, r->driver.o.order);
+    if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
     if (f->packing.outside.length && !loop_asks())
         warn("a program (--with) acted on the run so far, and nothing acts on it now: --with or "
              "--replay");
-    if (control_take(&r->acts, &f->packing, &failure)) die_why(&failure);
+    if (control_take(&r->driver.acts, &f->packing, &failure)) die_why(&failure);
     external_force_forget(&f->packing.outside);
     report_free(&f->report);
-    f->report.options = options_json(&r->o);
+    f->report.options = options_json(&r->driver.o);
     f->detected = contacts || forces;
     f->forces = forces;
     f->stale = true;
@@ -554,7 +522,7 @@ static int64_t run(struct run *r)
     bool ends = !steps;
     while (!ends) {
         if (stopped_by) steps = made + 1; // the next one is the last, and its frame is kept
-        if (loop_asks() && !loop_before_step(&r->f, &r->acts, !made, &r->ended)) {
+        if (loop_asks() && !loop_before_step(&r->f, &r->driver.acts, !made, &r->ended)) {
             r->told_to_stop = true;
             break;
         }
@@ -563,7 +531,7 @@ static int64_t run(struct run *r)
         const struct packing *p = &r->f.packing;
         ends = is_last(p, p->step, ++made) || r->fails;
         tell(&r->f.report, made, r->out);
-        if (ends && r->o.bare)
+        if (ends && r->driver.o.bare)
             keep_last(r, made);
         else if (is_kept(p, p->step, made) || ends)
             write_frame(r);
@@ -573,10 +541,7 @@ static int64_t run(struct run *r)
     if (r->told_to_stop) keep_stopped(r, made);
     if (!good) keep_last(r, made);
     if (!steps && !in_place) write_frame(r);
-    step_forget(&r->memory);
-    neighbours_free(&r->ahead);
-    control_free(&r->acts);
-    flow_free(&r->flow);
+    driver_free(&r->driver);
     if (background_close(r->background, &failure)) die_why(&failure);
     return made;
 }
@@ -587,7 +552,7 @@ static void count_steps(const struct packing *p)
 {
     expected = steps;
     if (!cli_given(&until)) return;
-    double n = ceil((until - p->t) / p->dt), reached = until - slack(p, until);
+    double n = ceil((until - p->t) / p->dt), reached = until - driver_slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
     steps = n > 0 ? (int64_t)n : 0; // but for rounding
     while (steps && packing_time(p, p->step + steps - 1) >= reached) steps--;
@@ -603,40 +568,23 @@ static void count_steps(const struct packing *p)
 /* --dt, and its TOL */
 static double read_dt(void)
 {
-    static const char word[] = "auto:";
-    bool adapts = dt && !strncmp(dt, word, sizeof word - 1);
-    const char *number = adapts ? dt + sizeof word - 1 : dt;
-    char *end = NULL;
-    double x = dt ? strtod(number, &end) : 0;
-    if (dt && (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX))))
+    bool adapts;
+    double x;
+    if (!dt) return 0;
+    if (!driver_read_dt(dt, &adapts, &x))
         die_usage(
             "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
             "radius above 0 and at most 1",
             dt);
-    if (adapts && processes_size() > 1)
-        die_usage("--dt auto: needs a single process, and %d run: use threads, nsd-step -j",
-                  processes_size());
     if (adapts) tol = x;
     return adapts ? 0 : x;
-}
-
-/* Without --dt: an automatic dt adapts. */
-static void take_tolerance(const struct packing *p)
-{
-    if (dt || !(p->tolerance > 0)) return;
-    if (processes_size() > 1)
-        warn("dt stays %g s, because an automatic one adapts in a single process only; --dt DT "
-             "sets another",
-             p->dt);
-    else
-        tol = p->tolerance;
 }
 
 /* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
 static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct failure failure = { 0 };
-    take_tolerance(p);
+    if (!dt && p->tolerance > 0) tol = p->tolerance;
     if (path && tol > 0 && !p->adapts)
         die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
     if (tol > 0) p->adapts = true;
@@ -645,10 +593,7 @@ static void set_dt(struct packing *p, double asked, const char *path)
         die_usage("--dt: %s has %g s, and a trajectory has one: use -o FILE for another", path,
                   packing_whole_dt(p));
     if (!path) p->adapts = false, p->tolerance = 0;
-    memory_scale(&p->memory, asked / p->dt);
-    p->halved = 0;
-    packing_set_dt(p, asked);
-    if (packing_check_clock(p, &failure)) die_why(&failure);
+    if (driver_set_dt(p, asked, &failure)) die_why(&failure);
 }
 
 /* The frames of the file go into the one that takes its place, the last one stays in f. */
@@ -736,9 +681,10 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
-    // a program in the loop needs all bodies, and their contacts, in one place
-    struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
-    reader_hands_over(in, loop_asks() ? NULL : others);
+    // a program in the loop needs all bodies, and their contacts, in one place; and --dt auto all bodies
+    struct distributed *others =
+        processes_take_bodies(contacts || forces || sums || loop_asks(), !dt);
+    reader_hands_over(in, loop_asks() || tol > 0 ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

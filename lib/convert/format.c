@@ -43,8 +43,8 @@ void export_put_image(FILE *out, const struct packing *p, int64_t i)
 
 /* NULL ends it; the first is that of a directory. */
 static const struct format *const formats[] = {
-    &format_vtp, &format_vtu, &format_xyz,         &format_lammps, &format_csv, &format_tsv,
-    &format_stl, &format_gsd, &format_lammps_data, &format_ondem,  NULL,
+    &format_vtp, &format_vtu, &format_xyz, &format_lammps,      &format_csv,
+    &format_tsv, &format_stl, &format_gsd, &format_lammps_data, NULL,
 };
 
 const struct format *format_at(int k)

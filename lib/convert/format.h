@@ -74,7 +74,7 @@ struct format {
 };
 
 extern const struct format format_vtp, format_vtu, format_xyz, format_lammps, format_csv,
-    format_tsv, format_stl, format_gsd, format_lammps_data, format_ondem;
+    format_tsv, format_stl, format_gsd, format_lammps_data;
 
 /* The k-th from 0; NULL behind the last. */
 const struct format *format_at(int k);

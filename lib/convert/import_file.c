@@ -2,7 +2,6 @@
 
 #include "base/bounded.h"
 #include "convert/imported.h"
-#include "convert/ondem_read.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -27,13 +26,18 @@ static const int64_t BYTES_MOST = (int64_t)1 << 33;
 static int read_bytes(struct imported *to, const char *name, const char *bytes, int64_t n,
                       int64_t frame, struct failure *failure)
 {
+    static const unsigned char hdf5 = 0x89; // its first byte, and that of documents
     struct soup place = { .name = name, .failure = failure };
     struct words w = words_of(&place, bytes, n);
     for (int k = 0; k < FORMATS; k++)
         if (formats[k]->looks(w.at, w.end - w.at)) return formats[k]->read(to, &w, frame);
+    if (n && (unsigned char)bytes[0] == hdf5)
+        return failure_set(failure, EX_DATAERR,
+                           "%s: an HDF5 file: python3 -m nsd.ondem read FILE makes a document of "
+                           "ON-DEM's format, and \"document\" reads one",
+                           name);
     return failure_set(failure, EX_DATAERR,
-                       "%s: neither a LAMMPS dump or data file, nor a table of Yade (#format), nor "
-                       "ON-DEM's",
+                       "%s: neither a LAMMPS dump or data file, nor a table of Yade (#format)",
                        name);
 }
 
@@ -201,20 +205,12 @@ static int import_file_open_plain(const char *path, int64_t *size, struct failur
 }
 
 int import_file(struct packing *p, const char *path, const struct import_wish *wish,
-                struct import_said *said, struct failure *failure)
+                struct failure *failure)
 {
-    *said = (struct import_said){ 0 };
     struct import_file_work f = { .path = path, .frame = wish->frame };
     void *answer = NULL;
     size_t n = 0;
     if ((f.fd = import_file_open_plain(path, &f.size, failure)) < 0) return failure->status;
-    if (ondem_looks(f.fd)) {
-        close(f.fd);
-        if (wish->frame == -1 || wish->frame == 0)
-            return ondem_read(p, path, wish->dim, said, failure);
-        return failure_set(failure, EX_DATAERR, "%s: no frame %lld: there is one", path,
-                           (long long)wish->frame);
-    }
     const struct bounded_task task = { import_file_read_open, &f, path, (uint64_t)f.size };
     bounded_run(&task, &answer, &n, failure);
     close(f.fd);

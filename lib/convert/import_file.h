@@ -1,7 +1,6 @@
 /*
- * convert/import_file.h: packings of other programs: LAMMPS' and LIGGGHTS' data files and dumps, Yade's tables, and
- * ON-DEM's exchange format. A file is read by a process of its own [base/bounded.h, io/source.h], and what it says is
- * checked as that of a document.
+ * convert/import_file.h: packings of other programs: LAMMPS' and LIGGGHTS' data files and dumps, Yade's tables.
+ * A file is read by a process of its own [base/bounded.h], and what it says is checked as that of a document.
  */
 #ifndef NSD_IMPORT_FILE_H
 #define NSD_IMPORT_FILE_H
@@ -19,12 +18,11 @@ struct import_wish {
 };
 
 /*
- * p = the balls of the file at path; ON-DEM's also have other shapes and walls. Kinds are named by the file's numbers
- * for them, "1", "2" ..., ON-DEM's by their labels; masses as *said has
- * it; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
+ * p = the balls of the file at path. Kinds are named by the file's numbers for them, "1", "2" ...; a mass that the file does
+ * not have is 0; the cell is the box, where it is periodic. Returns 0, EX_DATAERR, EX_NOINPUT or EX_SOFTWARE.
  */
 int import_file(struct packing *p, const char *path, const struct import_wish *wish,
-                struct import_said *said, struct failure *failure);
+                struct failure *failure);
 
 /* Of n bytes with a 0 behind them, as of a file of this name, in this process: for who tests the readers */
 int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t n,

@@ -28,12 +28,6 @@ struct imported_ball {
     int32_t type, id;     /* as the file counts them; id -1: not said */
 };
 
-/* What a file says besides its balls, in the packing that comes of it */
-struct import_said {
-    bool dt, gravity, laws; /* laws: mu, and perhaps restitution, of each pair of kinds */
-    bool masses;            /* of all: where one is 0 the body is fixed; else it is not said */
-};
-
 /* While it is read */
 struct imported {
     struct imported_head head;

@@ -78,12 +78,9 @@ static int scene_file_read_frame(struct frame *f, char *path, int64_t k, struct 
 static int scene_file_read_foreign(struct scene_bodies *b, int dim, const char *path,
                                    struct failure *failure)
 {
-    struct import_said said;
     struct import_wish wish = { .dim = dim, .frame = b->frame, .has_repeats = b->has_repeats };
     for (int k = 0; k < 3; k++) wish.repeats[k] = b->repeats[k];
-    if (import_file(b->document, path, &wish, &said, failure)) return failure->status;
-    b->unsaid = !said.masses;
-    return 0;
+    return import_file(b->document, path, &wish, failure);
 }
 
 static int scene_file_read_document(struct scene_bodies *b, int dim, const char *dir,

@@ -209,12 +209,10 @@ static bool known_already(struct served *s, struct served_entry *e)
     return false;
 }
 
-/* /VTKHDF of a document of nsd's is for VTK alone, whatever is in it: it is not opened. In ON-DEM's files it has
-   the bodies. */
+/* /VTKHDF of a document of nsd's is for VTK alone, whatever is in it: it is not opened. */
 static bool is_for_vtk(const struct walk *w, hid_t root, const char *name)
 {
-    return !*w->path && !strcmp(name, "VTKHDF") && H5Lexists(root, "nsd", H5P_DEFAULT) > 0 &&
-           H5Lexists(root, "ONDEM", H5P_DEFAULT) <= 0;
+    return !*w->path && !strcmp(name, "VTKHDF") && H5Lexists(root, "nsd", H5P_DEFAULT) > 0;
 }
 
 static herr_t look_at_link(hid_t from, const char *name, const H5L_info_t *info, void *data)

@@ -48,16 +48,6 @@ void document_header(unsigned char u[DOCUMENT_USERBLOCK], uint64_t length, uint3
     stream_store(u + AT_HEADER_CRC, document_crc(0, u, AT_HEADER_CRC), 4);
 }
 
-int64_t document_length(const unsigned char u[DOCUMENT_USERBLOCK])
-{
-    if (memcmp(u, MAGIC, sizeof MAGIC) != 0 ||
-        stream_load(u + AT_HEADER_CRC, 4) != document_crc(0, u, AT_HEADER_CRC))
-        return -1;
-    if (stream_load(u + AT_FLAGS, 4) & DOCUMENT_UNFINISHED) return 0;
-    uint64_t length = stream_load(u + AT_LENGTH, 8);
-    return length > INT64_MAX || length < DOCUMENT_USERBLOCK ? -1 : (int64_t)length;
-}
-
 struct stream {
     int files, next; /* next: the file to open after the current one */
     char *const *file;

@@ -36,9 +36,6 @@ struct image {
     bool unfinished; /* no checksum vouches for it */
 };
 
-/* Bytes of the finished document with this header, user block included; 0: it is still being written; -1: this is no header */
-int64_t document_length(const unsigned char userblock[DOCUMENT_USERBLOCK]);
-
 struct stream;
 
 /*

@@ -90,7 +90,8 @@ static int vtkhdf_failed(const char *path, struct failure *failure)
 
 /* ---- groups, and datasets that grow ---- */
 
-int vtkhdf_group(hid_t file, const char *path, struct failure *failure)
+/* A group in which VTK finds blocks in the order of their making */
+static int vtkhdf_group(hid_t file, const char *path, struct failure *failure)
 {
     if (h5_has(file, path)) return 0;
     hid_t plist = H5Pcreate(H5P_GROUP_CREATE);
@@ -115,7 +116,9 @@ static int ascii(hid_t file, const char *path, const char *name, const char *tex
     return good ? 0 : vtkhdf_failed(path, failure);
 }
 
-int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct failure *failure)
+/* Its type, and the version 2.minor of VTKHDF */
+static int vtkhdf_type(hid_t file, const char *path, const char *type, int minor,
+                       struct failure *failure)
 {
     const int64_t version[2] = { 2, minor };
     return ascii(file, path, "Type", type, failure) ||

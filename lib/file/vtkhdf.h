@@ -40,11 +40,6 @@ struct vtkhdf_parts {
     void (*done)(void *made);
 };
 
-/* For who writes VTKHDF groups otherwise: one in which VTK finds blocks in the order of their making; its type, and
-   the version 2.minor of VTKHDF */
-int vtkhdf_group(hid_t file, const char *path, struct failure *failure);
-int vtkhdf_type(hid_t file, const char *path, const char *type, int minor, struct failure *failure);
-
 struct vtkhdf;
 
 /* parts: NULL: the grains alone; else it has to stay where it is. EX_SOFTWARE: no memory. */

@@ -1,4 +1,4 @@
-/* mpi/decomposition.c: the ways to cut space [mpi/decomposition.h]. */
+/* mpi/decomposition.c: boxes, by Zoltan's recursive coordinate bisection, whose cuts are kept [mpi/decomposition.h]. */
 #include "mpi/decomposition.h"
 
 #include "base/failure.h"
@@ -6,55 +6,7 @@
 #include <stdlib.h>
 #include <trilinos/zoltan.h>
 
-static const struct cuts *const ways[] = { &cuts_bisection, &cuts_hypergraph }; // as --cut has them
-
 struct decomposition {
-    const struct cuts *way;
-    void *made;
-};
-
-struct decomposition *decomposition_new(struct comm *t, int way)
-{
-    struct decomposition *y = comm_new(t, 1, sizeof *y);
-    *y = (struct decomposition){ ways[way], ways[way]->begin(t) };
-    return y;
-}
-
-void decomposition_free(struct decomposition *y)
-{
-    if (y) y->way->end(y->made);
-    free(y);
-}
-
-void decomposition_cut(struct decomposition *y, int64_t n, const vec3 *x, const float *weight)
-{
-    y->way->cut(y->made, n, x, weight);
-}
-
-int decomposition_owner(const struct decomposition *y, vec3 x)
-{
-    return y->way->owner(y->made, x);
-}
-
-int decomposition_meets(const struct decomposition *y, vec3 lo, vec3 hi, int *rank)
-{
-    return y->way->meets(y->made, lo, hi, rank);
-}
-
-struct Zoltan_Struct *decomposition_zoltan(struct comm *t, const char *const set[][2])
-{
-    struct Zoltan_Struct *zz = NULL;
-    float version;
-    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(zz = Zoltan_Create(t->mpi)))
-        comm_fail(t, EX_SOFTWARE, "Zoltan does not begin");
-    Zoltan_Set_Param(zz, "DEBUG_LEVEL", "0");
-    for (int k = 0; set[k][0]; k++) Zoltan_Set_Param(zz, set[k][0], set[k][1]);
-    return zz;
-}
-
-/* Boxes, by Zoltan's recursive coordinate bisection, whose cuts are kept [mpi/decomposition.h]. */
-
-struct bisection {
     struct comm *comm;
     struct Zoltan_Struct *zz;
     int64_t n; /* while space is being cut */
@@ -64,7 +16,7 @@ struct bisection {
 
 static int bisection_count(void *arg, int *error)
 {
-    const struct bisection *y = arg;
+    const struct decomposition *y = arg;
     *error = ZOLTAN_OK;
     return (int)y->n;
 }
@@ -72,7 +24,7 @@ static int bisection_count(void *arg, int *error)
 static void bisection_list(void *arg, int gids, int lids, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid,
                            int weights, float *weight, int *error)
 {
-    const struct bisection *y = arg;
+    const struct decomposition *y = arg;
     (void)gids, (void)lids, (void)weights;
     for (int64_t i = 0; i < y->n; i++) {
         gid[2 * i] = (ZOLTAN_ID_TYPE)y->comm->me, gid[2 * i + 1] = (ZOLTAN_ID_TYPE)i;
@@ -92,7 +44,7 @@ static int dimensions(void *arg, int *error)
 static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLTAN_ID_PTR lid,
                    int dim, double *to, int *error)
 {
-    const struct bisection *y = arg;
+    const struct decomposition *y = arg;
     (void)gids, (void)lids, (void)gid, (void)dim;
     for (int i = 0; i < n; i++) {
         vec3 x = y->x[lid[i]];
@@ -101,31 +53,35 @@ static void places(void *arg, int gids, int lids, int n, ZOLTAN_ID_PTR gid, ZOLT
     *error = ZOLTAN_OK;
 }
 
-static void *bisection_begin(struct comm *t)
+struct decomposition *decomposition_new(struct comm *t)
 {
-    static const char *const set[][2] = { { "LB_METHOD", "RCB" },       { "KEEP_CUTS", "1" },
-                                          { "NUM_GID_ENTRIES", "2" },   { "NUM_LID_ENTRIES", "1" },
-                                          { "OBJ_WEIGHT_DIM", "1" },    { "RETURN_LISTS", "NONE" },
-                                          { "IMBALANCE_TOL", "1.02" },  { "RCB_OUTPUT_LEVEL", "0" },
-                                          { "REDUCE_DIMENSIONS", "0" }, { NULL, NULL } };
-    struct bisection *y = comm_new(t, 1, sizeof *y);
-    y->comm = t, y->zz = decomposition_zoltan(t, set);
+    static const char *const set[][2] = {
+        { "DEBUG_LEVEL", "0" },      { "LB_METHOD", "RCB" },      { "KEEP_CUTS", "1" },
+        { "NUM_GID_ENTRIES", "2" },  { "NUM_LID_ENTRIES", "1" },  { "OBJ_WEIGHT_DIM", "1" },
+        { "RETURN_LISTS", "NONE" },  { "IMBALANCE_TOL", "1.02" }, { "RCB_OUTPUT_LEVEL", "0" },
+        { "REDUCE_DIMENSIONS", "0" }
+    };
+    struct decomposition *y = comm_new(t, 1, sizeof *y);
+    float version;
+    y->comm = t;
+    if (Zoltan_Initialize(0, NULL, &version) != ZOLTAN_OK || !(y->zz = Zoltan_Create(t->mpi)))
+        comm_fail(t, EX_SOFTWARE, "Zoltan does not begin");
+    for (size_t k = 0; k < sizeof set / sizeof *set; k++)
+        Zoltan_Set_Param(y->zz, set[k][0], set[k][1]);
     Zoltan_Set_Num_Obj_Fn(y->zz, bisection_count, y),
         Zoltan_Set_Obj_List_Fn(y->zz, bisection_list, y);
     Zoltan_Set_Num_Geom_Fn(y->zz, dimensions, y), Zoltan_Set_Geom_Multi_Fn(y->zz, places, y);
     return y;
 }
 
-static void bisection_end(void *made)
+void decomposition_free(struct decomposition *y)
 {
-    struct bisection *y = made;
-    Zoltan_Destroy(&y->zz);
+    if (y) Zoltan_Destroy(&y->zz);
     free(y);
 }
 
-static void bisection_cut(void *made, int64_t n, const vec3 *x, const float *weight)
+void decomposition_cut(struct decomposition *y, int64_t n, const vec3 *x, const float *weight)
 {
-    struct bisection *y = made;
     int changes, gids, lids, in, out;
     ZOLTAN_ID_PTR a = NULL, b = NULL, c = NULL, d = NULL;
     int *p1 = NULL, *p2 = NULL, *p3 = NULL, *p4 = NULL;
@@ -136,9 +92,8 @@ static void bisection_cut(void *made, int64_t n, const vec3 *x, const float *wei
     Zoltan_LB_Free_Part(&a, &b, &p1, &p2), Zoltan_LB_Free_Part(&c, &d, &p3, &p4);
 }
 
-static int bisection_owner(const void *made, vec3 x)
+int decomposition_owner(const struct decomposition *y, vec3 x)
 {
-    const struct bisection *y = made;
     double at[3] = { x.x, x.y, x.z };
     int rank, part;
     if (Zoltan_LB_Point_PP_Assign(y->zz, at, &rank, &part) != ZOLTAN_OK)
@@ -146,14 +101,10 @@ static int bisection_owner(const void *made, vec3 x)
     return rank;
 }
 
-static int bisection_meets(const void *made, vec3 lo, vec3 hi, int *rank)
+int decomposition_meets(const struct decomposition *y, vec3 lo, vec3 hi, int *rank)
 {
-    const struct bisection *y = made;
     int n = 0;
     if (Zoltan_LB_Box_Assign(y->zz, lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, rank, &n) != ZOLTAN_OK)
         comm_fail(y->comm, EX_SOFTWARE, "Zoltan gives no ranks of a box");
     return n;
 }
-
-const struct cuts cuts_bisection = { bisection_begin, bisection_end, bisection_cut, bisection_owner,
-                                     bisection_meets };

@@ -26,8 +26,8 @@ int nsd_force(struct nsd_run *r, int32_t id, const double force[3], const double
     struct failure *failure = run_why(r);
     enum control_lasting t = failure ? term_of(term, failure) : CONTROL_TERMS;
     if (t == CONTROL_TERMS) return NSD_USAGE;
-    return control_force(&r->acts, &r->f.packing, id, (struct wrench){ of(force), of(torque) }, t,
-                         failure);
+    return control_force(&r->driver.acts, &r->f.packing, id,
+                         (struct wrench){ of(force), of(torque) }, t, failure);
 }
 
 int nsd_boundary_force(struct nsd_run *r, int32_t boundary, double force, enum nsd_term term)
@@ -35,7 +35,7 @@ int nsd_boundary_force(struct nsd_run *r, int32_t boundary, double force, enum n
     struct failure *failure = run_why(r);
     enum control_lasting t = failure ? term_of(term, failure) : CONTROL_TERMS;
     if (t == CONTROL_TERMS) return NSD_USAGE;
-    return control_push(&r->acts, &r->f.packing, boundary, force, t, failure);
+    return control_push(&r->driver.acts, &r->f.packing, boundary, force, t, failure);
 }
 
 int nsd_boundary_velocity(struct nsd_run *r, int32_t boundary, const double velocity[3])

@@ -3,7 +3,6 @@
 #include "base/text.h"
 #include "file/reader.h"
 #include "file/report_json.h"
-#include "file/stream.h"
 #include "measure/measures.h"
 #include "run/document.h"
 #include "run/partner.h"
@@ -18,8 +17,6 @@
 enum {
     ANSWER_LEAST = 1 << 20,     /* bytes that an answer may have, at least, */
     ANSWER_BODY = 512,          /* and for each body: four vectors with all their digits have 320 */
-    DOCUMENT_LEAST = 1 << 24,   /* bytes that an answered document may have, at least, */
-    DOCUMENT_BODY = 4096,       /* and for each body: with ten contacts it has 3000 */
     FRAME_MEMORY_MOST = 1 << 30 /* bytes of answers between two frames, which are kept in memory */
 };
 
@@ -30,7 +27,7 @@ static bool document;
 
 const struct cli_option options_loop[] = {
     { CLI_TEXT, 0, "with", &command, "CMD", .silent = true,
-      .help = "ask CMD, by JSON or documents, for forces and changes [none]" },
+      .help = "ask CMD, by lines of JSON, for forces and changes [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "ask before the first and then every K-th step [1]" },
     { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|NAME,...", .silent = true,
@@ -334,68 +331,17 @@ static int loop_keep(struct packing *p, const json_t *answer, struct failure *fa
     return failure->status;
 }
 
-/* The answer that the document of the next n bytes is */
-static json_t *take_document(const struct packing *p, double n, struct failure *failure)
-{
-    const size_t most = DOCUMENT_LEAST + (size_t)p->n * DOCUMENT_BODY;
-    char *bytes;
-    struct frame f = { 0 };
-    json_t *answer = NULL;
-    if (!(n <= (double)most))
-        failure_set(failure, EX_UNAVAILABLE, "the document answered has more than %zu bytes", most);
-    else if (!partner_bytes(loop.partner, &bytes, (size_t)n, failure) &&
-             !document_read(&f, bytes, (size_t)n, failure))
-        answer = reply_of_frame(&f, p, failure);
-    frame_free(&f);
-    return answer;
-}
-
-/* A document by itself: its header says how long it is. */
-static json_t *take_bare_document(const struct packing *p, struct failure *failure)
-{
-    char *header;
-    if (partner_peek(loop.partner, &header, DOCUMENT_USERBLOCK, failure)) return NULL;
-    int64_t n = document_length((unsigned char *)header);
-    if (n > 0) return take_document(p, (double)n, failure);
-    failure_set(
-        failure, EX_DATAERR,
-        "the document answered %s: a line {\"document\": BYTES} in front of it gives its length",
-        n ? "has no header of nsd's" : "is unfinished");
-    return NULL;
-}
-
-/* The line, and the document that it says to follow; what the line has besides comes first. */
-static json_t *take_line(const struct packing *p, struct failure *failure)
-{
-    size_t n;
-    char *line;
-    if (partner_line(loop.partner, &line, &n, answer_most(p->n), failure)) return NULL;
-    json_t *answer = reply_parse(line, n, failure), *size = json_object_get(answer, "document");
-    if (!size) return answer;
-    json_t *whole = NULL;
-    if (!json_is_integer(size) || json_integer_value(size) < 1)
-        failure_set(failure, EX_DATAERR, "the answer's document is a number of bytes above 0");
-    else
-        whole = take_document(p, (double)json_integer_value(size), failure);
-    json_object_del(answer, "document");
-    if (whole && json_object_update(whole, answer)) failure_set(failure, EX_SOFTWARE, "no memory");
-    json_decref(answer);
-    return whole;
-}
-
 static json_t *loop_ask(const struct frame *f, struct control *acts, bool first,
                         struct failure *failure)
 {
-    static const unsigned char document_begins = 0x89; // no JSON does
-    size_t length = 0;
-    char *begin, *text = loop_message(f, first ? NULL : &f->contacts, acts, &length, failure);
+    size_t n, length = 0;
+    char *line, *text = loop_message(f, first ? NULL : &f->contacts, acts, &length, failure);
     json_t *answer = NULL;
     if (!failure->status && (first || !partner_check_silent(loop.partner, failure)) &&
         !partner_write(loop.partner, text, length, timeout, failure)) {
         partner_expect(loop.partner, timeout);
-        if (!partner_peek(loop.partner, &begin, 1, failure))
-            answer = ((unsigned char)*begin == document_begins ? take_bare_document
-                                                               : take_line)(&f->packing, failure);
+        if (!partner_line(loop.partner, &line, &n, answer_most(f->packing.n), failure))
+            answer = reply_parse(line, n, failure);
     }
     free(text);
     return answer;

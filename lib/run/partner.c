@@ -240,24 +240,7 @@ int partner_check_silent(struct partner *p, struct failure *failure)
     if (!p->n) return 0;
     return failure_set(
         failure, EX_UNAVAILABLE,
-        "the program has written more than its answer: one line, or one document, for "
-        "each line that it reads");
-}
-
-int partner_peek(struct partner *p, char **bytes, size_t n, struct failure *failure)
-{
-    partner_forget(p);
-    while (p->n < n)
-        if (read_more(p, failure)) return failure->status;
-    *bytes = p->text;
-    return 0;
-}
-
-int partner_bytes(struct partner *p, char **bytes, size_t n, struct failure *failure)
-{
-    if (partner_peek(p, bytes, n, failure)) return failure->status;
-    p->taken = n;
-    return 0;
+        "the program has written more than its answer: one line for each line that it reads");
 }
 
 int partner_line(struct partner *p, char **line, size_t *n, size_t most, struct failure *failure)

@@ -1,6 +1,6 @@
 /*
- * run/partner.h: a program that is started once, and is written to and read from, by lines and by numbers of bytes, with a
- * bound on the time that it takes and on the size of its answers. It does not outlive this process, however that ends.
+ * run/partner.h: a program that is started once, and answers in lines what is written to it, with a bound on the time that it
+ * takes and on the size of its answers. It does not outlive this process, however that ends.
  */
 #ifndef NSD_PARTNER_H
 #define NSD_PARTNER_H
@@ -21,13 +21,9 @@ int partner_write(struct partner *partner, const void *bytes, size_t n, double s
                   struct failure *failure);
 /* An answer begins: from now on it may take so many seconds. */
 void partner_expect(struct partner *partner, double seconds);
-/* The next n bytes, which stay the next; valid until the next call, as what the others give. */
-int partner_peek(struct partner *partner, char **bytes, size_t n, struct failure *failure);
-/* The next line, of at most `most` bytes; it ends with 0 in place of the end of line. */
+/* The next line, of at most `most` bytes; it ends with 0 in place of the end of line, and is valid until the next call. */
 int partner_line(struct partner *partner, char **line, size_t *n, size_t most,
                  struct failure *failure);
-/* The next n bytes */
-int partner_bytes(struct partner *partner, char **bytes, size_t n, struct failure *failure);
 /* Has it written nothing that was not read? */
 int partner_check_silent(struct partner *partner, struct failure *failure);
 /* It reads an end of file, and is waited for so long, then killed; NULL: nothing. Fails if it has written what was not

@@ -184,7 +184,7 @@ static void *read_make(struct nsd_run *r, int k, int64_t n, struct failure *fail
 static void *data_of(struct nsd_run *r, int k, int64_t n, struct failure *failure)
 {
     const struct read_row *t = &table[k];
-    const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->acts;
+    const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->driver.acts;
     void *data;
     if (t->make) return read_make(r, k, n, failure);
     if (t->rows == OF_ACTS) {
@@ -192,8 +192,9 @@ static void *data_of(struct nsd_run *r, int k, int64_t n, struct failure *failur
         const int term = (int)((t->at - (torque ? offsetof(struct control, torque)
                                                 : offsetof(struct control, force))) /
                                sizeof(vec3 *));
-        if (control_arrays(&r->acts, &r->f.packing, failure)) return NULL;
-        (torque ? r->acts.twists : r->acts.pushes)[term] = true; // what is written there acts
+        if (control_arrays(&r->driver.acts, &r->f.packing, failure)) return NULL;
+        (torque ? r->driver.acts.twists : r->driver.acts.pushes)[term] =
+            true; // what is written there acts
     }
     memcpy(&data, owner + t->at, sizeof data);
     return data;

@@ -7,8 +7,7 @@
  *     "boundaries": { NUMBER: { "velocity": [x, y, z], "force": N }, ... },
  *     "gravity": [x, y, z], "friction": [[KIND, KIND, mu], ...], "stop": true }
  *
- * or the word stop. Forces act until the next answer, all else until it is changed. A document that is answered becomes
- * such an object.
+ * or the word stop. Forces act until the next answer, all else until it is changed.
  */
 #ifndef NSD_REPLY_H
 #define NSD_REPLY_H
@@ -16,8 +15,6 @@
 #include "run/control.h"
 
 #include <jansson.h>
-
-struct frame;
 
 /* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
 json_t *reply_parse(const char *line, size_t length, struct failure *failure);
@@ -28,12 +25,5 @@ int reply_check(const json_t *answer, struct failure *failure);
    Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
 int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
                 struct failure *failure);
-
-/*
- * The answer that makes of p what the frame is: its velocities, angular velocities, gravity, friction and velocities of
- * boundaries where they differ, and its forces that last. To be freed; NULL: the frame differs in something else, or is of
- * another moment (EX_DATAERR), or no memory
- */
-json_t *reply_of_frame(const struct frame *frame, const struct packing *p, struct failure *failure);
 
 #endif

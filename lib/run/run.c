@@ -77,9 +77,10 @@ static int run_begin(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     p->events.n = 0; // they belong to the frame that was read
-    if (control_take(&r->acts, p, failure)) return failure->status;
+    if (control_take(&r->driver.acts, p, failure)) return failure->status;
     external_force_forget(&p->outside);
-    if (flow_read(&r->flow, p, failure)) return r->flow = (struct flow){ 0 }, failure->status;
+    if (flow_read(&r->driver.flow, p, failure))
+        return r->driver.flow = (struct flow){ 0 }, failure->status;
     for (int64_t i = 0; i < p->n; i++)
         if (p->id[i] >= r->next_id) r->next_id = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
     if (p->first_id > r->next_id) r->next_id = p->first_id;
@@ -203,10 +204,8 @@ void nsd_close(struct nsd_run **run)
     frame_free(&r->f);
     process_unlock();
     contacts_free(&r->spare);
-    step_forget(&r->memory);
-    neighbours_free(&r->ahead);
-    flow_free(&r->flow);
-    rollback_free(&r->undo), control_free(&r->acts), external_force_free(&r->last);
+    driver_free(&r->driver);
+    rollback_free(&r->undo), external_force_free(&r->last);
     frame_memory_free(&r->first), frame_memory_free(&r->before);
     for (int k = 0; k < MADE_MOST; k++) free(r->made[k]);
     free(r->text);
@@ -236,13 +235,10 @@ static const struct cli_option *option_named(const char *name)
 /* "1e-4", "auto:0.01" */
 static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failure)
 {
-    static const char word[] = "auto:";
     struct packing *p = &r->f.packing;
-    bool adapts = !strncmp(text, word, sizeof word - 1);
-    const char *number = adapts ? text + sizeof word - 1 : text;
-    char *end;
-    double x = number_read(number, &end);
-    if (end == number || *end || !(x > 0 && x <= (adapts ? 1 : DBL_MAX)))
+    bool adapts;
+    double x;
+    if (!driver_read_dt(text, &adapts, &x))
         return failure_set(
             failure, NSD_USAGE,
             "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
@@ -251,14 +247,7 @@ static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failu
     if (r->out)
         return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
     if (adapts) return r->tol = x, p->adapts = true, 0;
-    const struct packing was = *p;
-    p->halved = 0;
-    packing_set_dt(p, x);
-    if (packing_check_clock(p, failure)) {
-        p->dt = was.dt, p->halved = was.halved, p->t0 = was.t0, p->step0 = was.step0;
-        return failure->status;
-    }
-    memory_scale(&p->memory, x / was.dt);
+    if (driver_set_dt(p, x, failure)) return failure->status;
     r->tol = 0, p->adapts = false, p->tolerance = 0;
     return 0;
 }
@@ -310,7 +299,7 @@ int run_choose(struct nsd_run *r, struct failure *failure)
     if (options_has(&r->options, &options.theta)) p->theta = r->options.theta;
     p->overlap = options_overlap_of(&r->options, p, false);
     free(r->option_json);
-    r->option_json = text, r->o = o;
+    r->option_json = text, r->driver.o = o;
     if (r->solved) r->f.report.options = text;
     r->chosen = r->f.stale = true;
     return 0;
@@ -325,28 +314,14 @@ static void swap_forces(struct external_force *a, struct external_force *b)
     b->force = was.force, b->torque = was.torque, b->push = was.push, b->most = was.most;
 }
 
-/* dt of the step to come */
-static int adapt(struct nsd_run *r, struct failure *failure)
-{
-    struct packing *p = &r->f.packing;
-    double had = p->dt;
-    const double tol = r->tol > 0 ? r->tol : p->tolerance;
-    if (!(tol > 0)) return 0;
-    if (adapt_step(p, tol, &r->ahead, failure)) return failure->status;
-    r->o.solve.local.newton_abs *= p->dt / had;
-    return 0;
-}
-
 /* Its contacts are r->spare, its report *rep. */
 static int run_advance(struct nsd_run *r, struct report *rep, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
-    bool changed = false;
-    if (adapt(r, failure) || flow_step(&r->flow, p, NULL, &changed, failure))
+    struct driver *d = &r->driver;
+    if (driver_begin(d, p, r->tol > 0 ? r->tol : p->tolerance, NULL, failure) ||
+        step_advance(p, &r->spare, &d->memory, &d->o, rep, failure))
         return failure->status;
-    if (changed) step_forget(&r->memory), neighbours_free(&r->ahead);
-    if (control_begin(&r->acts, p, failure)) return failure->status;
-    if (step_advance(p, &r->spare, &r->memory, &r->o, rep, failure)) return failure->status;
     if (report_made(rep)) return 0;
     char text[160];
     report_says_end(rep, text, sizeof text);
@@ -366,18 +341,18 @@ static int step_once(struct nsd_run *r, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
     struct report rep = { 0 };
-    const struct step_opt o = r->o;
+    const struct step_opt o = r->driver.o;
     if (r->solved) rep = r->f.report;
     rep.options = r->option_json;
-    if (rollback_take(&r->undo, p, &r->acts, failure)) return failure->status;
+    if (rollback_take(&r->undo, p, &r->driver.acts, failure)) return failure->status;
     bool whole = r->undo.whole;
     if (!whole) swap_forces(&p->outside, &r->last);
     if (run_advance(r, &rep, failure)) {
         name_step(r->undo.was.step + 1, failure);
         if (!whole) swap_forces(&p->outside, &r->last);
-        rollback_back(&r->undo, p, &r->acts);
-        step_forget(&r->memory), neighbours_free(&r->ahead);
-        r->o = o;
+        rollback_back(&r->undo, p, &r->driver.acts);
+        driver_forget(&r->driver);
+        r->driver.o = o;
         return failure->status;
     }
     struct contacts had = r->f.contacts;
@@ -386,7 +361,7 @@ static int step_once(struct nsd_run *r, struct failure *failure)
     r->f.report = rep, r->solved = true;
     r->f.detected = r->f.reported = r->f.moved = true;
     account_add(&r->f.account, &rep), account_add(&r->account, &rep);
-    control_end(&r->acts, p->walls);
+    control_end(&r->driver.acts, p->walls);
     return 0;
 }
 
@@ -400,12 +375,6 @@ int nsd_step(struct nsd_run *r, int64_t n)
     return failure->status;
 }
 
-/* s: what a time may differ from that of its step, as nsd-step has it */
-static double slack(const struct packing *p, double t)
-{
-    return 1e-6 * p->dt + 4 * DBL_EPSILON * fabs(t);
-}
-
 int nsd_until(struct nsd_run *r, double t)
 {
     struct failure *failure = run_why(r);
@@ -416,7 +385,7 @@ int nsd_until(struct nsd_run *r, double t)
         return failure_set(failure, NSD_USAGE, "until %g s: more than 1e15 steps of %g s", t,
                            p->dt);
     if (run_choose(r, failure)) return failure->status;
-    while (!failure->status && p->t < t - slack(p, t)) step_once(r, failure);
+    while (!failure->status && p->t < t - driver_slack(p, t)) step_once(r, failure);
     return failure->status;
 }
 
@@ -429,7 +398,7 @@ void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s)
 {
     packing_free(&r->f.packing), contacts_free(&r->f.contacts);
     r->f.packing = *p, r->f.contacts = *s;
-    step_forget(&r->memory), neighbours_free(&r->ahead);
+    driver_forget(&r->driver);
     external_force_free(&r->last);
     r->other_bodies = true;
 }

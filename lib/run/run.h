@@ -6,10 +6,10 @@
 
 #include "file/writer.h"
 #include "measure/measures.h"
+#include "run/driver.h"
 #include "run/nsd.h"
 #include "run/process.h"
 #include "run/rollback.h"
-#include "scene/inlet.h"
 #include "step/step_options.h"
 
 /* Arrays that are made when they are read */
@@ -20,19 +20,15 @@ struct nsd_run {
     struct frame f;
     struct contacts spare;      /* where the contacts of the next step go */
     struct external_force last; /* the forces of the last step, while the next is made */
-    struct step_memory memory;
-    struct neighbours ahead; /* of where bodies would be at the end of a step */
-    struct flow flow;
+    struct driver driver;
     struct rollback undo;
-    struct control acts;
     struct account account; /* of the steps of this run */
     double measured;        /* of them that have not converged, when it was measured last */
     bool solved;            /* the report is of a step of this run, and its options are these: */
     char *option_json;      /* or NULL */
 
     struct options options;
-    struct step_opt o;     /* what they come to; of the dt that the step begins with */
-    bool chosen;           /* o is that of the options */
+    bool chosen;           /* driver.o is what they come to */
     double tol;            /* radii: of dt auto:TOL; 0: the document's, if its dt is automatic */
     bool contacts, forces; /* what is saved */
     struct asked asked;
@@ -57,7 +53,7 @@ struct failure *run_why(struct nsd_run *run);
 /* The reason of this thread where there is no run */
 struct failure *run_why_of_thread(void);
 
-/* r->o and r->option_json are what the options come to; the packing has theta and what is done about overlap. */
+/* r->driver.o and r->option_json are what the options come to; the packing has theta and what is done about overlap. */
 int run_choose(struct nsd_run *r, struct failure *failure);
 /* As nsd_add() */
 int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct failure *failure);

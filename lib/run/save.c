@@ -41,7 +41,8 @@ static int save_prepare(struct nsd_run *r, struct failure *failure)
 {
     static const char line[] =
         "{\"command\":\"libnsd\",\"version\":\"" NSD_VERSION "\",\"options\":{}}";
-    if (run_choose(r, failure) || (r->acts.id && control_arrays(&r->acts, &r->f.packing, failure)))
+    if (run_choose(r, failure) ||
+        (r->driver.acts.id && control_arrays(&r->driver.acts, &r->f.packing, failure)))
         return failure->status;
     if (!r->noted && !frame_note(&r->f, line, failure)) r->noted = true;
     return failure->status;
@@ -70,7 +71,7 @@ static int back(struct nsd_run *r, struct save_before was)
 static struct frame frame_of(const struct nsd_run *r)
 {
     struct frame f = r->f;
-    f.packing.outside.lasts = control_lend(&r->acts, f.packing.walls);
+    f.packing.outside.lasts = control_lend(&r->driver.acts, f.packing.walls);
     f.detected = f.detected && f.moved && (r->contacts || r->forces);
     f.forces = r->forces;
     return f;

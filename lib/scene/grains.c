@@ -83,7 +83,7 @@ static int grains_add_body(struct grains *out, const struct scene_bodies *b, con
     g.has_v = g.has_w = true;
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
-    if (b->unsaid && g.mass == 0) g.weighs = g.fixed = false;
+    if (b->foreign && g.mass == 0) g.weighs = g.fixed = false;
     g.kind = b->has_kind ? b->kind : kind[p->kind[i]];
     if (g.kind < 0 && b->foreign)
         return failure_set(

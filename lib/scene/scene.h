@@ -191,8 +191,7 @@ struct scene_bodies {
     double phi;    /* SCENE_RANDOM: share of the box that is filled; 0: count bodies */
     int64_t frame; /* SCENE_DOCUMENT: from 0, or from the end: -1 is the last */
     bool at_rest;  /* SCENE_DOCUMENT: without its velocities */
-    bool foreign;  /* SCENE_DOCUMENT: the file is another program's, */
-    bool unsaid;   /* which need not say masses: 0 is none */
+    bool foreign;  /* SCENE_DOCUMENT: the file is another program's, and a mass of 0 is none */
     bool has_repeats, repeats[3];
     int32_t types; /* kinds that its types are */
     struct scene_type {

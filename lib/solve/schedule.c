@@ -101,15 +101,13 @@ int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing 
     return room ? 0 : -1;
 }
 
-const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random",
-                                              "colour",  "halves",  "block" };
+const char *const order_name[ORDER_COUNT] = { "natural", "reverse", "random", "colour", "block" };
 
 enum {
-    MARK_COLOURS = 64, /* colours, the bits of a mark; other contacts get groups of their own */
-    HALVES_FROM = 384, /* contacts from which halves are worth it */
-    COLOUR_HALVES_FROM = 8192, /* contacts from which halves cost one thread nothing */
-    ONE_BLOCK_MAX = 65536,     /* contacts that are coloured as one block, at most */
-    BLOCK = 16384,             /* contacts of a block, whose bodies stay in a second-level cache */
+    MARK_COLOURS = 64,     /* colours, the bits of a mark; other contacts get groups of their own */
+    HALVES_FROM = 8192,    /* contacts from which halves cost one thread nothing */
+    ONE_BLOCK_MAX = 65536, /* contacts that are coloured as one block, at most */
+    BLOCK = 16384,         /* contacts of a block, whose bodies stay in a second-level cache */
     CONTACTS_PER_THREAD = 8192 /* the fewest contacts that are worth a thread */
 };
 
@@ -421,7 +419,7 @@ static int regroup(struct schedule *s, const struct graph *g)
 
 static int schedule_place(struct schedule *s, enum order order, struct graph *g)
 {
-    bool halves = !g->W && g->n >= (order == ORDER_HALVES ? HALVES_FROM : COLOUR_HALVES_FROM);
+    bool halves = !g->W && g->n >= HALVES_FROM;
     int64_t first[2];
     if (order < ORDER_COLOUR) return place_levels(g, s->sequence);
     if (g->contacts && g->n > ONE_BLOCK_MAX && sort_along_curve(g->contacts, s->sequence, &s->key))

@@ -7,11 +7,10 @@
  *
  * natural, reverse, random: the given sequence, regrouped by levels: a contact goes one level after
  * the last one before it that it depends on. The result is the sequence's own, bit for bit. colour:
- * contacts coloured greedily in their natural order; another sequence, in fewer groups. halves: the
- * zones of solve/schedule.h one after another, each coloured by itself. From 8192
- * contacts of a packing on, colour goes by halves too; halves is as colour for a problem given by W
- * or with fewer than 384 contacts. block: colours, and where several processes share the contacts each
- * sweeps its own by itself [mpi/blocks.h]; as colour in one.
+ * contacts coloured greedily in their natural order; another sequence, in fewer groups. From 8192
+ * contacts of a packing on, colour goes by halves: the zones below one after another, each coloured by
+ * itself. block: colours, and where several processes share the contacts each sweeps its own by itself
+ * [mpi/blocks.h]; as colour in one.
  */
 #ifndef NSD_SCHEDULE_H
 #define NSD_SCHEDULE_H
@@ -24,9 +23,8 @@
 #include <stdatomic.h>
 
 /*
- * A packing's contacts in two halves that two threads sweep side by
- * side. It serves piles whose colours are too small to be shared, and large ones, where each thread
- * then keeps bodies of its own in its cache.
+ * A packing's contacts in two halves that two threads sweep side by side, so that each thread keeps
+ * bodies of its own in its cache.
  *
  * A plane cuts the bodies in two. The contacts across it are the border zone, which belongs to one
  * thread together with the contacts beyond; the other thread has the rim, the contacts that share a
@@ -53,15 +51,7 @@ struct two_thread_split {
     alignas(64) _Atomic int64_t rims;    /* how often the rim has */
 };
 
-enum order {
-    ORDER_NATURAL,
-    ORDER_REVERSE,
-    ORDER_RANDOM,
-    ORDER_COLOUR,
-    ORDER_HALVES,
-    ORDER_BLOCK,
-    ORDER_COUNT
-};
+enum order { ORDER_NATURAL, ORDER_REVERSE, ORDER_RANDOM, ORDER_COLOUR, ORDER_BLOCK, ORDER_COUNT };
 extern const char *const order_name[ORDER_COUNT]; /* as command lines and documents have them */
 
 struct schedule {

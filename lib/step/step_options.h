@@ -19,7 +19,6 @@ struct options {
     int64_t max_sweeps, newton_max, threads;
     int64_t substeps; /* of a step in which fast bodies meet, at most */
     bool warm, every_sweep, history, strict, keep_going;
-    int cut;            /* of several processes, the way that space is cut [mpi/decomposition.h] */
     const char *log;    /* or NULL */
     const char *device; /* that makes the sweeps, as device_open() has it; NULL: the CPU */
     uint64_t given;     /* which of them were, by options_give() */

@@ -195,11 +195,6 @@ if [ -d "$problems" ]; then
 else
     skip "published problems with a flipped byte" "no ../shared/problems"
 fi
-# a tool of one word, as the others are
-printf '#!/bin/sh\nexec nsd-gen --from "$@"\n' >"$tmp/nsd-gen-from"
-chmod +x "$tmp/nsd-gen-from"
-nsd-export --to ondem -o "$tmp/good.vtkhdf" "$tmp/good.h5"
-PATH=$tmp:$PATH fuzz_all "an ON-DEM file" "$tmp/good.vtkhdf" 100 nsd-gen-from
 cp "$tmp/good.h5" "$tmp/unfinished.h5"
 header "$tmp/unfinished.h5" 2 1 0
 fuzz_all "an unfinished document" "$tmp/unfinished.h5" 150 nsd-err nsd-step nsd-view

@@ -44,7 +44,7 @@ for lanes in 2 4 8; do
     frozen "heap-lanes$lanes" "$heap; export NSD_LANES=$lanes; nsd-step -n 5 --contacts -m exact -o out.h5 heap.h5; cat out.h5"
 done
 if command -v mpirun >/dev/null && command -v nsd-step-mpi >/dev/null; then
-    for way in '' '--order block -m exact' '--cut hypergraph'; do
+    for way in '' '--order block -m exact'; do
         frozen "heap-ranks3${way// /}" "$heap; mpirun --oversubscribe --bind-to none -n 3 nsd-step -n 5 --contacts $way -o out.h5 heap.h5 </dev/null; cat out.h5"
     done
     frozen "silo-ranks3" "nsd-gen scenes/silo.json >in.h5; mpirun --oversubscribe --bind-to none -n 3 nsd-step -n 8 --sums --contacts -o out.h5 in.h5 2>said </dev/null; cat out.h5"
@@ -52,7 +52,7 @@ fi
 frozen heap-pipe "$heap; nsd-step -n 3 heap.h5 | nsd-detect | nsd-solve -m eal | nsd-err; nsd-detect heap.h5 | nsd-solve | nsd-move | nsd-info"
 frozen heap-fclib "$heap; nsd-detect --fclib=local heap.h5 >f.h5; nsd-solve f.h5 | nsd-err; nsd-detect --fclib=global heap.h5 >g.h5; nsd-solve g.h5 | nsd-err"
 frozen heap-stat "$heap; nsd-step -n 3 --contacts --sums heap.h5 -o out.h5; nsd-stat -m all out.h5 || nsd-stat out.h5; nsd-stat -l -f fields.h5 out.h5; cat fields.h5"
-for to in vtk xyz lammps csv gsd ondem stl lammps-data; do
+for to in vtk xyz lammps csv gsd stl lammps-data; do
     frozen "export-$to" "$heap; nsd-step -n 2 --contacts heap.h5 -o out.h5; nsd-export -l -t $to out.h5 -o x.$to; find . -name 'x*' -newer heap.h5 -type f | sort | xargs cat"
 done
 frozen view "$heap; nsd-view -l heap.h5 >p.png; cat p.png; nsd-gen scenes/drum.json | nsd-view >q.png; cat q.png; nsd-web heap.h5 >w.html; cat w.html"

@@ -214,7 +214,7 @@ claim()
     'nsd-export -o out.lammpstrj out.h5') [ "$(grep -c '^ITEM: ATOMS id type x y z ' out.lammpstrj)" = "$(frames out.h5 length)" ] ;;
     *'--part surfaces -o bricks.vtp') grep -q 'NumberOfPolys="390"' bricks.vtp ;; # 65 bricks of six faces
     'nsd-export --last -o heap.data out.h5') grep -q '^500 atoms$' heap.data ;;
-    'nsd-export --last -o heap.vtkhdf out.h5') h5ls heap.vtkhdf/ONDEM | grep -q Materials ;;
+    'python3 -m nsd.ondem write out.h5 -o heap.vtkhdf') h5ls heap.vtkhdf/ONDEM | grep -q Materials ;;
     'nsd-export -o out.gsd out.h5') [ "$(head -c 8 out.gsd | od -An -tx1 | tr -d ' ')" = df65df65df65df65 ] ;;
     'nsd-export -o out.xyz out.h5') [ "$(grep -c 'Properties=species:S:1:pos:R:3:' out.xyz)" = "$(frames out.h5 length)" ] ;;
     *'> forces.txt') table 1 "$(nsd-info --last out.h5 | jq .contacts)" forces.txt && awk '$1 < 0 { exit 1 }' forces.txt ;;
@@ -264,7 +264,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     case $command in
     'gnuplot '* | 'ffmpeg '*) command -v "${command%% *}" >/dev/null || { skip "$name" "no ${command%% *}"; return; } ;;
     *import*MDAnalysis*) has MDAnalysis || { skip "$name" "no MDAnalysis"; return; } ;;
-    *import*h5py*) have_h5py || { skip "$name" "no h5py"; return; } ;;
+    *import*h5py* | *nsd.ondem*) have_h5py || { skip "$name" "no h5py"; return; } ;;
     esac
     cd "$tmp/run" || return
     # shellcheck disable=SC2086 # a target, and variables
@@ -272,6 +272,7 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
     *import*nsd*) PYTHONPATH=$repository/python py -c "$command" >stdout 2>stderr || s=$? ;;
+    *nsd.ondem*) PYTHONPATH=$repository/python bash -c "${command/#python3/\/usr\/bin\/python3}" >stdout 2>stderr || s=$? ;;
     import*sys.stdin*) cat a.h5 packing.h5 | py -c "$command" >stdout 2>stderr || s=$? ;;
     import*) py -c "$command" >stdout 2>stderr || s=$? ;;
     *) GNUTERM=dumb bash -o pipefail -c "$command" >stdout 2>stderr || s=$? ;;

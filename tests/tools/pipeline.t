@@ -4,7 +4,7 @@
 . tests/support/tap.sh
 
 methods=(sbp sal ebp eal exact)
-orders=(natural reverse random colour halves)
+orders=(natural reverse random colour)
 frames=300
 [ -z "$thin" ] || frames=60
 

@@ -96,7 +96,7 @@ static bool same_everywhere(const struct packing *p, const struct contacts *s, s
 /* Ways to solve: all there are, or of a large packing one and three sweeps of it */
 static void compare(const struct packing *p, const struct contacts *s, const char *what, bool all)
 {
-    static const enum order orders[] = { ORDER_NATURAL, ORDER_COLOUR, ORDER_NATURAL, ORDER_HALVES };
+    static const enum order orders[] = { ORDER_NATURAL, ORDER_COLOUR, ORDER_NATURAL, ORDER_COLOUR };
     for (int m = 0; methods[m]; m++) {
         bool good = true;
         for (int way = 0; way < 8; way++) {

@@ -345,16 +345,14 @@ EOF
 if [ -z "$thin" ]; then
     ok "a heap that slides across the parts: the bytes of one process" same "$tmp/slide.h5" 3 -n 120 --every 120
     ok "and it is cut anew, so that the work stays even" even 1.15 1.5 2
-    ok "the same in cells of a grid, by a hypergraph" same "$tmp/slide.h5" 4 -n 60 --cut hypergraph
-    ok "as even" even 1.2 1.5 2
     ok "a drum that turns through them: the bytes of one process" same "$tmp/drum.h5" 3 -n 25 --every 25
     ok "and the work stays even" even 1.15 1.3 1
 else
     ok "a heap that slides across the parts: the bytes of one process" same "$tmp/slide.h5" 2 -n 20 --every 20
 fi
 jq -n '{ dim: 2, dt: 1e-3, walls: [{ normal: [0, 1], point: [0, 0] }], bodies: [{ x: [0, 0.01], radius: 0.01 }] }' | nsd-gen - >"$tmp/disc.h5"
-ok "of one disc" same "$tmp/disc.h5" 3 -n 2 --cut hypergraph
-ok "and in blocks" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --overlap keep --cut hypergraph
+ok "of one disc" same "$tmp/disc.h5" 3 -n 2
+ok "and in blocks" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --overlap keep
 
 # ---- what goes wrong ----
 
