@@ -13,133 +13,132 @@
 
 /* The dataset of a column of bodies, /particles/all/NAME [N][width], or where the bodies move NAME/value
    [F][N][width]; a row of width 1 has no dimension of its own, but in NAME/value [state/body_columns.h]. */
-static inline void layout_body_path(const struct body_column *b, char path[80])
+static inline void layout_body_path(const struct field *b, char path[80])
 {
-    snprintf(path, 80, "/particles/all/%s%s", b->column.name,
-             b->traits & BODY_MOVES ? "/value" : "");
+    snprintf(path, 80, "/particles/all/%s%s", b->name, b->traits & FIELD_MOVES ? "/value" : "");
 }
 
 /* Where the cell is periodic: members of struct cell, [F][3][3] */
-static const struct column layout_cell[] = {
-    { "box/edges", "m", COLUMN_F64, 9, offsetof(struct cell, edge) },
-    { "box/rate", "m s-1", COLUMN_F64, 9, offsetof(struct cell, rate) },
+static const struct field layout_cell[] = {
+    FIELD(struct cell, edge, F64, 9, "box/edges", "m", 0),
+    FIELD(struct cell, rate, F64, 9, "box/rate", "m s-1", 0),
     { 0 },
 };
 
 /* /particles/boundary/body/NAME [B][width]: members of struct wall. In version 1 all were planes, in
    /walls/plane, and their loads in /walls/load. Shapes are there where any is no plane, or vanishes. */
-static const struct column layout_boundary[] = {
-    { "shape", "1", COLUMN_I32, 1, offsetof(struct wall, shape) },
-    { "side", "1", COLUMN_I32, 1, offsetof(struct wall, side) },
-    { "along", "1", COLUMN_F64, 3, offsetof(struct wall, along) },
-    { "size", "m", COLUMN_F64, 3, offsetof(struct wall, size) },
-    { "arc", "rad", COLUMN_F64, 1, offsetof(struct wall, arc) },
-    { "elements", "1", COLUMN_I32, 2, offsetof(struct wall, first_element) },
-    { "until", "s", COLUMN_F64, 1, offsetof(struct wall, until) },
+static const struct field layout_boundary[] = {
+    FIELD(struct wall, shape, I32, 1, "shape", "1", 0),
+    FIELD(struct wall, side, I32, 1, "side", "1", 0),
+    FIELD(struct wall, along, F64, 3, "along", "1", 0),
+    FIELD(struct wall, size, F64, 3, "size", "m", 0),
+    FIELD(struct wall, arc, F64, 1, "arc", "rad", 0),
+    FIELD(struct wall, first_element, I32, 2, "elements", "1", 0),
+    FIELD(struct wall, until, F64, 1, "until", "s", 0),
     { 0 },
 };
 /* The same where any has a weld tolerance of its own */
-static const struct column layout_weld[] = {
-    { "weld", "m", COLUMN_F64, 1, offsetof(struct wall, weld) },
+static const struct field layout_weld[] = {
+    FIELD(struct wall, weld, F64, 1, "weld", "m", 0),
     { 0 },
 };
 /* The same where any has a coefficient of wear */
-static const struct column layout_wear[] = {
-    { "wear", "Pa-1", COLUMN_F64, 1, offsetof(struct wall, wear) },
+static const struct field layout_wear[] = {
+    FIELD(struct wall, wear, F64, 1, "wear", "Pa-1", 0),
     { 0 },
 };
 /* The same where the surface of any moves along itself */
-static const struct column layout_belt[] = {
-    { "belt", "m s-1", COLUMN_F64, 3, offsetof(struct wall, belt) },
+static const struct field layout_belt[] = {
+    FIELD(struct wall, belt, F64, 3, "belt", "m s-1", 0),
     { 0 },
 };
-static const struct column layout_plane[] = {
-    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, x) },
-    { "normal", "1", COLUMN_F64, 3, offsetof(struct wall, n) },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct wall, v) },
-    { "species", "1", COLUMN_I32, 1, offsetof(struct wall, kind) },
+static const struct field layout_plane[] = {
+    FIELD(struct wall, x, F64, 3, "point", "m", 0),
+    FIELD(struct wall, n, F64, 3, "normal", "1", 0),
+    FIELD(struct wall, v, F64, 3, "velocity", "m s-1", 0),
+    FIELD(struct wall, kind, I32, 1, "species", "1", 0),
     { 0 },
 };
 
 /* /nsd/names/NAME [R][width], where any boundary has a name: members of struct named */
-static const struct column layout_names[] = {
-    { "name", "1", COLUMN_I32, 1, offsetof(struct named, name) },
-    { "boundary", "1", COLUMN_I32, 1, offsetof(struct named, boundary) },
-    { "faces", "1", COLUMN_I32, 2, offsetof(struct named, first) },
+static const struct field layout_names[] = {
+    FIELD(struct named, name, I32, 1, "name", "1", 0),
+    FIELD(struct named, boundary, I32, 1, "boundary", "1", 0),
+    FIELD(struct named, first, I32, 2, "faces", "1", 0),
     { 0 },
 };
 
 /* /particles/boundary/load/NAME [B][width] where any yields: members of struct wall */
-static const struct column layout_loads[] = {
-    { "way", "1", COLUMN_I32, 1, offsetof(struct wall, load.way) },
-    { "axis", "1", COLUMN_F64, 3, offsetof(struct wall, load.axis) },
-    { "point", "m", COLUMN_F64, 3, offsetof(struct wall, load.point) },
-    { "mass", "kg, kg m2", COLUMN_F64, 1, offsetof(struct wall, load.mass) },
-    { "force", "N, N m", COLUMN_F64, 1, offsetof(struct wall, load.force) },
+static const struct field layout_loads[] = {
+    FIELD(struct wall, load.way, I32, 1, "way", "1", 0),
+    FIELD(struct wall, load.axis, F64, 3, "axis", "1", 0),
+    FIELD(struct wall, load.point, F64, 3, "point", "m", 0),
+    FIELD(struct wall, load.mass, F64, 1, "mass", "kg, kg m2", 0),
+    FIELD(struct wall, load.force, F64, 1, "force", "N, N m", 0),
     { 0 },
 };
 
 /* The same, where the load of any is a pressure */
-static const struct column layout_spread[] = {
-    { "spread", "1", COLUMN_I32, 1, offsetof(struct wall, load.spread) },
+static const struct field layout_spread[] = {
+    FIELD(struct wall, load.spread, I32, 1, "spread", "1", 0),
     { 0 },
 };
 
 /* The same, where a strain rate moves any wall of a room */
-static const struct column layout_rate[] = {
-    { "rate", "s-1", COLUMN_F64, 1, offsetof(struct wall, load.rate) },
+static const struct field layout_rate[] = {
+    FIELD(struct wall, load.rate, F64, 1, "rate", "s-1", 0),
     { 0 },
 };
 
 /* /particles/boundary/load/NAME/value [F][B], the same */
-static const struct column layout_yield[] = {
-    { "speed", "m s-1, rad s-1", COLUMN_F64, 1, offsetof(struct wall, load.speed) },
-    { "travel", "m, rad", COLUMN_F64, 1, offsetof(struct wall, load.travel) },
+static const struct field layout_yield[] = {
+    FIELD(struct wall, load.speed, F64, 1, "speed", "m s-1, rad s-1", 0),
+    FIELD(struct wall, load.travel, F64, 1, "travel", "m, rad", 0),
     { 0 },
 };
 
 /* /particles/boundary/drive/NAME and, where a load is one in time, push/NAME [D][width]: members of
    struct drive */
-static const struct column layout_drive[] = {
-    { "boundary", "1", COLUMN_I32, 1, offsetof(struct drive, boundary) },
-    { "turns", "1", COLUMN_I32, 1, offsetof(struct drive, turns) },
-    { "signal", "1", COLUMN_I32, 1, offsetof(struct drive, signal) },
-    { "axis", "1", COLUMN_F64, 3, offsetof(struct drive, axis) },
-    { "point", "m", COLUMN_F64, 3, offsetof(struct drive, point) },
-    { "value", "m s-1, rad s-1, m, rad", COLUMN_F64, 1, offsetof(struct drive, value) },
-    { "frequency", "s-1", COLUMN_F64, 1, offsetof(struct drive, frequency) },
-    { "phase", "rad", COLUMN_F64, 1, offsetof(struct drive, phase) },
-    { "from", "s", COLUMN_F64, 1, offsetof(struct drive, from) },
-    { "until", "s", COLUMN_F64, 1, offsetof(struct drive, until) },
-    { "clock", "s", COLUMN_F64, 1, offsetof(struct drive, clock) },
-    { "rows", "1", COLUMN_I32, 2, offsetof(struct drive, first) },
+static const struct field layout_drive[] = {
+    FIELD(struct drive, boundary, I32, 1, "boundary", "1", 0),
+    FIELD(struct drive, turns, I32, 1, "turns", "1", 0),
+    FIELD(struct drive, signal, I32, 1, "signal", "1", 0),
+    FIELD(struct drive, axis, F64, 3, "axis", "1", 0),
+    FIELD(struct drive, point, F64, 3, "point", "m", 0),
+    FIELD(struct drive, value, F64, 1, "value", "m s-1, rad s-1, m, rad", 0),
+    FIELD(struct drive, frequency, F64, 1, "frequency", "s-1", 0),
+    FIELD(struct drive, phase, F64, 1, "phase", "rad", 0),
+    FIELD(struct drive, from, F64, 1, "from", "s", 0),
+    FIELD(struct drive, until, F64, 1, "until", "s", 0),
+    FIELD(struct drive, clock, F64, 1, "clock", "s", 0),
+    FIELD(struct drive, first, I32, 2, "rows", "1", 0),
     { 0 },
 };
 
 /* /particles/boundary/sums/NAME/value [F][faces][width] where they are kept: members of struct face_sums */
-static const struct column layout_sums[] = {
-    { "impulse", "N s", COLUMN_F64, 3, offsetof(struct face_sums, impulse) },
-    { "moment", "N m s", COLUMN_F64, 3, offsetof(struct face_sums, moment) },
-    { "normal", "N s", COLUMN_F64, 1, offsetof(struct face_sums, normal) },
-    { "tangential", "N s", COLUMN_F64, 1, offsetof(struct face_sums, tangential) },
-    { "work", "J", COLUMN_F64, 1, offsetof(struct face_sums, work) },
-    { "friction", "J", COLUMN_F64, 1, offsetof(struct face_sums, friction) },
-    { "rub", "J", COLUMN_F64, 1, offsetof(struct face_sums, rub) },
+static const struct field layout_sums[] = {
+    FIELD(struct face_sums, impulse, F64, 3, "impulse", "N s", 0),
+    FIELD(struct face_sums, moment, F64, 3, "moment", "N m s", 0),
+    FIELD(struct face_sums, normal, F64, 1, "normal", "N s", 0),
+    FIELD(struct face_sums, tangential, F64, 1, "tangential", "N s", 0),
+    FIELD(struct face_sums, work, F64, 1, "work", "J", 0),
+    FIELD(struct face_sums, friction, F64, 1, "friction", "J", 0),
+    FIELD(struct face_sums, rub, F64, 1, "rub", "J", 0),
     { 0 },
 };
 
 /* /nsd/force/NAME [D][width], forces and torques on bodies: members of struct drive, and their tables in /nsd/force/row */
-static const struct column layout_pull[] = {
-    { "id", "1", COLUMN_I32, 1, offsetof(struct drive, boundary) },
-    { "turns", "1", COLUMN_I32, 1, offsetof(struct drive, turns) },
-    { "signal", "1", COLUMN_I32, 1, offsetof(struct drive, signal) },
-    { "axis", "1", COLUMN_F64, 3, offsetof(struct drive, axis) },
-    { "value", "N, N m", COLUMN_F64, 1, offsetof(struct drive, value) },
-    { "frequency", "s-1", COLUMN_F64, 1, offsetof(struct drive, frequency) },
-    { "phase", "rad", COLUMN_F64, 1, offsetof(struct drive, phase) },
-    { "from", "s", COLUMN_F64, 1, offsetof(struct drive, from) },
-    { "until", "s", COLUMN_F64, 1, offsetof(struct drive, until) },
-    { "rows", "1", COLUMN_I32, 2, offsetof(struct drive, first) },
+static const struct field layout_pull[] = {
+    FIELD(struct drive, boundary, I32, 1, "id", "1", 0),
+    FIELD(struct drive, turns, I32, 1, "turns", "1", 0),
+    FIELD(struct drive, signal, I32, 1, "signal", "1", 0),
+    FIELD(struct drive, axis, F64, 3, "axis", "1", 0),
+    FIELD(struct drive, value, F64, 1, "value", "N, N m", 0),
+    FIELD(struct drive, frequency, F64, 1, "frequency", "s-1", 0),
+    FIELD(struct drive, phase, F64, 1, "phase", "rad", 0),
+    FIELD(struct drive, from, F64, 1, "from", "s", 0),
+    FIELD(struct drive, until, F64, 1, "until", "s", 0),
+    FIELD(struct drive, first, I32, 2, "rows", "1", 0),
     { 0 },
 };
 
@@ -151,138 +150,136 @@ struct boundary_motion {
     vec3 v; /* m/s: of that point */
     vec3 w; /* rad/s */
 };
-static const struct column layout_boundary_motion[] = {
-    { "position", "m", COLUMN_F64, 3, offsetof(struct boundary_motion, x) },
-    { "orientation", "1", COLUMN_F64, 4, offsetof(struct boundary_motion, q) },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct boundary_motion, v) },
-    { "angular_velocity", "rad s-1", COLUMN_F64, 3, offsetof(struct boundary_motion, w) },
+static const struct field layout_boundary_motion[] = {
+    FIELD(struct boundary_motion, x, F64, 3, "position", "m", 0),
+    FIELD(struct boundary_motion, q, F64, 4, "orientation", "1", 0),
+    FIELD(struct boundary_motion, v, F64, 3, "velocity", "m s-1", 0),
+    FIELD(struct boundary_motion, w, F64, 3, "angular_velocity", "rad s-1", 0),
     { 0 },
 };
 
 /* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
-static const struct column layout_material[] = {
-#define MATERIAL(member, name, unit, ...)                                                          \
-    { name, unit, COLUMN_F64, 1, offsetof(struct packing, member) },
+static const struct field layout_material[] = {
+#define MATERIAL(member, name, unit, ...) FIELD(struct packing, member, F64, 1, name, unit, 0),
     EACH_PAIR_COLUMN(MATERIAL){ 0 },
 };
 /* The same where any pair has another number than 0 */
-static const struct column layout_optional_material[] = {
+static const struct field layout_optional_material[] = {
     EACH_OPTIONAL_PAIR_COLUMN(MATERIAL){ 0 },
 };
 #undef MATERIAL
 
 /* /nsd/law/NAME [kinds][kinds] where any pair has a law beyond these: members of struct pair_law */
-static const struct column layout_law[] = {
-    { "cohesion", "N", COLUMN_F64, 1, offsetof(struct pair_law, cohesion) },
-    { "range", "m", COLUMN_F64, 1, offsetof(struct pair_law, range) },
-    { "volume", "m3", COLUMN_F64, 1, offsetof(struct pair_law, volume) },
-    { "tension", "N m-1", COLUMN_F64, 1, offsetof(struct pair_law, tension) },
-    { "wetting", "rad", COLUMN_F64, 1, offsetof(struct pair_law, wetting) },
-    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct pair_law, mu_r) },
-    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct pair_law, mu_p) },
-    { "c_n", "N m-3", COLUMN_F64, 1, offsetof(struct pair_law, cn) },
-    { "c_t", "N m-3", COLUMN_F64, 1, offsetof(struct pair_law, ct) },
-    { "w", "J m-2", COLUMN_F64, 1, offsetof(struct pair_law, w) },
-    { "eta", "N s m-1", COLUMN_F64, 1, offsetof(struct pair_law, eta) },
-    { "area", "m2", COLUMN_F64, 1, offsetof(struct pair_law, area) },
-    { "beta", "1", COLUMN_F64, 1, offsetof(struct pair_law, beta) },
-    { "made", "s", COLUMN_F64, 1, offsetof(struct pair_law, made) },
-    { "forever", "1", COLUMN_F64, 1, offsetof(struct pair_law, forever) },
+static const struct field layout_law[] = {
+    FIELD(struct pair_law, cohesion, F64, 1, "cohesion", "N", 0),
+    FIELD(struct pair_law, range, F64, 1, "range", "m", 0),
+    FIELD(struct pair_law, volume, F64, 1, "volume", "m3", 0),
+    FIELD(struct pair_law, tension, F64, 1, "tension", "N m-1", 0),
+    FIELD(struct pair_law, wetting, F64, 1, "wetting", "rad", 0),
+    FIELD(struct pair_law, mu_r, F64, 1, "mu_r", "m", 0),
+    FIELD(struct pair_law, mu_p, F64, 1, "mu_p", "m", 0),
+    FIELD(struct pair_law, cn, F64, 1, "c_n", "N m-3", 0),
+    FIELD(struct pair_law, ct, F64, 1, "c_t", "N m-3", 0),
+    FIELD(struct pair_law, w, F64, 1, "w", "J m-2", 0),
+    FIELD(struct pair_law, eta, F64, 1, "eta", "N s m-1", 0),
+    FIELD(struct pair_law, area, F64, 1, "area", "m2", 0),
+    FIELD(struct pair_law, beta, F64, 1, "beta", "1", 0),
+    FIELD(struct pair_law, made, F64, 1, "made", "s", 0),
+    FIELD(struct pair_law, forever, F64, 1, "forever", "1", 0),
     { 0 },
 };
 
 /* The same where it is said of some pair whether its impacts are bounded */
-static const struct column layout_impact[] = {
-    { "impact", "1", COLUMN_F64, 1, offsetof(struct pair_law, impact) },
+static const struct field layout_impact[] = {
+    FIELD(struct pair_law, impact, F64, 1, "impact", "1", 0),
     { 0 },
 };
 
 /* /nsd/bonds/NAME [B][width], of frame k rows start[k] .. start[k] + count[k] - 1: members of struct
    bond */
-static const struct column layout_bonds[] = {
-    { "body", "1", COLUMN_I32, 2, offsetof(struct bond, a) },
-    { "feature", "1", COLUMN_I32, 1, offsetof(struct bond, feature) },
-    { "shift", "1", COLUMN_I8, 3, offsetof(struct bond, shift) },
-    { "wet", "1", COLUMN_I8, 1, offsetof(struct bond, wet) },
-    { "beta", "1", COLUMN_F64, 1, offsetof(struct bond, beta) },
-    { "gap", "m", COLUMN_F64, 1, offsetof(struct bond, gap) },
-    { "normal", "1", COLUMN_F64, 3, offsetof(struct bond, n) },
-    { "slip", "m", COLUMN_F64, 3, offsetof(struct bond, slip) },
+static const struct field layout_bonds[] = {
+    FIELD(struct bond, a, I32, 2, "body", "1", 0),
+    FIELD(struct bond, feature, I32, 1, "feature", "1", 0),
+    FIELD(struct bond, shift, I8, 3, "shift", "1", 0),
+    FIELD(struct bond, wet, I8, 1, "wet", "1", 0),
+    FIELD(struct bond, beta, F64, 1, "beta", "1", 0),
+    FIELD(struct bond, gap, F64, 1, "gap", "m", 0),
+    FIELD(struct bond, n, F64, 3, "normal", "1", 0),
+    FIELD(struct bond, slip, F64, 3, "slip", "m", 0),
     { 0 },
 };
 
 /* /nsd/memory/NAME [K][width], of each frame that has it `count` rows from `start` on: members of struct recall; with
    features, shifts and moments where contacts have any */
-static const struct column layout_memory[] = {
-    { "body", "1", COLUMN_I32, 2, offsetof(struct recall, a) },
-    { "impulse", "N s", COLUMN_F64, 3, offsetof(struct recall, r) },
+static const struct field layout_memory[] = {
+    FIELD(struct recall, a, I32, 2, "body", "1", 0),
+    FIELD(struct recall, r, F64, 3, "impulse", "N s", 0),
     { 0 },
 };
-static const struct column layout_memory_features[] = {
-    { "feature", "1", COLUMN_I32, 1, offsetof(struct recall, feature) },
+static const struct field layout_memory_features[] = {
+    FIELD(struct recall, feature, I32, 1, "feature", "1", 0),
     { 0 },
 };
-static const struct column layout_memory_shifts[] = {
-    { "shift", "1", COLUMN_I8, 3, offsetof(struct recall, shift) },
+static const struct field layout_memory_shifts[] = {
+    FIELD(struct recall, shift, I8, 3, "shift", "1", 0),
     { 0 },
 };
-static const struct column layout_memory_moments[] = {
-    { "moment", "N m s", COLUMN_F64, 3, offsetof(struct recall, m) },
+static const struct field layout_memory_moments[] = {
+    FIELD(struct recall, m, F64, 3, "moment", "N m s", 0),
     { 0 },
 };
 
 /* Of bonds where there are shapes */
-static const struct column layout_anchors[] = {
-    { "area", "m2", COLUMN_F64, 1, offsetof(struct bond, area) },
-    { "anchor_a", "m", COLUMN_F64, 3, offsetof(struct bond, at_a) },
-    { "anchor_b", "m", COLUMN_F64, 3, offsetof(struct bond, at_b) },
-    { "axis", "1", COLUMN_F64, 3, offsetof(struct bond, axis) },
+static const struct field layout_anchors[] = {
+    FIELD(struct bond, area, F64, 1, "area", "m2", 0),
+    FIELD(struct bond, at_a, F64, 3, "anchor_a", "m", 0),
+    FIELD(struct bond, at_b, F64, 3, "anchor_b", "m", 0),
+    FIELD(struct bond, axis, F64, 3, "axis", "1", 0),
     { 0 },
 };
 
 /* /contacts/NAME [S][width]: members of struct contact; /contacts/frame, its
    basis, is handled apart */
-static const struct column layout_contacts[] = {
-    { "body", "1", COLUMN_I32, 2, offsetof(struct contact, a) },
-    { "point", "m", COLUMN_F64, 3, offsetof(struct contact, x) },
-    { "gap", "m", COLUMN_F64, 1, offsetof(struct contact, gap) },
-#define NUMBER(member, name, unit, ...)                                                            \
-    { name, unit, COLUMN_F64, 1, offsetof(struct contact, member) },
+static const struct field layout_contacts[] = {
+    FIELD(struct contact, a, I32, 2, "body", "1", 0),
+    FIELD(struct contact, x, F64, 3, "point", "m", 0),
+    FIELD(struct contact, gap, F64, 1, "gap", "m", 0),
+#define NUMBER(member, name, unit, ...) FIELD(struct contact, member, F64, 1, name, unit, 0),
     EACH_PAIR_COLUMN(NUMBER)
 #undef NUMBER
         { 0 },
 };
 
 /* The same where the cell repeats */
-static const struct column layout_shifts[] = {
-    { "shift", "1", COLUMN_I8, 3, offsetof(struct contact, shift) },
+static const struct field layout_shifts[] = {
+    FIELD(struct contact, shift, I8, 3, "shift", "1", 0),
     { 0 },
 };
 
 /* The same where there is a mesh */
-static const struct column layout_features[] = {
-    { "feature", "1", COLUMN_I32, 1, offsetof(struct contact, feature) },
+static const struct field layout_features[] = {
+    FIELD(struct contact, feature, I32, 1, "feature", "1", 0),
     { 0 },
 };
 
 /* The same where pairs have laws beyond friction and restitution: members of struct contact_law */
-static const struct column layout_contact_laws[] = {
-    { "pull", "N", COLUMN_F64, 1, offsetof(struct contact_law, pull) },
-    { "stiffness", "N m-1", COLUMN_F64, 2, offsetof(struct contact_law, stiff) },
-    { "jump", "m", COLUMN_F64, 3, offsetof(struct contact_law, jump) },
-    { "beta", "1", COLUMN_F64, 1, offsetof(struct contact_law, beta) },
-    { "offset", "m s-1", COLUMN_F64, 1, offsetof(struct contact_law, offset) },
-    { "mu_r", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_r) },
-    { "mu_p", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_p) },
-    { "tie", "1", COLUMN_I8, 1, offsetof(struct contact_law, state) },
+static const struct field layout_contact_laws[] = {
+    FIELD(struct contact_law, pull, F64, 1, "pull", "N", 0),
+    FIELD(struct contact_law, stiff, F64, 2, "stiffness", "N m-1", 0),
+    FIELD(struct contact_law, jump, F64, 3, "jump", "m", 0),
+    FIELD(struct contact_law, beta, F64, 1, "beta", "1", 0),
+    FIELD(struct contact_law, offset, F64, 1, "offset", "m s-1", 0),
+    FIELD(struct contact_law, mu_r, F64, 1, "mu_r", "m", 0),
+    FIELD(struct contact_law, mu_p, F64, 1, "mu_p", "m", 0),
+    FIELD(struct contact_law, state, I8, 1, "tie", "1", 0),
     { 0 },
 };
 
 /* /contacts/NAME [S][width] of solved contacts: members of struct found */
-static const struct column layout_found[] = {
-    { "reaction", "N s", COLUMN_F64, 3, offsetof(struct found, r) },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct found, u) },
-    { "status", "1", COLUMN_I8, 1, offsetof(struct found, status) },
+static const struct field layout_found[] = {
+    FIELD(struct found, r, F64, 3, "reaction", "N s", 0),
+    FIELD(struct found, u, F64, 3, "velocity", "m s-1", 0),
+    FIELD(struct found, status, I8, 1, "status", "1", 0),
     { 0 },
 };
 
@@ -308,99 +305,97 @@ static const struct column layout_found[] = {
  * LAYOUT_REPORT/NAME/value [F][width]: members of struct report. The five numbers of eps are
  * eps_glob, motion, proj, bipotential, penetration.
  */
-static const struct column layout_report[] = {
-    { "contacts", "1", COLUMN_I64, 1, offsetof(struct report, err.contacts) },
-    { "sweeps", "1", COLUMN_I32, 1, offsetof(struct report, sweeps) },
-    { "converged", "1", COLUMN_I8, 1, offsetof(struct report, converged) },
-    { "eps", "1", COLUMN_F64, 5, offsetof(struct report, err.paper) },
-    { "eps_scaled", "1", COLUMN_F64, 5, offsetof(struct report, err.scaled) },
-    { "natural", "1", COLUMN_F64, 1, offsetof(struct report, err.natural) },
-    { "natural_siconos", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_siconos) },
-    { "natural_q", "1", COLUMN_F64, 1, offsetof(struct report, err.natural_q) },
-    { "max_penetration", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.max_penetration) },
-    { "max_penetration_true", "m s-1", COLUMN_F64, 1,
-      offsetof(struct report, err.max_penetration_true) },
-    { "max_overlap", "m", COLUMN_F64, 1, offsetof(struct report, err.max_overlap) },
-    { "newton", "1", COLUMN_I64, 1, offsetof(struct report, newton) },
-    { "safeguarded", "1", COLUMN_I64, 1, offsetof(struct report, safeguarded) },
-    { "gave_up", "1", COLUMN_I64, 1, offsetof(struct report, gave_up) },
+static const struct field layout_report[] = {
+    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", 0),
+    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", 0),
+    FIELD(struct report, converged, I8, 1, "converged", "1", 0),
+    FIELD(struct report, err.paper, F64, 5, "eps", "1", 0),
+    FIELD(struct report, err.scaled, F64, 5, "eps_scaled", "1", 0),
+    FIELD(struct report, err.natural, F64, 1, "natural", "1", 0),
+    FIELD(struct report, err.natural_siconos, F64, 1, "natural_siconos", "1", 0),
+    FIELD(struct report, err.natural_q, F64, 1, "natural_q", "1", 0),
+    FIELD(struct report, err.max_penetration, F64, 1, "max_penetration", "m s-1", 0),
+    FIELD(struct report, err.max_penetration_true, F64, 1, "max_penetration_true", "m s-1", 0),
+    FIELD(struct report, err.max_overlap, F64, 1, "max_overlap", "m", 0),
+    FIELD(struct report, newton, I64, 1, "newton", "1", 0),
+    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", 0),
+    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", 0),
     { 0 },
 };
 
 /* The same where the criterion is velocity */
-static const struct column layout_velocity[] = {
-    { "velocity", "1", COLUMN_F64, 1, offsetof(struct report, err.velocity) },
-    { "velocity_error", "m s-1", COLUMN_F64, 1, offsetof(struct report, err.velocity_error) },
-    { "jammed", "1", COLUMN_I64, 1, offsetof(struct report, err.jammed) },
+static const struct field layout_velocity[] = {
+    FIELD(struct report, err.velocity, F64, 1, "velocity", "1", 0),
+    FIELD(struct report, err.velocity_error, F64, 1, "velocity_error", "m s-1", 0),
+    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", 0),
     { 0 },
 };
 
 /* /nsd/flow/NAME/value [F][pours], or [removals]: members of struct passage */
-static const struct column layout_poured[] = {
-    { "poured", "1", COLUMN_I64, 1, offsetof(struct flow_count, bodies) },
-    { "poured_mass", "kg", COLUMN_F64, 1, offsetof(struct flow_count, mass) },
+static const struct field layout_poured[] = {
+    FIELD(struct flow_count, bodies, I64, 1, "poured", "1", 0),
+    FIELD(struct flow_count, mass, F64, 1, "poured_mass", "kg", 0),
     { 0 },
 };
-static const struct column layout_removed[] = {
-    { "removed", "1", COLUMN_I64, 1, offsetof(struct flow_count, bodies) },
-    { "removed_mass", "kg", COLUMN_F64, 1, offsetof(struct flow_count, mass) },
+static const struct field layout_removed[] = {
+    FIELD(struct flow_count, bodies, I64, 1, "removed", "1", 0),
+    FIELD(struct flow_count, mass, F64, 1, "removed_mass", "kg", 0),
     { 0 },
 };
 
 /* /nsd/flow/events/NAME [E][width]: members of struct event */
-static const struct column layout_events[] = {
-    { "step", "1", COLUMN_I64, 1, offsetof(struct event, step) },
-    { "time", "s", COLUMN_F64, 1, offsetof(struct event, t) },
-    { "id", "1", COLUMN_I32, 1, offsetof(struct event, id) },
-    { "came", "1", COLUMN_I8, 1, offsetof(struct event, came) },
-    { "which", "1", COLUMN_I32, 1, offsetof(struct event, which) },
-    { "radius", "m", COLUMN_F64, 1, offsetof(struct event, radius) },
-    { "mass", "kg", COLUMN_F64, 1, offsetof(struct event, mass) },
-    { "position", "m", COLUMN_F64, 3, offsetof(struct event, x) },
-    { "velocity", "m s-1", COLUMN_F64, 3, offsetof(struct event, v) },
+static const struct field layout_events[] = {
+    FIELD(struct event, step, I64, 1, "step", "1", 0),
+    FIELD(struct event, t, F64, 1, "time", "s", 0),
+    FIELD(struct event, id, I32, 1, "id", "1", 0),
+    FIELD(struct event, came, I8, 1, "came", "1", 0),
+    FIELD(struct event, which, I32, 1, "which", "1", 0),
+    FIELD(struct event, radius, F64, 1, "radius", "m", 0),
+    FIELD(struct event, mass, F64, 1, "mass", "kg", 0),
+    FIELD(struct event, x, F64, 3, "position", "m", 0),
+    FIELD(struct event, v, F64, 3, "velocity", "m s-1", 0),
     { 0 },
 };
 
 /* /observables/solver/NAME/value [F][width] where there are bodies: members of struct report */
-static const struct column layout_balance[] = {
-    { "kinetic_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.kinetic) },
-    { "kinetic_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.change) },
-    { "potential_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.potential) },
-    { "work_gravity", "J", COLUMN_F64, 1, offsetof(struct report, balance.gravity) },
-    { "work_drives", "J", COLUMN_F64, 1, offsetof(struct report, balance.drives) },
-    { "work_loads", "J", COLUMN_F64, 1, offsetof(struct report, balance.loads) },
-    { "dissipation", "J", COLUMN_F64, 1, offsetof(struct report, balance.dissipation) },
-    { "momentum", "N s", COLUMN_F64, 3, offsetof(struct report, balance.momentum) },
-    { "boundary_impulse", "N s", COLUMN_F64, 3, offsetof(struct report, balance.impulse) },
+static const struct field layout_balance[] = {
+    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", 0),
+    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", 0),
+    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", 0),
+    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", 0),
+    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", 0),
+    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", 0),
+    FIELD(struct report, balance.dissipation, F64, 1, "dissipation", "J", 0),
+    FIELD(struct report, balance.momentum, F64, 3, "momentum", "N s", 0),
+    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", 0),
     { 0 },
 };
 
 /* The same where pairs have laws beyond friction and restitution */
-static const struct column layout_bond_balance[] = {
-    { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
-    { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
-    { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
+static const struct field layout_bond_balance[] = {
+    FIELD(struct report, balance.bond_change, F64, 1, "bond_change", "J", 0),
+    FIELD(struct report, balance.bond_energy, F64, 1, "bond_energy", "J", 0),
+    FIELD(struct report, balance.broken, F64, 1, "broken", "J", 0),
     { 0 },
 };
 
 /* The same where impacts may gain energy */
-static const struct column layout_gain_balance[] = {
-    { "impact_gain", "J", COLUMN_F64, 1, offsetof(struct report, balance.gained) },
+static const struct field layout_gain_balance[] = {
+    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", 0),
     { 0 },
 };
 
 /* The same where the cell moves */
-static const struct column layout_peculiar_balance[] = {
-    { "peculiar_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar) },
-    { "peculiar_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.peculiar_change) },
+static const struct field layout_peculiar_balance[] = {
+    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", 0),
+    FIELD(struct report, balance.peculiar_change, F64, 1, "peculiar_change", "J", 0),
     { 0 },
 };
 
 /* The same where bodies that overlap are moved apart */
-static const struct column layout_projection_balance[] = {
-    { "projection_work", "J", COLUMN_F64, 1, offsetof(struct report, balance.projection) },
-    { "projection_angular_momentum", "N m s", COLUMN_F64, 3,
-      offsetof(struct report, balance.spun) },
+static const struct field layout_projection_balance[] = {
+    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", 0),
+    FIELD(struct report, balance.spun, F64, 3, "projection_angular_momentum", "N m s", 0),
     { 0 },
 };
 

@@ -11,7 +11,7 @@ static const char law[] = "/nsd/law", bonds[] = "/nsd/bonds";
 /* ---- from a document ---- */
 
 /* Both halves of a table say the same. */
-static int check_symmetric(const struct packing *p, const struct column *c, const double *table,
+static int check_symmetric(const struct packing *p, const struct field *c, const double *table,
                            struct failure *failure)
 {
     for (int32_t a = 0; a < p->kinds; a++)
@@ -22,19 +22,19 @@ static int check_symmetric(const struct packing *p, const struct column *c, cons
     return 0;
 }
 
-static int pair_law_tables_read_columns(struct source *s, const struct column *columns,
+static int pair_law_tables_read_columns(struct source *s, const struct field *columns,
                                         struct packing *p, struct failure *failure)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");
-    for (const struct column *c = columns; !failure->status && c->name; c++) {
+    for (const struct field *c = columns; !failure->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
         if (source_read(s, path, COLUMN_F64, (uint64_t)n, table, failure) ||
             check_symmetric(p, c, table, failure))
             break;
-        column_scatter(c, n, table, p->law, sizeof *p->law);
+        field_scatter(c, n, table, p->law, sizeof *p->law);
     }
     free(table);
     return failure->status;
@@ -75,17 +75,17 @@ int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct 
 
 /* ---- to a document ---- */
 
-static int write_columns(hid_t file, const struct column *columns, const struct packing *p,
+static int write_columns(hid_t file, const struct field *columns, const struct packing *p,
                          struct failure *failure)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");
-    for (const struct column *c = columns; !failure->status && c->name; c++) {
+    for (const struct field *c = columns; !failure->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
-        column_gather(c, n, p->law, sizeof *p->law, table);
+        field_gather(c, n, p->law, sizeof *p->law, table);
         h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, table), c->units, failure);
     }
     free(table);

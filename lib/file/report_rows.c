@@ -11,7 +11,7 @@ enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
 
 /* Terms that the balances of some packings have, and where a report says that it has them */
 static const struct {
-    const struct column *columns;
+    const struct field *columns;
     size_t flag; /* of a bool in struct report */
 } parts[] = {
     { layout_bond_balance, offsetof(struct report, tied) },
@@ -32,9 +32,9 @@ static bool part_is_there(const struct report *rep, int k)
 }
 
 /* The reports whose numbers in these columns are there: a killed writer's may differ. */
-static void report_rows_count_rows(struct report_rows *r, const struct column *columns)
+static void report_rows_count_rows(struct report_rows *r, const struct field *columns)
 {
-    for (const struct column *c = columns; c->name; c++) {
+    for (const struct field *c = columns; c->name; c++) {
         uint64_t shape[4];
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", r->group, c->name);
@@ -189,7 +189,7 @@ void report_rows_close(struct report_rows *r)
 /* ---- to a document ---- */
 
 /* One table of the balances, beside the report, whose clocks they share */
-static int write_table(struct table_write *s, const struct column *table, const struct report *rep,
+static int write_table(struct table_write *s, const struct field *table, const struct report *rep,
                        bool first, struct failure *failure)
 {
     const char *solver = LAYOUT_REPORT;
@@ -242,16 +242,15 @@ static const char home[] = "/nsd/account";
 
 /* A column each, from the table of what is watched */
 struct report_rows_columns {
-    struct column c[ACCOUNT_ROWS + 2];
+    struct field c[ACCOUNT_ROWS + 2];
 };
 
 static struct report_rows_columns columns(void)
 {
-    struct report_rows_columns t = { { { "steps", "1", COLUMN_I64, 1,
-                                         offsetof(struct account, steps) } } };
+    struct report_rows_columns t = { { FIELD(struct account, steps, I64, 1, "steps", "1", 0) } };
     for (int k = 0; k < ACCOUNT_ROWS; k++)
-        t.c[1 + k] = (struct column){ account_watched[k].name, account_watched[k].units, COLUMN_F64,
-                                      4, offsetof(struct account, worst[k]) };
+        t.c[1 + k] = (struct field)FIELD(struct account, worst[k], F64, 4, account_watched[k].name,
+                                         account_watched[k].units, 0);
     return t;
 }
 
@@ -274,7 +273,7 @@ static int report_rows_check(const struct account *a, struct failure *failure)
 int64_t account_rows_count(const struct source *source, int64_t n)
 {
     struct report_rows_columns t = columns();
-    for (const struct column *c = t.c; c->name; c++) {
+    for (const struct field *c = t.c; c->name; c++) {
         char path[80];
         uint64_t shape[4];
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
@@ -288,8 +287,8 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
 {
     struct report_rows_columns t = columns();
     char path[80];
-    for (const struct column *c = t.c; c->name; c++) {
-        const struct column one[] = { *c, { 0 } };
+    for (const struct field *c = t.c; c->name; c++) {
+        const struct field one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (!source_has(source, path)) continue; // of a version that does not watch it
         if (table_read_finite(source, home, "/value", start, RECORDS(one, n, account), failure))

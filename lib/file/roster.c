@@ -79,9 +79,9 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
 }
 
 /* Has the column a dataset of [frames][rows]? That of ids says which bodies a frame has. */
-static bool roster_moves(const struct body_column *b)
+static bool roster_moves(const struct field *b)
 {
-    return b->traits & BODY_MOVES || b == &body_columns[BODY_id];
+    return b->traits & FIELD_MOVES || b == &body_columns[BODY_id];
 }
 
 /* The tables of bodies go on with those from `first` on, the last ones of the packing. */
@@ -89,15 +89,15 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
                      struct failure *failure)
 {
     const hsize_t n = (hsize_t)(p->n - first);
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
+    for (const struct field *b = body_columns; b->name; b++) {
+        const struct field *c = b;
         const hsize_t shape[2] = { n, (hsize_t)c->width };
         char path[80];
-        if (roster_moves(b) || !column_array(c, p)) continue;
+        if (roster_moves(b) || !field_array(c, p)) continue;
         layout_body_path(b, path);
         if (table_write_rows(s,
                              (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
-                                               s->chunk_bodies, column_row(c, p, first), c->units },
+                                               s->chunk_bodies, field_row(c, p, first), c->units },
                              failure))
             return failure->status;
     }
@@ -129,20 +129,20 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
     return 0;
 }
 
-static void moving_path(const struct body_column *b, char path[80])
+static void moving_path(const struct field *b, char path[80])
 {
-    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
+    snprintf(path, 80, "/particles/all/%s/value", b->name);
 }
 
 /* A column of bodies that move, of body i in row[i] */
-static int write_spread(struct roster *r, struct table_write *s, const struct body_column *b,
+static int write_spread(struct roster *r, struct table_write *s, const struct field *b,
                         const struct packing *p, const int64_t *row, struct failure *failure)
 {
-    const struct column *c = &b->column;
-    const char *data = column_array(c, p);
+    const struct field *c = b;
+    const char *data = field_array(c, p);
     char path[80];
     moving_path(b, path);
-    size_t number = column_size(c->type), bytes = column_bytes(c);
+    size_t number = field_size(c->type), bytes = field_bytes(c);
     char *all = malloc((size_t)r->width * bytes);
     if (!all) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
     const double none = NAN;
@@ -163,8 +163,8 @@ static int write_spread(struct roster *r, struct table_write *s, const struct bo
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
                  const int64_t *row, struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (!roster_moves(b) || !column_array(&b->column, p)) continue;
+    for (const struct field *b = body_columns; b->name; b++) {
+        if (!roster_moves(b) || !field_array(b, p)) continue;
         if (write_spread(r, s, b, p, row, failure)) return failure->status;
     }
     return 0;
@@ -200,17 +200,17 @@ int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n,
 }
 
 /* A column of p's bodies, of body i from row[i]: of frame k, or of a table that all frames share */
-static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct body_column *b,
+static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct field *b,
                        struct packing *p, struct failure *failure)
 {
-    const struct column *c = &b->column;
+    const struct field *c = b;
     const int64_t n = p->n;
-    char path[80], *out = column_array(c, p);
+    char path[80], *out = field_array(c, p);
     if (roster_moves(b))
         moving_path(b, path);
     else
         layout_body_path(b, path);
-    if (b->traits & BODY_OPTIONAL && !source_has(s, path)) return 0;
+    if (b->traits & FIELD_OPTIONAL && !source_has(s, path)) return 0;
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
     const bool moving = roster_moves(b);
@@ -219,7 +219,7 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
     int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)
         return failure_set(failure, EX_DATAERR, "%s: fewer rows than bodies", path);
-    size_t bytes = (size_t)c->width * column_size(c->type);
+    size_t bytes = (size_t)c->width * field_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
     if (!all) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
     int e =
@@ -234,9 +234,8 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
                 struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, failure))
-            return failure->status;
+    for (const struct field *b = body_columns; b->name; b++) {
+        if (field_array(b, p) && read_spread(source, k, row, b, p, failure)) return failure->status;
     }
     return 0;
 }
@@ -244,14 +243,14 @@ int roster_read(struct source *source, int64_t k, const int64_t *row, struct pac
 static const char flow[] = "/nsd/flow", events[] = "/nsd/flow/events";
 
 /* A column of n passages, as one frame */
-static int write_passages(struct table_write *s, const struct column *c, int32_t n,
+static int write_passages(struct table_write *s, const struct field *c, int32_t n,
                           const struct flow_count *from, struct failure *failure)
 {
     for (; c->name && n > 0; c++) {
         char path[80];
         int64_t data[1000]; // as wide as a double; at most 1000 of each (scene_flow.c)
         snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        column_gather(c, n, from, sizeof *from, data);
+        field_gather(c, n, from, sizeof *from, data);
         const hsize_t shape[2] = { 1, (hsize_t)n };
         if (table_write_rows(
                 s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units },
@@ -289,7 +288,7 @@ int flow_write(struct table_write *s, const struct packing *p, struct failure *f
 }
 
 /* The clock of the particles, for columns in a group */
-static int link_clocks(struct table_write *s, const char *where, const struct column *c,
+static int link_clocks(struct table_write *s, const char *where, const struct field *c,
                        struct failure *failure)
 {
     return table_write_link(s, "/particles/all/position/step", "step", where, c, failure) ||
@@ -300,7 +299,7 @@ static int link_clocks(struct table_write *s, const char *where, const struct co
 
 int flow_link(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    static const struct column ids[] = { { .name = "id" }, { 0 } };
+    static const struct field ids[] = { { .name = "id" }, { 0 } };
     if ((p->pours > 0 && link_clocks(s, flow, layout_poured, failure)) ||
         (p->removals > 0 && link_clocks(s, flow, layout_removed, failure)))
         return failure->status;
@@ -320,7 +319,7 @@ static int32_t roster_count_of(struct source *s, const char *path, struct failur
            -1;
 }
 
-static int read_passages(struct source *s, int64_t k, const struct column *c, int32_t n,
+static int read_passages(struct source *s, int64_t k, const struct field *c, int32_t n,
                          struct flow_count *to, struct failure *failure)
 {
     for (; c->name && n > 0; c++) {
@@ -329,7 +328,7 @@ static int read_passages(struct source *s, int64_t k, const struct column *c, in
         snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
         if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, failure))
             return failure->status;
-        column_scatter(c, n, data, to, sizeof *to);
+        field_scatter(c, n, data, to, sizeof *to);
     }
     for (int32_t i = 0; i < n; i++)
         if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))

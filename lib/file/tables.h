@@ -113,9 +113,9 @@ int table_write_columns(struct table_write *tables, const char *group, const cha
 
 /* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
 int table_write_link(struct table_write *tables, const char *from, const char *name,
-                     const char *where, const struct column *columns, struct failure *failure);
+                     const char *where, const struct field *columns, struct failure *failure);
 /* Writes WHERE/step and WHERE/time (s), and links them to all columns there. */
-int table_write_clocks(struct table_write *tables, const char *where, const struct column *columns,
+int table_write_clocks(struct table_write *tables, const char *where, const struct field *columns,
                        int64_t step, double time, struct failure *failure);
 
 /* Closes the datasets; the file stays open. Returns -1 where something could not be written. */

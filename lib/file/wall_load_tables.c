@@ -11,7 +11,7 @@
 
 enum { FEW = 64 /* faces: a chunk has many frames of these, else one */ };
 
-static void path_of(const struct column *c, char path[80])
+static void path_of(const struct field *c, char path[80])
 {
     snprintf(path, 80, SUMS_HOME "/%s/value", c->name);
 }
@@ -47,13 +47,13 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct fail
 {
     const int32_t n = p->sums.n;
     if (check_kept(s, p, failure) || !n) return failure->status;
-    for (const struct column *c = layout_sums; !failure->status && c->name; c++) {
+    for (const struct field *c = layout_sums; !failure->status && c->name; c++) {
         char path[80];
         const hsize_t shape[3] = { 1, (hsize_t)n, (hsize_t)c->width };
         double *row = malloc(((size_t)n * (size_t)c->width + 1) * sizeof *row);
         if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
         path_of(c, path);
-        column_gather(c, n, p->sums.face, sizeof *p->sums.face, row);
+        field_gather(c, n, p->sums.face, sizeof *p->sums.face, row);
         table_write_rows(s,
                          (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
                                            n < FEW ? CHUNK_FRAMES : 1, row, c->units },
@@ -80,7 +80,7 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failu
     if (sums_begin(&p->sums, p->walls, p->wall, p->t, failure)) return failure->status;
     double *row = calloc(3 * (size_t)n + 1, sizeof *row);
     if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
-    for (const struct column *c = layout_sums; !failure->status && c->name; c++) {
+    for (const struct field *c = layout_sums; !failure->status && c->name; c++) {
         path_of(c, path);
         int rank = source_shape(r, path, shape);
         if (rank != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)n ||
@@ -88,7 +88,7 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failu
             failure_set(failure, EX_DATAERR, "%s: not of shape frames x %d faces", path, n);
         else if (!source_rows(r, path, (struct slab){ c->type, k, 1, (int64_t)n * c->width }, row,
                               failure))
-            column_scatter(c, n, row, p->sums.face, sizeof *p->sums.face);
+            field_scatter(c, n, row, p->sums.face, sizeof *p->sums.face);
     }
     free(row);
     if (failure->status) return failure->status;

@@ -27,11 +27,11 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
         return failure->status;
     double *row = calloc((size_t)p->walls + 1, sizeof *row);
     if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
-    for (const struct column *c = layout_yield; !failure->status && c->name; c++) {
+    for (const struct field *c = layout_yield; !failure->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
         if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, failure))
-            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
+            field_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
     }
     free(row);
     return failure->status;
@@ -291,13 +291,13 @@ int boundary_tables_write_static(struct table_write *s, const struct packing *p,
 static int write_row(struct table_write *s, const char *group, struct records o,
                      const struct packing *p, struct failure *failure)
 {
-    for (const struct column *c = o.columns; !failure->status && c->name; c++) {
+    for (const struct field *c = o.fields; !failure->status && c->name; c++) {
         char path[80];
         const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
         double *row = malloc(((size_t)o.n * (size_t)c->width + 1) * sizeof *row);
         snprintf(path, sizeof path, "%s/%s/value", group, c->name);
         if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
-        column_gather(c, o.n, o.structs, o.stride, row);
+        field_gather(c, o.n, o.structs, o.stride, row);
         table_write_rows(s,
                          (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
                                            CHUNK_FRAMES, row, c->units },
@@ -305,7 +305,7 @@ static int write_row(struct table_write *s, const char *group, struct records o,
         free(row);
     }
     return failure->status ? failure->status
-                           : table_write_clocks(s, group, o.columns, p->step, p->t, failure);
+                           : table_write_clocks(s, group, o.fields, p->step, p->t, failure);
 }
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)

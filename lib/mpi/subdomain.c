@@ -50,25 +50,25 @@ static size_t force_bytes(const struct packing *p)
 static void put_body(struct comm *t, struct parcel *to, const struct packing *p, int64_t i,
                      bool moving)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
-            parcel_put(t, to, column_row(&b->column, p, i), column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && (!moving || b->traits & FIELD_MOVES))
+            parcel_put(t, to, field_row(b, p, i), field_bytes(b));
 }
 
 static void take_body(struct comm *t, struct parcel *from, struct packing *p, int64_t i,
                       bool moving)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
-            parcel_take(t, from, column_row(&b->column, p, i), column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && (!moving || b->traits & FIELD_MOVES))
+            parcel_take(t, from, field_row(b, p, i), field_bytes(b));
 }
 
 /* Bytes of a traveller with all that follows it */
 static size_t traveller_bytes(const struct packing *p)
 {
     size_t bytes = sizeof(struct traveller) + force_bytes(p);
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p)) bytes += column_bytes(&b->column);
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p)) bytes += field_bytes(b);
     return bytes;
 }
 

@@ -304,20 +304,20 @@ static int other(struct failure *failure, const char *what)
 /* ---- what has to be the same ---- */
 
 /* A number of a body that is not to be changed, and is */
-static int check_column(const struct body_column *b, const struct packing *q,
-                        const struct packing *p, struct failure *failure)
+static int check_column(const struct field *b, const struct packing *q, const struct packing *p,
+                        struct failure *failure)
 {
-    const size_t row = column_bytes(&b->column);
-    const char *x = column_array(&b->column, q), *y = column_array(&b->column, p);
+    const size_t row = field_bytes(b);
+    const char *x = field_array(b, q), *y = field_array(b, p);
     if (!x && !y) return 0;
-    if (!x || !y) return other(failure, b->column.name);
+    if (!x || !y) return other(failure, b->name);
     for (int64_t i = 0; i < p->n; i++)
         if (memcmp(x + (size_t)i * row, y + (size_t)i * row, row) != 0)
             return failure_set(
                 failure, EX_DATAERR,
                 "the document answered has another %s of body %d than the run, which "
                 "cannot be changed",
-                b->column.name, p->id[i]);
+                b->name, p->id[i]);
     return 0;
 }
 

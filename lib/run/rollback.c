@@ -72,11 +72,11 @@ int rollback_take(struct rollback *u, const struct packing *p, const struct cont
 /* The numbers of `was` go into the arrays of p, which go into was: they stay where they are. */
 static void keep_places(struct packing *was, struct packing *p)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        void *stays = column_array(&b->column, p), *from = column_array(&b->column, was);
+    for (const struct field *b = body_columns; b->name; b++) {
+        void *stays = field_array(b, p), *from = field_array(b, was);
         if (!stays || !from) continue;
-        memcpy(stays, from, (size_t)was->n * column_bytes(&b->column));
-        column_set_array(&b->column, p, from), column_set_array(&b->column, was, stays);
+        memcpy(stays, from, (size_t)was->n * field_bytes(b));
+        field_set_array(b, p, from), field_set_array(b, was, stays);
     }
 }
 

@@ -34,38 +34,37 @@ static void *array(int64_t n, size_t size)
     return calloc(n > 0 ? (size_t)n : 1, size);
 }
 
-#define ROW(ctype, member, type, width, name, unit, traits)                                        \
-    { { name, unit, COLUMN_##type, width, offsetof(struct packing, member) }, traits },
-const struct body_column body_columns[] = { EACH_BODY_COLUMN(ROW){ { 0 }, 0 } };
+#define ROW(ctype, member, type, width, name, unit, bounds, ...)                                   \
+    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds),
+const struct field body_columns[] = { EACH_BODY_COLUMN(ROW){ 0 } };
 #undef ROW
 
-static bool is_optional(const struct body_column *b)
+static bool is_optional(const struct field *b)
 {
-    return b->traits & (BODY_OPTIONAL | BODY_BY_SETTINGS);
+    return b->traits & (FIELD_OPTIONAL | FIELD_BY_SETTINGS);
 }
 
-static void free_column(struct packing *p, const struct column *c)
+static void free_column(struct packing *p, const struct field *c)
 {
-    free(column_array(c, p));
-    column_set_array(c, p, NULL);
+    free(field_array(c, p));
+    field_set_array(c, p, NULL);
 }
 
 int packing_alloc_column(struct packing *p, int column, struct failure *failure)
 {
-    const struct column *c = &body_columns[column].column;
+    const struct field *c = &body_columns[column];
     free_column(p, c);
-    column_set_array(c, p, array(p->n, column_bytes(c)));
-    return column_array(c, p) ? 0
-                              : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
-                                            (long long)p->n, c->name);
+    field_set_array(c, p, array(p->n, field_bytes(c)));
+    return field_array(c, p) ? 0
+                             : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
+                                           (long long)p->n, c->name);
 }
 
 uint32_t packing_optional(const struct packing *p)
 {
     uint32_t set = 0;
     for (int k = 0; k < BODY_COLUMNS; k++)
-        if (is_optional(&body_columns[k]) && column_array(&body_columns[k].column, p))
-            set |= 1u << k;
+        if (is_optional(&body_columns[k]) && field_array(&body_columns[k], p)) set |= 1u << k;
     return set;
 }
 
@@ -109,7 +108,7 @@ static void kinds_free(struct packing *p)
 
 void packing_free(struct packing *p)
 {
-    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
+    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k]);
     free(p->wall), free(p->scene);
     shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
     drives_free(&p->drives), drives_free(&p->pushes), drives_free(&p->pulls);
@@ -201,16 +200,16 @@ int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
 
 int packing_resize(struct packing *p, int64_t n, struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
-        size_t bytes = column_bytes(c);
-        char *old = column_array(c, p);
+    for (const struct field *b = body_columns; b->name; b++) {
+        const struct field *c = b;
+        size_t bytes = field_bytes(c);
+        char *old = field_array(c, p);
         if (!old && is_optional(b)) continue;
         char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
         if (!more)
             return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
         if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
-        column_set_array(c, p, more);
+        field_set_array(c, p, more);
     }
     int64_t had = p->n;
     if (external_force_resize(&p->outside, had, n, failure)) return failure->status;
@@ -221,10 +220,9 @@ int packing_resize(struct packing *p, int64_t n, struct failure *failure)
 
 void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && column_array(&b->column, from))
-            memcpy(column_row(&b->column, p, to), column_row(&b->column, from, i),
-                   column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && field_array(b, from))
+            memcpy(field_row(b, p, to), field_row(b, from, i), field_bytes(b));
 }
 
 struct packing packing_with_bodies(const struct packing *p, const struct packing *bodies,
@@ -232,10 +230,8 @@ struct packing packing_with_bodies(const struct packing *p, const struct packing
 {
     struct packing q = *p;
     q.n = n;
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        column_set_array(&b->column, &q,
-                         column_array(&b->column, bodies) ? column_row(&b->column, bodies, first)
-                                                          : NULL);
+    for (const struct field *b = body_columns; b->name; b++)
+        field_set_array(b, &q, field_array(b, bodies) ? field_row(b, bodies, first) : NULL);
     return q;
 }
 
@@ -253,10 +249,8 @@ int packing_copy(struct packing *to, const struct packing *p, struct failure *fa
     if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, failure) ||
         packing_alloc_optional(to, packing_optional(p), failure))
         goto fail;
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p))
-            memcpy(column_array(&b->column, to), column_array(&b->column, p),
-                   n * column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p)) memcpy(field_array(b, to), field_array(b, p), n * field_bytes(b));
     memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
     if (drives_copy(&to->drives, &p->drives, failure) ||
         drives_copy(&to->pushes, &p->pushes, failure) ||
@@ -343,21 +337,6 @@ struct whole packing_whole(const struct packing *p)
         if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
             all.apart = dmax(all.apart, p->bonds.bond[i].gap);
     return all;
-}
-
-/* What is wrong with a column's real numbers of body i, or NULL */
-static const char *packing_number_trouble(const struct body_column *b, const struct packing *p,
-                                          int64_t i)
-{
-    const double *x = column_row(&b->column, p, i);
-    for (int k = 0; k < b->column.width; k++) {
-        if ((b->traits & BODY_POSITIVE) && !(x[k] > 0 && isfinite(x[k])))
-            return "must be positive and finite";
-        if ((b->traits & BODY_NOT_NEGATIVE) && !(x[k] >= 0 && isfinite(x[k])))
-            return "must be finite and not negative";
-        if (!isfinite(x[k])) return "is not finite";
-    }
-    return NULL;
 }
 
 static const char *body_trouble(const struct packing *p, int64_t i)
@@ -512,12 +491,11 @@ static int packing_check_each_body(const struct packing *p, int64_t first, struc
 {
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = NULL;
-        for (const struct body_column *b = body_columns; b->column.name && !trouble; b++) {
-            bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
-            trouble = real ? packing_number_trouble(b, p, i) : NULL;
+        for (const struct field *b = body_columns; b->name && !trouble; b++) {
+            trouble = field_array(b, p) ? field_trouble(b, field_row(b, p, i)) : NULL;
             if (trouble)
                 return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
-                                   b->column.name, trouble);
+                                   b->name, trouble);
         }
         if ((trouble = body_trouble(p, i)))
             return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i),
