@@ -39,24 +39,39 @@ void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struc
 
 void roster_free(struct roster *r)
 {
-    free(r->id), free(r->radius), free(r->mass);
+    free(r->id), free(r->fixed);
     *r = (struct roster){ 0 };
 }
 
 static int roster_grow(struct roster *r, struct failure *failure)
 {
     if (r->rows < r->room) return 0;
+    if (!r->bytes)
+        for (const struct field *b = body_columns; b->name; b++)
+            r->bytes += b->traits & FIELD_SAME ? field_bytes(b) : 0;
     size_t room = r->room ? 2 * (size_t)r->room : 256;
     int32_t *id = realloc(r->id, room * sizeof *id);
     if (id) r->id = id;
-    double *radius = realloc(r->radius, room * sizeof *radius);
-    if (radius) r->radius = radius;
-    double *mass = realloc(r->mass, room * sizeof *mass);
-    if (mass) r->mass = mass;
-    if (!id || !radius || !mass)
-        return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
+    char *fixed = realloc(r->fixed, room * r->bytes);
+    if (fixed) r->fixed = fixed;
+    if (!id || !fixed) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     r->room = (int64_t)room;
     return 0;
+}
+
+/* Keeps the numbers of body i that do not move in a row, or says in which of them it differs from that row: NULL: in none */
+static const char *roster_fixed(struct roster *r, const struct packing *p, int64_t i, int64_t row,
+                                bool keep)
+{
+    char *at = r->fixed + (size_t)row * r->bytes;
+    for (const struct field *b = body_columns; b->name; b++) {
+        const size_t bytes = b->traits & FIELD_SAME ? field_bytes(b) : 0;
+        const char none[sizeof(quat)] = { 0 }, *x = field_array(b, p) ? field_row(b, p, i) : none;
+        if (keep && bytes) memcpy(at, x, bytes);
+        if (memcmp(at, x, bytes) != 0) return b->name;
+        at += bytes;
+    }
+    return NULL;
 }
 
 /* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
@@ -65,8 +80,11 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
 {
     while (from < r->rows && r->id[from] != p->id[i]) from++;
     if (from < r->rows) {
-        if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
-        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's"), -1;
+        const char *differs = roster_fixed(r, p, i, from, false);
+        if (!differs) return from;
+        return failure_set(failure, EX_DATAERR,
+                           "other bodies than the trajectory's: their %s differs", differs),
+               -1;
     }
     if (roster_grow(r, failure)) return -1;
     for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
@@ -74,7 +92,8 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
             return failure_set(failure, EX_DATAERR,
                                "bodies in another order than the trajectory's"),
                    -1;
-    r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
+    r->id[r->rows] = p->id[i];
+    roster_fixed(r, p, i, r->rows, true);
     return r->rows++;
 }
 

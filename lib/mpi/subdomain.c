@@ -2,6 +2,7 @@
 #include "mpi/subdomain.h"
 
 #include "mpi/settings.h"
+#include "state/part.h"
 
 #include <malloc.h>
 #include <stdlib.h>
@@ -123,9 +124,8 @@ static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct de
     struct failure failure = { 0 };
     *y = (struct subdomain){ .comm = t, .territory = space };
     if (!t->me) {
-        struct packing none = *settings;
-        none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
-        none.memory = (struct memory){ 0 }, none.outside = (struct external_force){ 0 };
+        struct packing none = packing_settings(settings);
+        none.scene = NULL;
         if (packing_copy(&y->p, &none, &failure)) subdomain_fail(y, &failure);
     }
     settings_spread(t, &y->p);

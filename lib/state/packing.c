@@ -106,23 +106,6 @@ static void kinds_free(struct packing *p)
 #undef FREE
 }
 
-void packing_free(struct packing *p)
-{
-    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k]);
-    free(p->wall), free(p->scene);
-    shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
-    drives_free(&p->drives), drives_free(&p->pushes), drives_free(&p->pulls);
-    mesh_free(&p->mesh);
-    free(p->poured), free(p->removed);
-    events_free(&p->events);
-    bonds_free(&p->bonds);
-    memory_free(&p->memory);
-    external_force_free(&p->outside);
-    cell_free(&p->cell);
-    kinds_free(p);
-    memset(p, 0, sizeof *p);
-}
-
 int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure)
 {
     free(p->wall);
@@ -233,53 +216,6 @@ struct packing packing_with_bodies(const struct packing *p, const struct packing
     for (const struct field *b = body_columns; b->name; b++)
         field_set_array(b, &q, field_array(b, bodies) ? field_row(b, bodies, first) : NULL);
     return q;
-}
-
-int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
-{
-    if (packing_init(to, p->dim, p->n, failure)) return failure->status;
-    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure))
-        goto fail;
-    size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
-    to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
-    to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
-    to->tolerance = p->tolerance;
-    to->overlap = p->overlap;
-    to->seed = p->seed, to->pulls_most = p->pulls_most;
-    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, failure) ||
-        packing_alloc_optional(to, packing_optional(p), failure))
-        goto fail;
-    for (const struct field *b = body_columns; b->name; b++)
-        if (field_array(b, p)) memcpy(field_array(b, to), field_array(b, p), n * field_bytes(b));
-    memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
-    if (drives_copy(&to->drives, &p->drives, failure) ||
-        drives_copy(&to->pushes, &p->pushes, failure) ||
-        drives_copy(&to->pulls, &p->pulls, failure) || mesh_copy(&to->mesh, &p->mesh, failure) ||
-        names_copy(&to->names, &p->names, failure) || sums_copy(&to->sums, &p->sums, failure))
-        goto fail;
-#define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
-    EVERY_PAIR_COLUMN(COPY)
-#undef COPY
-    if (p->law && packing_alloc_laws(to, failure)) goto fail;
-    if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, failure) || memory_copy(&to->memory, &p->memory, failure))
-        goto fail;
-    if (external_force_copy(&to->outside, &p->outside, p->n, p->walls, failure)) goto fail;
-    for (int32_t i = 0; i < p->kinds; i++) {
-        free(to->kind_name[i]);
-        if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
-    }
-    if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
-    if (packing_alloc_passages(to, p->pours, p->removals, failure)) goto fail;
-    to->first_id = p->first_id;
-    for (int32_t k = 0; k < p->pours; k++) to->poured[k] = p->poured[k];
-    for (int32_t k = 0; k < p->removals; k++) to->removed[k] = p->removed[k];
-    for (int64_t i = 0; i < p->events.n; i++)
-        if (events_add(&to->events, &p->events.e[i], failure)) goto fail;
-    return 0;
-fail:
-    packing_free(to);
-    return failure_set(failure, EX_SOFTWARE, "no memory for a copy of the packing");
 }
 
 void packing_count_from(struct packing *p, double t0, int64_t step0)
