@@ -140,11 +140,16 @@ static bool part_copy(const struct part *a, struct packing *to, const struct pac
     return true;
 }
 
+void packing_disown(struct packing *p)
+{
+    p->shapes = (struct shapes){ 0 }, p->sums.faces = NULL, p->whole = NULL;
+    for (const struct part *a = packing_parts; a->name; a++) part_set_array(a, p, NULL);
+}
+
 int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
 {
     *to = *p;
-    to->shapes = (struct shapes){ 0 }, to->sums.faces = NULL, to->whole = NULL;
-    for (const struct part *a = packing_parts; a->name; a++) part_set_array(a, to, NULL);
+    packing_disown(to);
     bool good = !shapes_copy(&to->shapes, &p->shapes, failure);
     for (const struct part *a = packing_parts; good && a->name; a++) good = part_copy(a, to, p);
     if (good) return 0;

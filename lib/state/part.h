@@ -40,6 +40,8 @@ int64_t part_count(const struct part *part, const struct packing *p);
    [FIELD_SAME]. Returns 0 or EX_DATAERR. */
 int packing_same_settings(const struct packing *first, const struct packing *p,
                           struct failure *failure);
+/* Forgets all arrays of p, which somebody else owns; the counts of rows stay. */
+void packing_disown(struct packing *p);
 /* p without its bodies, and what belongs to them and to single frames; all is borrowed. */
 struct packing packing_settings(const struct packing *p);
 
