@@ -89,8 +89,10 @@ bool field_equal(const struct field *f, const void *x, const void *y)
     return true;
 }
 
-bool field_any(const struct field *f, const struct records *o)
+bool field_is_kept(const struct field *f, const struct records *o)
 {
+    if (f->when) return f->when(o->of);
+    if (!(f->traits & FIELD_OPTIONAL)) return true;
     const char *x = (const char *)o->structs + f->offset;
     for (int64_t i = 0; i < o->n; i++, x += o->stride)
         for (int k = 0; k < f->width; k++)

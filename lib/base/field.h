@@ -72,10 +72,12 @@ struct records {
     const struct field *fields;
     int64_t n;
     void *structs;
-    size_t stride; /* bytes of a struct */
+    size_t stride;  /* bytes of a struct */
+    const void *of; /* what field->when asks; NULL: what is read tells whether it has a field */
 };
-#define RECORDS(fields, n, structs)                                                                \
-    ((struct records){ (fields), (n), (void *)(structs), sizeof *(structs) })
+#define RECORDS_OF(of, fields, n, structs)                                                         \
+    ((struct records){ (fields), (n), (void *)(structs), sizeof *(structs), (of) })
+#define RECORDS(fields, n, structs) RECORDS_OF(NULL, fields, n, structs)
 
 /* A field's numbers out of an array of n structs, and back into one. */
 void field_gather(const struct field *field, int64_t n, const void *structs, size_t stride,
@@ -87,7 +89,7 @@ void field_scatter(const struct field *field, int64_t n, const void *in, void *s
 const char *field_trouble(const struct field *field, const void *x);
 /* Are the rows at x and y the same numbers? No number is the same as no number. */
 bool field_equal(const struct field *field, const void *x, const void *y);
-/* Is any number not 0 in a field of the records? */
-bool field_any(const struct field *field, const struct records *records);
+/* Has a document that is written the field of these records? */
+bool field_is_kept(const struct field *field, const struct records *records);
 
 #endif

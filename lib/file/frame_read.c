@@ -84,15 +84,14 @@ void frame_read_close(struct frame_read *r)
 }
 
 /* Tables of pairs of kinds, both halves of which say the same */
-static int read_pairs(struct source *doc, const struct field *c, bool optional, struct packing *p,
-                      struct failure *failure)
+static int read_pairs(struct source *doc, struct packing *p, struct failure *failure)
 {
     const uint64_t kinds = (uint64_t)p->kinds;
-    for (; c->name; c++) {
+    for (const struct field *c = material_fields; c->name; c++) {
         char path[80];
         double *table = field_array(c, p);
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        if (optional && !source_has(doc, path)) continue;
+        if (c->traits & FIELD_OPTIONAL && !source_has(doc, path)) continue;
         if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, failure))
             return failure->status;
         for (int32_t a = 0; a < p->kinds; a++)
@@ -129,8 +128,7 @@ static int frame_read_material(struct source *doc, struct packing *p, struct fai
         name = end + 1;
     }
     free(names);
-    if (!e) e = read_pairs(doc, layout_material, false, p, failure);
-    return e ? e : read_pairs(doc, layout_optional_material, true, p, failure);
+    return e ? e : read_pairs(doc, p, failure);
 }
 
 /* What is done about overlap; a document need not say it. */

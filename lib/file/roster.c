@@ -294,10 +294,10 @@ int flow_write(struct table_write *s, const struct packing *p, struct failure *f
 {
     if (!packing_varies(p)) return 0;
     bool first = !table_write_grows(s, "/nsd/flow/events/id");
-    if (write_passages(s, layout_poured, p->pours, p->poured, failure) ||
-        write_passages(s, layout_removed, p->removals, p->removed, failure) ||
+    if (write_passages(s, poured_fields, p->pours, p->poured, failure) ||
+        write_passages(s, removed_fields, p->removals, p->removed, failure) ||
         table_write_span(s, "/nsd/flow/events", s->events, p->events.n, failure) ||
-        table_write_columns(s, events, "", RECORDS(layout_events, p->events.n, p->events.e),
+        table_write_columns(s, events, "", RECORDS(event_fields, p->events.n, p->events.e),
                             CHUNK_CONTACTS, failure))
         return failure->status;
     if (s->growing) s->events += p->events.n;
@@ -319,8 +319,8 @@ static int link_clocks(struct table_write *s, const char *where, const struct fi
 int flow_link(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     static const struct field ids[] = { { .name = "id" }, { 0 } };
-    if ((p->pours > 0 && link_clocks(s, flow, layout_poured, failure)) ||
-        (p->removals > 0 && link_clocks(s, flow, layout_removed, failure)))
+    if ((p->pours > 0 && link_clocks(s, flow, poured_fields, failure)) ||
+        (p->removals > 0 && link_clocks(s, flow, removed_fields, failure)))
         return failure->status;
     return s->roster ? link_clocks(s, "/particles/all", ids, failure) : 0;
 }
@@ -358,10 +358,10 @@ static int read_passages(struct source *s, int64_t k, const struct field *c, int
 
 static int check_event(const struct event *e, struct failure *failure)
 {
-    bool good = isfinite(e->t) && (e->came == 0 || e->came == 1) && e->which >= 0 &&
-                e->radius > 0 && isfinite(e->radius) && e->mass >= 0 && isfinite(e->mass) &&
-                v3_finite(e->x) && v3_finite(e->v);
-    return good ? 0 : failure_set(failure, EX_DATAERR, "%s: a number is out of range", events);
+    for (const struct field *f = event_fields; f->name; f++)
+        if (field_trouble(f, (const char *)e + f->offset))
+            return failure_set(failure, EX_DATAERR, "%s: a number is out of range", events);
+    return 0;
 }
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct failure *failure)
@@ -373,7 +373,7 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct fa
     if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
         return failure_set(failure, EX_SOFTWARE, "no memory for events");
     p->events.n = count, p->events.room = count + 1;
-    if (table_read_columns(s, events, "", start, RECORDS(layout_events, count, p->events.e),
+    if (table_read_columns(s, events, "", start, RECORDS(event_fields, count, p->events.e),
                            failure))
         return failure->status;
     for (int64_t i = 0; i < count; i++)
@@ -400,8 +400,8 @@ int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct fail
     if (removals < 0 || packing_alloc_passages(p, pours, removals, failure)) return failure->status;
     if (source_attribute(s, flow, "first_id", (struct numbers){ COLUMN_I32, -1, &p->first_id },
                          failure) ||
-        read_passages(s, k, layout_poured, pours, p->poured, failure) ||
-        read_passages(s, k, layout_removed, removals, p->removed, failure))
+        read_passages(s, k, poured_fields, pours, p->poured, failure) ||
+        read_passages(s, k, removed_fields, removals, p->removed, failure))
         return failure->status;
     if (p->first_id < 0) return failure_set(failure, EX_DATAERR, "%s@first_id: is negative", flow);
     return read_events(s, k, p, failure);

@@ -18,12 +18,24 @@ static int check_finite(const char *path, const struct field *c, int64_t n, cons
     return 0;
 }
 
+/* Has the document the field? Of those that follow each other and have one predicate, the first decides. */
+static bool tables_has(struct source *s, const char *path, const struct field *f,
+                       const struct records *o, bool before)
+{
+    if (!f->when && !(f->traits & FIELD_OPTIONAL)) return true;
+    if (f->when && o->of) return f->when(o->of);
+    const bool follows = f->when && f > o->fields && f[-1].when == f->when;
+    return follows ? before : source_has(s, path);
+}
+
 static int tables_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
                                struct records o, bool finite, struct failure *failure)
 {
+    bool there = true;
     for (const struct field *c = o.fields; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", group, c->name, tail);
+        if (!(there = tables_has(s, path, c, &o, there))) continue;
         char *data = calloc((size_t)o.n + 1, field_bytes(c));
         if (!data) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
         int e = source_rows(s, path, (struct slab){ c->type, start, o.n, c->width }, data, failure);
@@ -274,6 +286,7 @@ int table_write_columns(struct table_write *s, const char *where, const char *ta
 {
     for (const struct field *c = o.fields; c->name; c++) {
         char path[80];
+        if (!field_is_kept(c, &o)) continue;
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
         void *data = malloc((size_t)(o.n + 1) * field_bytes(c));
         if (!data) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);

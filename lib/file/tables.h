@@ -1,6 +1,5 @@
 /*
- * file/tables.h: tables of file/layout.h out of the datasets of a document. The inverse of
- * file/tables.h.
+ * file/tables.h: tables of fields [base/field.h] out of the datasets of a document, and into them.
  */
 #ifndef NSD_TABLES_H
 #define NSD_TABLES_H

@@ -29,7 +29,7 @@ int sum_tables_write_static(struct table_write *s, const struct packing *p, stru
 static int check_kept(const struct table_write *s, const struct packing *p, struct failure *failure)
 {
     char path[80];
-    path_of(layout_sums, path);
+    path_of(sum_fields, path);
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (!s->growing || first) return 0;
     if (p->sums.n && p->sums.since != s->sums_since)
@@ -47,7 +47,7 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct fail
 {
     const int32_t n = p->sums.n;
     if (check_kept(s, p, failure) || !n) return failure->status;
-    for (const struct field *c = layout_sums; !failure->status && c->name; c++) {
+    for (const struct field *c = sum_fields; !failure->status && c->name; c++) {
         char path[80];
         const hsize_t shape[3] = { 1, (hsize_t)n, (hsize_t)c->width };
         double *row = malloc(((size_t)n * (size_t)c->width + 1) * sizeof *row);
@@ -61,14 +61,14 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct fail
         free(row);
     }
     return failure->status ? failure->status
-                           : table_write_clocks(s, SUMS_HOME, layout_sums, p->step, p->t, failure);
+                           : table_write_clocks(s, SUMS_HOME, sum_fields, p->step, p->t, failure);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
 {
     uint64_t shape[4];
     char path[80];
-    path_of(layout_sums, path);
+    path_of(sum_fields, path);
     struct wall_faces faces;
     if (!source_has(r, path)) return 0;
     if (wall_faces_init(&faces, p->walls, p->wall, NULL, failure)) return failure->status;
@@ -80,7 +80,7 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failu
     if (sums_begin(&p->sums, p->walls, p->wall, p->t, failure)) return failure->status;
     double *row = calloc(3 * (size_t)n + 1, sizeof *row);
     if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
-    for (const struct field *c = layout_sums; !failure->status && c->name; c++) {
+    for (const struct field *c = sum_fields; !failure->status && c->name; c++) {
         path_of(c, path);
         int rank = source_shape(r, path, shape);
         if (rank != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)n ||

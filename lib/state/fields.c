@@ -30,6 +30,13 @@ const struct field cell_fields[] = {
 };
 _Static_assert(sizeof(bool) == 1, "flags are bytes in documents");
 
+/* Where the cell is periodic: members of struct cell, [F][3][3] */
+const struct field box_fields[] = {
+    FIELD(struct cell, edge, F64, 9, "box/edges", "m", FIELD_MOVES),
+    FIELD(struct cell, rate, F64, 9, "box/rate", "m s-1", FIELD_MOVES),
+    { 0 },
+};
+
 const struct field gradient_fields[] = {
     FIELD(struct cell_gradient, t, F64, 1, "time", "s", FIELD_SAME),
     FIELD(struct cell_gradient, L, F64, 9, "gradient", "s-1", FIELD_SAME),
@@ -49,14 +56,6 @@ static bool any_shapes(const void *of)
     const struct packing *p = of;
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
-    return false;
-}
-
-static bool any_loads(const void *of)
-{
-    const struct packing *p = of;
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.way) return true;
     return false;
 }
 
@@ -80,15 +79,18 @@ const struct field wall_fields[] = {
     { 0 },
 };
 
-/* /particles/boundary/load/NAME [walls][width]; of those that move NAME/value [frames][walls] */
+/* /particles/boundary/load/NAME [walls][width], where any wall yields; of those that move NAME/value [frames][walls] */
 const struct field load_fields[] = {
-    FIELD(struct wall, load.way, I32, 1, "way", "1", FIELD_SAME, .when = any_loads),
-    FIELD(struct wall, load.axis, F64, 3, "axis", "1", FIELD_SAME, .when = any_loads),
-    FIELD(struct wall, load.point, F64, 3, "point", "m", FIELD_SAME, .when = any_loads),
-    FIELD(struct wall, load.mass, F64, 1, "mass", "kg, kg m2", FIELD_SAME, .when = any_loads),
-    FIELD(struct wall, load.force, F64, 1, "force", "N, N m", FIELD_SAME, .when = any_loads),
+    FIELD(struct wall, load.way, I32, 1, "way", "1", FIELD_SAME),
+    FIELD(struct wall, load.axis, F64, 3, "axis", "1", FIELD_SAME),
+    FIELD(struct wall, load.point, F64, 3, "point", "m", FIELD_SAME),
+    FIELD(struct wall, load.mass, F64, 1, "mass", "kg, kg m2", FIELD_SAME),
+    FIELD(struct wall, load.force, F64, 1, "force", "N, N m", FIELD_SAME),
     FIELD(struct wall, load.spread, I32, 1, "spread", "1", FIELD_SAME | FIELD_OPTIONAL),
     FIELD(struct wall, load.rate, F64, 1, "rate", "s-1", FIELD_SAME | FIELD_OPTIONAL),
+    { 0 },
+};
+const struct field load_motion_fields[] = {
     FIELD(struct wall, load.speed, F64, 1, "speed", "m s-1, rad s-1", FIELD_MOVES),
     FIELD(struct wall, load.travel, F64, 1, "travel", "m, rad", FIELD_MOVES),
     { 0 },
@@ -151,6 +153,17 @@ const struct field named_fields[] = {
 };
 
 /* ---- materials: /nsd/law/NAME [kinds][kinds] where any pair has a law beyond friction and restitution ---- */
+
+#define MATERIAL(member, name, unit, ...)                                                          \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME),
+#define OPTIONAL(member, name, unit, ...)                                                          \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME | FIELD_OPTIONAL),
+/* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
+const struct field material_fields[] = {
+    EACH_PAIR_COLUMN(MATERIAL) EACH_OPTIONAL_PAIR_COLUMN(OPTIONAL){ 0 },
+};
+#undef MATERIAL
+#undef OPTIONAL
 
 #define LAW(member, name, unit, ...)                                                               \
     FIELD(struct pair_law, member, F64, 1, name, unit, FIELD_SAME __VA_ARGS__)
@@ -304,5 +317,80 @@ const struct field found_fields[] = {
     FIELD(struct found, r, F64, 3, "reaction", "N s", FIELD_MOVES),
     FIELD(struct found, u, F64, 3, "velocity", "m s-1", FIELD_MOVES),
     FIELD(struct found, status, I8, 1, "status", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* ---- reports ---- */
+
+/*
+ * /nsd/solver/NAME/value [frames][width]. The five numbers of eps are
+ * eps_glob, motion, proj, bipotential, penetration.
+ */
+const struct field report_fields[] = {
+    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES),
+    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES),
+    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES),
+    FIELD(struct report, err.paper, F64, 5, "eps", "1", FIELD_MOVES),
+    FIELD(struct report, err.scaled, F64, 5, "eps_scaled", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural, F64, 1, "natural", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural_siconos, F64, 1, "natural_siconos", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural_q, F64, 1, "natural_q", "1", FIELD_MOVES),
+    FIELD(struct report, err.max_penetration, F64, 1, "max_penetration", "m s-1", FIELD_MOVES),
+    FIELD(struct report, err.max_penetration_true, F64, 1, "max_penetration_true", "m s-1",
+          FIELD_MOVES),
+    FIELD(struct report, err.max_overlap, F64, 1, "max_overlap", "m", FIELD_MOVES),
+    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES),
+    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES),
+    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where the criterion is velocity */
+const struct field velocity_fields[] = {
+    FIELD(struct report, err.velocity, F64, 1, "velocity", "1", FIELD_MOVES),
+    FIELD(struct report, err.velocity_error, F64, 1, "velocity_error", "m s-1", FIELD_MOVES),
+    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where there are bodies */
+const struct field balance_fields[] = {
+    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES),
+    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES),
+    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES),
+    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES),
+    FIELD(struct report, balance.dissipation, F64, 1, "dissipation", "J", FIELD_MOVES),
+    FIELD(struct report, balance.momentum, F64, 3, "momentum", "N s", FIELD_MOVES),
+    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where pairs have laws beyond friction and restitution */
+const struct field bond_balance_fields[] = {
+    FIELD(struct report, balance.bond_change, F64, 1, "bond_change", "J", FIELD_MOVES),
+    FIELD(struct report, balance.bond_energy, F64, 1, "bond_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.broken, F64, 1, "broken", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where impacts may gain energy */
+const struct field gain_balance_fields[] = {
+    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where the cell moves */
+const struct field peculiar_balance_fields[] = {
+    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.peculiar_change, F64, 1, "peculiar_change", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where bodies that overlap are moved apart */
+const struct field projection_balance_fields[] = {
+    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES),
+    FIELD(struct report, balance.spun, F64, 3, "projection_angular_momentum", "N m s", FIELD_MOVES),
     { 0 },
 };

@@ -1,6 +1,8 @@
 /* state/packing.c: memory for a packing, and the check of its numbers. */
 #include "state/packing.h"
 
+#include "state/fields.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -373,8 +375,6 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
                  w->elements > p->mesh.elements - w->first_element))
         return "its mesh is missing";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
-    if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
-    if (!v3_finite(w->belt)) return "belt is not finite";
     if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
     return packing_load_trouble(p, w);
 }
@@ -482,7 +482,13 @@ int packing_check(const struct packing *p, struct failure *failure)
         drives_check(&p->pushes, p->walls, p->dim, "push", failure))
         return failure->status; // before any wall is asked where it is
     for (int32_t i = 0; i < p->walls; i++) {
-        const char *trouble = wall_trouble(p, &p->wall[i]);
+        const struct wall *w = &p->wall[i];
+        for (const struct field *f = wall_fields; f->name; f++) {
+            const char *trouble = field_trouble(f, (const char *)w + f->offset);
+            if (trouble)
+                return failure_set(failure, EX_DATAERR, "wall %d: %s %s", i, f->name, trouble);
+        }
+        const char *trouble = wall_trouble(p, w);
         if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
     }
     if (check_room(p, failure)) return failure->status;
