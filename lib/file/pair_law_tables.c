@@ -43,15 +43,10 @@ static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct
 
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct failure *failure)
 {
-    struct span span;
-    if (table_read_span(s, (struct table_spans){ bonds, "body", 2 }, k, &span, failure))
-        return failure->status;
-    const int64_t start = span.start, count = span.count;
-    p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
-    if (!p->bonds.bond) return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
-    p->bonds.n = count, p->bonds.room = count + 1;
-    return table_read_columns(s, bonds, "", start, RECORDS(bond_fields, count, p->bonds.bond),
-                              failure);
+    struct bonds *b = &p->bonds;
+    return table_read_list(s, (struct table_spans){ bonds, "body", 2 }, k,
+                           (struct list_of){ &b->bond, &b->n, &b->room },
+                           RECORDS(bond_fields, 0, b->bond), failure);
 }
 
 int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct failure *failure)
@@ -83,11 +78,6 @@ int pair_law_tables_write_static(hid_t file, const struct packing *p, struct fai
 
 int pair_law_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (!p->law) return 0;
-    if (table_write_span(s, "/nsd/bonds", s->bonds, p->bonds.n, failure) ||
-        table_write_columns(s, bonds, "", RECORDS_OF(p, bond_fields, p->bonds.n, p->bonds.bond),
-                            CHUNK_CONTACTS, failure))
-        return failure->status;
-    if (s->growing) s->bonds += p->bonds.n;
-    return 0;
+    const struct records rows = RECORDS_OF(p, bond_fields, p->bonds.n, p->bonds.bond);
+    return p->law ? table_write_list(s, bonds, &s->bonds, rows, failure) : 0;
 }

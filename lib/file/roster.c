@@ -261,24 +261,6 @@ int roster_read(struct source *source, int64_t k, const int64_t *row, struct pac
 
 static const char flow[] = "/nsd/flow", events[] = "/nsd/flow/events";
 
-/* A column of n passages, as one frame */
-static int write_passages(struct table_write *s, const struct field *c, int32_t n,
-                          const struct flow_count *from, struct failure *failure)
-{
-    for (; c->name && n > 0; c++) {
-        char path[80];
-        int64_t data[1000]; // as wide as a double; at most 1000 of each (scene_flow.c)
-        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        field_gather(c, n, from, sizeof *from, data);
-        const hsize_t shape[2] = { 1, (hsize_t)n };
-        if (table_write_rows(
-                s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units },
-                failure))
-            return failure->status;
-    }
-    return 0;
-}
-
 #define NUMBERS "/nsd/flow/numbers"
 
 /* Frames after bodies were added by another program than the scene's pours, which are numbered after them */
@@ -294,13 +276,13 @@ int flow_write(struct table_write *s, const struct packing *p, struct failure *f
 {
     if (!packing_varies(p)) return 0;
     bool first = !table_write_grows(s, "/nsd/flow/events/id");
-    if (write_passages(s, poured_fields, p->pours, p->poured, failure) ||
-        write_passages(s, removed_fields, p->removals, p->removed, failure) ||
-        table_write_span(s, "/nsd/flow/events", s->events, p->events.n, failure) ||
-        table_write_columns(s, events, "", RECORDS(event_fields, p->events.n, p->events.e),
-                            CHUNK_CONTACTS, failure))
+    if ((p->pours && table_write_frame(s, flow, RECORDS(poured_fields, p->pours, p->poured),
+                                       CHUNK_FRAMES, failure)) ||
+        (p->removals && table_write_frame(s, flow, RECORDS(removed_fields, p->removals, p->removed),
+                                          CHUNK_FRAMES, failure)) ||
+        table_write_list(s, events, &s->events, RECORDS(event_fields, p->events.n, p->events.e),
+                         failure))
         return failure->status;
-    if (s->growing) s->events += p->events.n;
     if (!first) return write_numbers(s, p, failure);
     s->first_id = p->first_id;
     return h5_attr(s->file, flow, "first_id", h5_scalar(H5T_NATIVE_INT32, &p->first_id), failure);
@@ -338,17 +320,10 @@ static int32_t roster_count_of(struct source *s, const char *path, struct failur
            -1;
 }
 
-static int read_passages(struct source *s, int64_t k, const struct field *c, int32_t n,
+static int read_passages(struct source *s, int64_t k, const struct field *fields, int32_t n,
                          struct flow_count *to, struct failure *failure)
 {
-    for (; c->name && n > 0; c++) {
-        char path[80];
-        int64_t data[1000];
-        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, failure))
-            return failure->status;
-        field_scatter(c, n, data, to, sizeof *to);
-    }
+    if (n && table_read_frame(s, flow, k, RECORDS(fields, n, to), failure)) return failure->status;
     for (int32_t i = 0; i < n; i++)
         if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))
             return failure_set(failure, EX_DATAERR,
@@ -366,17 +341,11 @@ static int check_event(const struct event *e, struct failure *failure)
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct failure *failure)
 {
-    struct span span;
-    if (table_read_span(s, (struct table_spans){ events, "id", 1 }, k, &span, failure))
+    if (table_read_list(s, (struct table_spans){ events, "id", 1 }, k,
+                        (struct list_of){ &p->events.e, &p->events.n, &p->events.room },
+                        RECORDS(event_fields, 0, p->events.e), failure))
         return failure->status;
-    const int64_t start = span.start, count = span.count;
-    if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
-        return failure_set(failure, EX_SOFTWARE, "no memory for events");
-    p->events.n = count, p->events.room = count + 1;
-    if (table_read_columns(s, events, "", start, RECORDS(event_fields, count, p->events.e),
-                           failure))
-        return failure->status;
-    for (int64_t i = 0; i < count; i++)
+    for (int64_t i = 0; i < p->events.n; i++)
         if (check_event(&p->events.e[i], failure)) return failure->status;
     return 0;
 }

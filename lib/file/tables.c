@@ -59,6 +59,40 @@ int table_read_finite(struct source *s, const char *group, const char *tail, int
     return tables_read_columns(s, group, tail, start, o, true, failure);
 }
 
+int table_read_frame(struct source *s, const char *group, int64_t k, struct records o,
+                     struct failure *failure)
+{
+    for (const struct field *c = o.fields; c->name; c++) {
+        char path[80];
+        uint64_t shape[4];
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        // no memory is allocated for rows that are not there
+        if (source_shape(s, path, shape) != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)o.n)
+            return failure_set(failure, EX_DATAERR, "%s: not of shape frames x %lld x %d", path,
+                               (long long)o.n, c->width);
+        char *row = calloc((size_t)o.n + 1, field_bytes(c));
+        if (!row) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
+        if (!source_rows(s, path, (struct slab){ c->type, k, 1, o.n * c->width }, row, failure))
+            field_scatter(c, o.n, row, o.structs, o.stride);
+        free(row);
+        if (failure->status) return failure->status;
+    }
+    return 0;
+}
+
+int table_read_list(struct source *s, struct table_spans table, int64_t k, struct list_of list,
+                    struct records rows, struct failure *failure)
+{
+    struct span span;
+    if (table_read_span(s, table, k, &span, failure)) return failure->status;
+    if (!(rows.structs = calloc((size_t)span.count + 1, rows.stride)))
+        return failure_set(failure, EX_SOFTWARE, "%s: no memory", table.group);
+    memcpy(list.rows, &rows.structs, sizeof rows.structs);
+    *list.n = span.count, *list.room = span.count + 1;
+    rows.n = span.count;
+    return table_read_columns(s, table.group, "", span.start, rows, failure);
+}
+
 int table_read_span(struct source *r, struct table_spans table, int64_t k, struct span *span,
                     struct failure *failure)
 {
@@ -300,6 +334,45 @@ int table_write_columns(struct table_write *s, const char *where, const char *ta
         if (e) return e;
     }
     return 0;
+}
+
+int table_write_frame(struct table_write *s, const char *group, struct records o,
+                      hsize_t chunk_frames, struct failure *failure)
+{
+    for (const struct field *c = o.fields; !failure->status && c->name; c++) {
+        char path[80];
+        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
+        void *row = malloc((size_t)(o.n + 1) * field_bytes(c));
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
+        field_gather(c, o.n, o.structs, o.stride, row);
+        table_write_rows(s,
+                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
+                                           chunk_frames, row, c->units },
+                         failure);
+        free(row);
+    }
+    return failure->status;
+}
+
+int table_write_list(struct table_write *s, const char *group, int64_t *so_far, struct records rows,
+                     struct failure *failure)
+{
+    if (table_write_span(s, group, *so_far, rows.n, failure) ||
+        table_write_columns(s, group, "", rows, CHUNK_CONTACTS, failure))
+        return failure->status;
+    if (s->growing) *so_far += rows.n;
+    return 0;
+}
+
+int table_write_once(struct table_write *s, const char *group, struct records rows,
+                     struct failure *failure)
+{
+    const bool growing = s->growing;
+    s->growing = false;
+    table_write_columns(s, group, "", rows, 0, failure);
+    s->growing = growing;
+    return failure->status;
 }
 
 int table_write_close(struct table_write *s)

@@ -34,16 +34,7 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
     if (!source_has(r, group)) return 0;
     if (table_read_columns(r, group, "", 0, RECORDS(load_fields, p->walls, p->wall), failure))
         return failure->status;
-    double *row = calloc((size_t)p->walls + 1, sizeof *row);
-    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
-    for (const struct field *c = load_motion_fields; !failure->status && c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, failure))
-            field_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
-    }
-    free(row);
-    return failure->status;
+    return table_read_frame(r, group, k, RECORDS(load_motion_fields, p->walls, p->wall), failure);
 }
 
 /* The number of rows of a dataset of so many dimensions */
@@ -186,7 +177,7 @@ static int write_signals(struct table_write *s, const char *group, const struct 
     char rows[60];
     snprintf(rows, sizeof rows, "%s/row", group);
     if (!d->n) return 0;
-    if (table_write_columns(s, group, "", RECORDS(drive_fields, d->n, d->drive), 0, failure))
+    if (table_write_once(s, group, RECORDS(drive_fields, d->n, d->drive), failure))
         return failure->status;
     return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, failure);
 }
@@ -213,43 +204,16 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct fai
 int boundary_tables_write_static(struct table_write *s, const struct packing *p,
                                  struct failure *failure)
 {
-    bool growing = s->growing;
     struct boundary_motion *m = NULL;
-    const char *body = BOUNDARY "/body";
-    s->growing = false;
-    if (!table_write_columns(s, body, "", RECORDS_OF(p, wall_fields, p->walls, p->wall), 0,
-                             failure) &&
+    if (!table_write_once(s, BOUNDARY "/body", RECORDS_OF(p, wall_fields, p->walls, p->wall),
+                          failure) &&
         !write_drives(s, p, failure) && !write_mesh(s, p, failure) && any_loads(p))
-        table_write_columns(s, BOUNDARY "/load", "", RECORDS(load_fields, p->walls, p->wall), 0,
-                            failure);
+        table_write_once(s, BOUNDARY "/load", RECORDS(load_fields, p->walls, p->wall), failure);
     s->at_rest = !any_may_move(p);
     if (!failure->status && s->at_rest && (m = motions(p, failure)))
-        table_write_columns(s, BOUNDARY, "", RECORDS(boundary_motion_fields, p->walls, m), 0,
-                            failure);
+        table_write_once(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), failure);
     free(m);
-    s->growing = growing;
     return failure->status;
-}
-
-/* One row of a table of [frames][walls] */
-static int write_row(struct table_write *s, const char *group, struct records o,
-                     const struct packing *p, struct failure *failure)
-{
-    for (const struct field *c = o.fields; !failure->status && c->name; c++) {
-        char path[80];
-        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
-        double *row = malloc(((size_t)o.n * (size_t)c->width + 1) * sizeof *row);
-        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
-        field_gather(c, o.n, o.structs, o.stride, row);
-        table_write_rows(s,
-                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
-                                           CHUNK_FRAMES, row, c->units },
-                         failure);
-        free(row);
-    }
-    return failure->status ? failure->status
-                           : table_write_clocks(s, group, o.fields, p->step, p->t, failure);
 }
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -260,9 +224,14 @@ int boundary_tables_write(struct table_write *s, const struct packing *p, struct
             failure, EX_DATAERR,
             "boundaries move, and in the first frame none could: begin another trajectory");
     struct boundary_motion *m = motions(p, failure);
-    if (m && !write_row(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), p, failure) &&
-        any_loads(p))
-        write_row(s, BOUNDARY "/load", RECORDS(load_motion_fields, p->walls, p->wall), p, failure);
+    if (m &&
+        !table_write_frame(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), CHUNK_FRAMES,
+                           failure) &&
+        !table_write_clocks(s, BOUNDARY, boundary_motion_fields, p->step, p->t, failure) &&
+        any_loads(p) &&
+        !table_write_frame(s, BOUNDARY "/load", RECORDS(load_motion_fields, p->walls, p->wall),
+                           CHUNK_FRAMES, failure))
+        table_write_clocks(s, BOUNDARY "/load", load_motion_fields, p->step, p->t, failure);
     free(m);
     return failure->status;
 }
@@ -273,7 +242,6 @@ static const char text_path[] = NAMES_HOME "/text";
 int name_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const struct names *names = &p->names;
-    bool growing = s->growing;
     size_t length = 1;
     if (!names->n) return 0;
     for (int32_t k = 0; k < names->n; k++) length += strlen(names->text[k]) + 1;
@@ -283,11 +251,8 @@ int name_tables_write(struct table_write *s, const struct packing *p, struct fai
         size_t n = strlen(names->text[k]);
         memcpy(at, names->text[k], n), at[n] = '\n', at += n + 1;
     }
-    s->growing = false;
     if (!h5_write_text(s->file, text_path, text, failure) && names->rows)
-        table_write_columns(s, NAMES_HOME, "", RECORDS(named_fields, names->rows, names->row), 0,
-                            failure);
-    s->growing = growing;
+        table_write_once(s, NAMES_HOME, RECORDS(named_fields, names->rows, names->row), failure);
     free(text);
     return failure->status;
 }
