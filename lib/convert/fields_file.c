@@ -63,7 +63,7 @@ int fields_file_add(struct fields_file *s, const struct fields *f, int64_t step,
     if (table_write_number(&s->tables, "/fields/step", COLUMN_I64, &step, NULL, failure) ||
         table_write_number(&s->tables, "/fields/time", COLUMN_F64, &t, "s", failure))
         return failure->status;
-    for (int k = 0; k < FIELD_COUNT; k++) {
+    for (int k = 0; k < CONTINUUM_COUNT; k++) {
         const struct quantity *q = &field_quantity[k];
         const hsize_t shape[3] = { 1, (hsize_t)fields_points(f), (hsize_t)q->width };
         char path[80];
@@ -111,7 +111,7 @@ void vti_write(FILE *out, const struct fields *f, int64_t step, double t)
             "%" PRId64 "</DataArray>\n</FieldData>\n<Piece Extent=\"%s\">\n<PointData>\n",
             order, extent, f->origin.x, f->origin.y, f->origin.z, f->step.x, f->step.y, f->step.z,
             t, step, extent);
-    for (int k = 0; k < FIELD_COUNT; k++) {
+    for (int k = 0; k < CONTINUUM_COUNT; k++) {
         fprintf(out,
                 "<DataArray type=\"Float64\" Name=\"%s\" NumberOfComponents=\"%d\" "
                 "format=\"appended\" offset=\"%" PRIu64 "\"/>\n",
@@ -119,7 +119,7 @@ void vti_write(FILE *out, const struct fields *f, int64_t step, double t)
         offset += sizeof offset + fields_file_size_of(f, k);
     }
     fprintf(out, "</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding=\"raw\">\n_");
-    for (int k = 0; k < FIELD_COUNT; k++) {
+    for (int k = 0; k < CONTINUUM_COUNT; k++) {
         uint64_t size = fields_file_size_of(f, k);
         fwrite(&size, sizeof size, 1, out);
         fwrite(f->x[k], 1, size, out);

@@ -186,7 +186,7 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct failure *fail
 
 int cell_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    for (const struct column *c = layout_cell; cell_repeats(&p->cell) && c->name; c++) {
+    for (const struct field *c = box_fields; cell_repeats(&p->cell) && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "/particles/all/%s/value", c->name);
         const hsize_t shape[3] = { 1, 3, 3 };

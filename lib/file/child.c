@@ -320,7 +320,7 @@ bool listed_numbers(const struct listed *l, uint64_t first, uint64_t n, enum col
     if (n > UINT64_MAX / 32 || first > UINT64_MAX / 32 || (first + n) * o->size > o->data)
         return false;
     if ((o->class == 'f' && o->size == 8) ||
-        (o->class == 'i' && type != COLUMN_F64 && column_size(type) == o->size)) {
+        (o->class == 'i' && type != COLUMN_F64 && field_size(type) == o->size)) {
         memcpy(out, (const char *)l->data + first * o->size, n * o->size);
         return true;
     }
@@ -334,7 +334,7 @@ bool listed_numbers(const struct listed *l, uint64_t first, uint64_t n, enum col
         if (type == COLUMN_I32) fits = fits && i >= INT32_MIN && i <= INT32_MAX;
         if (type == COLUMN_I8) fits = fits && i >= INT8_MIN && i <= INT8_MAX;
         if (!fits) return false;
-        memcpy((char *)out + k * column_size(type), &i, column_size(type));
+        memcpy((char *)out + k * field_size(type), &i, field_size(type));
     }
     return true;
 }

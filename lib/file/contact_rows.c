@@ -100,19 +100,16 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct failure *f
         return failure_set(failure, EX_SOFTWARE, "no memory for reactions");
     if (f->packing.law && contacts_alloc_laws(s))
         return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
-    if (table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_contacts, s->n, s->c),
+    const struct packing *p = &f->packing;
+    if (table_read_columns(r->source, "/contacts", "", first, RECORDS(contact_fields, s->n, s->c),
                            failure) ||
         read_bases(r->source, first, s, failure) ||
-        (cell_repeats(&f->packing.cell) &&
-         table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_shifts, s->n, s->c),
-                            failure)) ||
-        ((f->packing.mesh.elements || f->packing.shape) &&
-         table_read_columns(r->source, "/contacts", "", first, RECORDS(layout_features, s->n, s->c),
-                            failure)) ||
+        table_read_columns(r->source, "/contacts", "", first,
+                           RECORDS_OF(p, contact_key_fields, s->n, s->c), failure) ||
         (s->law && table_read_columns(r->source, "/contacts", "", first,
-                                      RECORDS(layout_contact_laws, s->n, s->law), failure)) ||
+                                      RECORDS(contact_law_fields, s->n, s->law), failure)) ||
         (solved && table_read_columns(r->source, "/contacts", "", first,
-                                      RECORDS(layout_found, s->n, s->found), failure)) ||
+                                      RECORDS(found_fields, s->n, s->found), failure)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, failure)))
         return failure->status;
     int64_t n = f->distributed ? f->distributed->n : f->packing.n;
@@ -189,19 +186,16 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
     // a column of a trajectory is one of all its contacts, or of none
     bool forces = t->found && (first ? f->forces : table_write_grows(s, LAYOUT_FORCE));
     if (table_write_span(s, "/contacts", s->contacts, t->n, failure) ||
-        table_write_columns(s, "/contacts", "", RECORDS(layout_contacts, t->n, t->c),
-                            CHUNK_CONTACTS, failure) ||
+        table_write_columns(s, "/contacts", "", RECORDS(contact_fields, t->n, t->c), CHUNK_CONTACTS,
+                            failure) ||
         write_bases(s, t, failure) ||
-        (cell_repeats(&f->packing.cell) &&
-         table_write_columns(s, "/contacts", "", RECORDS(layout_shifts, t->n, t->c), CHUNK_CONTACTS,
-                             failure)) ||
-        ((f->packing.mesh.elements || f->packing.shape) &&
-         table_write_columns(s, "/contacts", "", RECORDS(layout_features, t->n, t->c),
-                             CHUNK_CONTACTS, failure)) ||
+        table_write_columns(s, "/contacts", "",
+                            RECORDS_OF(&f->packing, contact_key_fields, t->n, t->c), CHUNK_CONTACTS,
+                            failure) ||
         (f->packing.law &&
-         table_write_columns(s, "/contacts", "", RECORDS(layout_contact_laws, t->n, t->law),
+         table_write_columns(s, "/contacts", "", RECORDS(contact_law_fields, t->n, t->law),
                              CHUNK_CONTACTS, failure)) ||
-        (t->found && table_write_columns(s, "/contacts", "", RECORDS(layout_found, t->n, t->found),
+        (t->found && table_write_columns(s, "/contacts", "", RECORDS(found_fields, t->n, t->found),
                                          CHUNK_CONTACTS, failure)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, failure)) ||
         (forces && contact_rows_write_forces(s, t, f->packing.dt, failure)) ||
@@ -215,12 +209,6 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
 }
 
 static const char group[] = "/nsd/memory";
-
-/* Has a row of this packing a feature? */
-static bool features(const struct packing *p)
-{
-    return p->mesh.elements || p->shape;
-}
 
 int memory_rows_open(struct memory_rows *r, struct source *source, struct failure *failure)
 {
@@ -254,18 +242,8 @@ int memory_rows_read(struct memory_rows *r, struct packing *p, struct failure *f
     if (!m->recall) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
     m->on = true, m->n = count, m->room = count + 1;
     if (!any) return 0;
-    struct source *s = r->source;
-    if (table_read_columns(s, group, "", start, RECORDS(layout_memory, count, m->recall),
-                           failure) ||
-        (features(p) &&
-         table_read_columns(s, group, "", start, RECORDS(layout_memory_features, count, m->recall),
-                            failure)) ||
-        (cell_repeats(&p->cell) &&
-         table_read_columns(s, group, "", start, RECORDS(layout_memory_shifts, count, m->recall),
-                            failure)) ||
-        (packing_rolls(p) &&
-         table_read_columns(s, group, "", start, RECORDS(layout_memory_moments, count, m->recall),
-                            failure)))
+    if (table_read_columns(r->source, group, "", start,
+                           RECORDS_OF(p, recall_fields, count, m->recall), failure))
         return failure->status;
     return memory_check(m, p->n, p->walls, failure);
 }
@@ -283,17 +261,8 @@ int memory_rows_write(struct table_write *s, const struct packing *p, struct fai
     const struct memory *m = &p->memory;
     if (!m->on) return 0;
     if (table_write_span(s, "/nsd/memory", s->memory, m->n, failure) ||
-        table_write_columns(s, group, "", RECORDS(layout_memory, m->n, m->recall), CHUNK_CONTACTS,
-                            failure) ||
-        (features(p) &&
-         table_write_columns(s, group, "", RECORDS(layout_memory_features, m->n, m->recall),
-                             CHUNK_CONTACTS, failure)) ||
-        (cell_repeats(&p->cell) &&
-         table_write_columns(s, group, "", RECORDS(layout_memory_shifts, m->n, m->recall),
-                             CHUNK_CONTACTS, failure)) ||
-        (packing_rolls(p) &&
-         table_write_columns(s, group, "", RECORDS(layout_memory_moments, m->n, m->recall),
-                             CHUNK_CONTACTS, failure)) ||
+        table_write_columns(s, group, "", RECORDS_OF(p, recall_fields, m->n, m->recall),
+                            CHUNK_CONTACTS, failure) ||
         table_write_number(s, "/nsd/memory/step", COLUMN_I64, &p->step, NULL, failure))
         return failure->status;
     if (s->growing) s->memory += m->n;

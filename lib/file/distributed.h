@@ -15,7 +15,7 @@ enum {
 /* A dataset of all bodies that has been made, and no numbers in it */
 struct unfilled {
     char path[80];
-    const struct column *column;
+    const struct field *column;
     int64_t frame; /* its row [bodies][width]; -1: the dataset is [bodies] */
 };
 

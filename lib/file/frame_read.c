@@ -20,9 +20,9 @@ enum {
 };
 
 /* Does the document have no dataset of a column that it may lack? */
-static bool may_lack(const struct source *s, const struct body_column *b, const char *path)
+static bool may_lack(const struct source *s, const struct field *b, const char *path)
 {
-    return (b->traits & BODY_OPTIONAL) && !source_has(s, path);
+    return (b->traits & FIELD_OPTIONAL) && !source_has(s, path);
 }
 
 /* Steps and times of the frames. A frame counts when all of its motion is there. */
@@ -34,13 +34,13 @@ static int frame_read_count_frames(struct frame_read *r, struct failure *failure
     r->time = source_read_all(r->source, "/particles/all/position/time", COLUMN_F64, &m, failure);
     if (!r->step || !r->time) return failure->status;
     n = n < (int64_t)m ? n : (int64_t)m;
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
+    for (const struct field *b = body_columns; b->name; b++) {
         char path[80];
         layout_body_path(b, path);
-        if (!(b->traits & BODY_MOVES) || b->traits & BODY_OPTIONAL) continue;
+        if (!(b->traits & FIELD_MOVES) || b->traits & FIELD_OPTIONAL) continue;
         if (source_shape(r->source, path, shape) != 3)
             return failure_set(failure, EX_DATAERR, "%s: no dataset of shape frames x bodies x %d",
-                               path, b->column.width);
+                               path, b->width);
         n = n < (int64_t)shape[0] ? n : (int64_t)shape[0];
     }
     if (source_shape(r->source, "/particles/all/id/value", shape) == 2)
@@ -84,15 +84,14 @@ void frame_read_close(struct frame_read *r)
 }
 
 /* Tables of pairs of kinds, both halves of which say the same */
-static int read_pairs(struct source *doc, const struct column *c, bool optional, struct packing *p,
-                      struct failure *failure)
+static int read_pairs(struct source *doc, struct packing *p, struct failure *failure)
 {
     const uint64_t kinds = (uint64_t)p->kinds;
-    for (; c->name; c++) {
+    for (const struct field *c = material_fields; c->name; c++) {
         char path[80];
-        double *table = column_array(c, p);
+        double *table = field_array(c, p);
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        if (optional && !source_has(doc, path)) continue;
+        if (c->traits & FIELD_OPTIONAL && !source_has(doc, path)) continue;
         if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, failure))
             return failure->status;
         for (int32_t a = 0; a < p->kinds; a++)
@@ -129,8 +128,7 @@ static int frame_read_material(struct source *doc, struct packing *p, struct fai
         name = end + 1;
     }
     free(names);
-    if (!e) e = read_pairs(doc, layout_material, false, p, failure);
-    return e ? e : read_pairs(doc, layout_optional_material, true, p, failure);
+    return e ? e : read_pairs(doc, p, failure);
 }
 
 /* What is done about overlap; a document need not say it. */
@@ -220,13 +218,13 @@ static int frame_read_clock(struct frame_read *r, int64_t k, struct packing *p,
 static int read_bodies(struct frame_read *r, int64_t k, int64_t first, struct packing *p,
                        struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
-        void *to = column_array(c, p);
+    for (const struct field *b = body_columns; b->name; b++) {
+        const struct field *c = b;
+        void *to = field_array(c, p);
         char path[80];
         layout_body_path(b, path);
         if (!to || may_lack(r->source, b, path)) continue;
-        if (!(b->traits & BODY_MOVES))
+        if (!(b->traits & FIELD_MOVES))
             source_rows(r->source, path,
                         (struct slab){ c->type, first < 0 ? 0 : first, p->n, c->width }, to,
                         failure);
@@ -247,8 +245,8 @@ static int alloc_optional(struct frame_read *r, struct packing *p, struct failur
     for (int k = 0; k < BODY_COLUMNS; k++) {
         char path[80];
         layout_body_path(&body_columns[k], path);
-        if (body_columns[k].traits & BODY_OPTIONAL && !column_array(&body_columns[k].column, p) &&
-            !(body_columns[k].traits & BODY_BY_SETTINGS) && source_has(r->source, path) &&
+        if (body_columns[k].traits & FIELD_OPTIONAL && !field_array(&body_columns[k], p) &&
+            !(body_columns[k].traits & FIELD_BY_SETTINGS) && source_has(r->source, path) &&
             packing_alloc_column(p, k, failure))
             return failure->status;
     }
@@ -281,13 +279,13 @@ static bool has_columns(const struct frame_read *r, const struct packing *p, int
 {
     uint64_t shape[4];
     char path[80];
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        bool moves = b->traits & BODY_MOVES, wide = b->column.width > 1;
+    for (const struct field *b = body_columns; b->name; b++) {
+        bool moves = b->traits & FIELD_MOVES, wide = b->width > 1;
         layout_body_path(b, path);
-        if (!column_array(&b->column, p) || may_lack(r->source, b, path)) continue;
+        if (!field_array(b, p) || may_lack(r->source, b, path)) continue;
         int rank = source_shape(r->source, path, shape);
         if (rank != (moves ? 3 : 1 + wide) || (int64_t)shape[moves] != n ||
-            ((moves || wide) && shape[1 + moves] != (uint64_t)b->column.width))
+            ((moves || wide) && shape[1 + moves] != (uint64_t)b->width))
             return false;
     }
     return true;

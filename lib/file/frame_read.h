@@ -1,5 +1,5 @@
 /*
- * file/frame_read.h: frames out of the datasets of a document [nsd-format(5), file/layout.h]. The
+ * file/frame_read.h: frames out of the datasets of a document [nsd-format(5), state/fields.h]. The
  * inverse of file/frame_write.h.
  */
 #ifndef NSD_FRAME_READ_H

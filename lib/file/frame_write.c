@@ -62,15 +62,14 @@ static bool any_pair(const struct packing *p, const double *table)
     return false;
 }
 
-static int write_pairs(hid_t file, const struct packing *p, const struct column *c, bool optional,
-                       struct failure *failure)
+static int write_pairs(hid_t file, const struct packing *p, struct failure *failure)
 {
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
-    for (; c->name; c++) {
+    for (const struct field *c = material_fields; c->name; c++) {
         char path[80];
-        if (optional && !any_pair(p, column_array(c, p))) continue;
+        if (c->traits & FIELD_OPTIONAL && !any_pair(p, field_array(c, p))) continue;
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
-        if (h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, column_array(c, p)),
+        if (h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, field_array(c, p)),
                      c->units, failure))
             return failure->status;
     }
@@ -79,9 +78,7 @@ static int write_pairs(hid_t file, const struct packing *p, const struct column 
 
 static int write_material(hid_t file, const struct packing *p, struct failure *failure)
 {
-    if (write_pairs(file, p, layout_material, false, failure) ||
-        write_pairs(file, p, layout_optional_material, true, failure))
-        return failure->status;
+    if (write_pairs(file, p, failure)) return failure->status;
     size_t length = 1;
     for (int32_t k = 0; k < p->kinds; k++) length += strlen(p->kind_name[k]) + 1;
     char *names = calloc(length, 1);
@@ -142,14 +139,14 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     if (table_write_number(s, from, step ? COLUMN_I64 : COLUMN_F64, value, step ? NULL : "s",
                            failure))
         return failure->status;
-    for (const struct body_column *b = body_columns; b->column.name && !linked; b++) {
-        const struct column it[] = { b->column, { 0 } };
-        if (b->traits & BODY_MOVES && column_array(&b->column, p) &&
+    for (const struct field *b = body_columns; b->name && !linked; b++) {
+        const struct field it[] = { *b, { 0 } };
+        if (b->traits & FIELD_MOVES && field_array(b, p) &&
             table_write_link(s, from, name, particles, it, failure))
             return failure->status;
     }
     if (linked || !cell_repeats(&p->cell)) return 0;
-    return table_write_link(s, from, name, particles, layout_cell, failure);
+    return table_write_link(s, from, name, particles, box_fields, failure);
 }
 
 static int write_time_step(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -161,7 +158,7 @@ static int write_time_step(struct table_write *s, const struct packing *p, struc
 /* After the first frame's step: its clock is that of the particles. */
 static int link_time_step(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    static const struct column it[] = { { .name = "time_step" }, { 0 } };
+    static const struct field it[] = { { .name = "time_step" }, { 0 } };
     const char *step = "/particles/all/position/step", *time = "/particles/all/position/time";
     return p->adapts && (table_write_link(s, step, "step", "/nsd", it, failure) ||
                          table_write_link(s, time, "time", "/nsd", it, failure))

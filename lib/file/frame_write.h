@@ -1,5 +1,5 @@
 /*
- * file/frame_write.h: a frame as the datasets of a document [nsd-format(5), file/layout.h], in three
+ * file/frame_write.h: a frame as the datasets of a document [nsd-format(5), state/fields.h], in three
  * parts: what all frames share, what belongs to this one, and the step that makes it count.
  */
 #ifndef NSD_FRAME_WRITE_H

@@ -8,8 +8,8 @@
 #ifndef NSD_H5_H
 #define NSD_H5_H
 
-#include "base/column.h"
 #include "base/failure.h"
+#include "base/field.h"
 #include "file/object.h"
 
 #include <hdf5.h>

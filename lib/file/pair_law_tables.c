@@ -11,7 +11,7 @@ static const char law[] = "/nsd/law", bonds[] = "/nsd/bonds";
 /* ---- from a document ---- */
 
 /* Both halves of a table say the same. */
-static int check_symmetric(const struct packing *p, const struct column *c, const double *table,
+static int check_symmetric(const struct packing *p, const struct field *c, const double *table,
                            struct failure *failure)
 {
     for (int32_t a = 0; a < p->kinds; a++)
@@ -22,48 +22,31 @@ static int check_symmetric(const struct packing *p, const struct column *c, cons
     return 0;
 }
 
-static int pair_law_tables_read_columns(struct source *s, const struct column *columns,
-                                        struct packing *p, struct failure *failure)
+static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct failure *failure)
 {
     int64_t n = (int64_t)p->kinds * p->kinds;
+    if (packing_alloc_laws(p, failure)) return failure->status;
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");
-    for (const struct column *c = columns; !failure->status && c->name; c++) {
+    for (const struct field *c = law_fields; !failure->status && c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s", law, c->name);
+        if (c->traits & FIELD_OPTIONAL && !source_has(s, path)) continue;
         if (source_read(s, path, COLUMN_F64, (uint64_t)n, table, failure) ||
             check_symmetric(p, c, table, failure))
             break;
-        column_scatter(c, n, table, p->law, sizeof *p->law);
+        field_scatter(c, n, table, p->law, sizeof *p->law);
     }
     free(table);
     return failure->status;
 }
 
-static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct failure *failure)
-{
-    if (packing_alloc_laws(p, failure) || pair_law_tables_read_columns(s, layout_law, p, failure))
-        return failure->status;
-    return source_has(s, "/nsd/law/impact")
-               ? pair_law_tables_read_columns(s, layout_impact, p, failure)
-               : 0;
-}
-
 static int read_bonds(struct source *s, int64_t k, struct packing *p, struct failure *failure)
 {
-    struct span span;
-    if (table_read_span(s, (struct table_spans){ bonds, "body", 2 }, k, &span, failure))
-        return failure->status;
-    const int64_t start = span.start, count = span.count;
-    p->bonds.bond = calloc((size_t)count + 1, sizeof *p->bonds.bond);
-    if (!p->bonds.bond) return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
-    p->bonds.n = count, p->bonds.room = count + 1;
-    if (table_read_columns(s, bonds, "", start, RECORDS(layout_bonds, count, p->bonds.bond),
-                           failure) ||
-        !source_has(s, "/nsd/bonds/area"))
-        return failure->status;
-    return table_read_columns(s, bonds, "", start, RECORDS(layout_anchors, count, p->bonds.bond),
-                              failure);
+    struct bonds *b = &p->bonds;
+    return table_read_list(s, (struct table_spans){ bonds, "body", 2 }, k,
+                           (struct list_of){ &b->bond, &b->n, &b->room },
+                           RECORDS(bond_fields, 0, b->bond), failure);
 }
 
 int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct failure *failure)
@@ -75,42 +58,26 @@ int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct 
 
 /* ---- to a document ---- */
 
-static int write_columns(hid_t file, const struct column *columns, const struct packing *p,
-                         struct failure *failure)
+int pair_law_tables_write_static(hid_t file, const struct packing *p, struct failure *failure)
 {
-    int64_t n = (int64_t)p->kinds * p->kinds;
+    const struct records laws = RECORDS(law_fields, (int64_t)p->kinds * p->kinds, p->law);
     const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
-    double *table = malloc((size_t)n * sizeof *table + 1);
+    if (!p->law) return 0;
+    double *table = malloc((size_t)laws.n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");
-    for (const struct column *c = columns; !failure->status && c->name; c++) {
+    for (const struct field *c = law_fields; !failure->status && c->name; c++) {
         char path[80];
+        if (!field_is_kept(c, &laws)) continue;
         snprintf(path, sizeof path, "%s/%s", law, c->name);
-        column_gather(c, n, p->law, sizeof *p->law, table);
+        field_gather(c, laws.n, p->law, sizeof *p->law, table);
         h5_write(file, path, h5_array(H5T_NATIVE_DOUBLE, 2, square, table), c->units, failure);
     }
     free(table);
     return failure->status;
 }
 
-int pair_law_tables_write_static(hid_t file, const struct packing *p, struct failure *failure)
-{
-    bool impact = false;
-    if (!p->law) return 0;
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++) impact = impact || p->law[k].impact > 0;
-    if (write_columns(file, layout_law, p, failure)) return failure->status;
-    return impact ? write_columns(file, layout_impact, p, failure) : 0;
-}
-
 int pair_law_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (!p->law) return 0;
-    if (table_write_span(s, "/nsd/bonds", s->bonds, p->bonds.n, failure) ||
-        table_write_columns(s, bonds, "", RECORDS(layout_bonds, p->bonds.n, p->bonds.bond),
-                            CHUNK_CONTACTS, failure) ||
-        (p->shape &&
-         table_write_columns(s, bonds, "", RECORDS(layout_anchors, p->bonds.n, p->bonds.bond),
-                             CHUNK_CONTACTS, failure)))
-        return failure->status;
-    if (s->growing) s->bonds += p->bonds.n;
-    return 0;
+    const struct records rows = RECORDS_OF(p, bond_fields, p->bonds.n, p->bonds.bond);
+    return p->law ? table_write_list(s, bonds, &s->bonds, rows, failure) : 0;
 }

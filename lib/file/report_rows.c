@@ -11,13 +11,13 @@ enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
 
 /* Terms that the balances of some packings have, and where a report says that it has them */
 static const struct {
-    const struct column *columns;
+    const struct field *columns;
     size_t flag; /* of a bool in struct report */
 } parts[] = {
-    { layout_bond_balance, offsetof(struct report, tied) },
-    { layout_gain_balance, offsetof(struct report, may_gain) },
-    { layout_projection_balance, offsetof(struct report, projected) },
-    { layout_peculiar_balance, offsetof(struct report, sheared) },
+    { bond_balance_fields, offsetof(struct report, tied) },
+    { gain_balance_fields, offsetof(struct report, may_gain) },
+    { projection_balance_fields, offsetof(struct report, projected) },
+    { peculiar_balance_fields, offsetof(struct report, sheared) },
 };
 enum { PARTS = sizeof parts / sizeof parts[0] };
 
@@ -32,9 +32,9 @@ static bool part_is_there(const struct report *rep, int k)
 }
 
 /* The reports whose numbers in these columns are there: a killed writer's may differ. */
-static void report_rows_count_rows(struct report_rows *r, const struct column *columns)
+static void report_rows_count_rows(struct report_rows *r, const struct field *columns)
 {
-    for (const struct column *c = columns; c->name; c++) {
+    for (const struct field *c = columns; c->name; c++) {
         uint64_t shape[4];
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", r->group, c->name);
@@ -55,9 +55,9 @@ int report_rows_open(struct report_rows *r, struct source *source, struct failur
     snprintf(path, sizeof path, "%s/time", r->group);
     if (source_shape(r->source, path, shape) > 0 && shape[0] < (uint64_t)r->solves)
         r->solves = (int64_t)shape[0];
-    report_rows_count_rows(r, layout_report);
-    report_rows_count_rows(r, layout_velocity);
-    report_rows_count_rows(r, layout_balance);
+    report_rows_count_rows(r, report_fields);
+    report_rows_count_rows(r, velocity_fields);
+    report_rows_count_rows(r, balance_fields);
     for (int k = 0; k < PARTS; k++) report_rows_count_rows(r, parts[k].columns);
     r->solves = account_rows_count(source, r->solves);
     if (!failure->status) r->solves = table_read_rising(r->solved, r->solves);
@@ -116,7 +116,7 @@ static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure
     if (!r->ahead.row || !r->ahead.account || !r->ahead.time)
         return failure_set(failure, EX_SOFTWARE, "no memory for %s", r->group);
     snprintf(time, sizeof time, "%s/time", r->group);
-    if (report_rows_read_table(r, at, RECORDS(layout_report, n, r->ahead.row), failure) ||
+    if (report_rows_read_table(r, at, RECORDS(report_fields, n, r->ahead.row), failure) ||
         source_rows(r->source, time, (struct slab){ COLUMN_F64, at, n, 1 }, r->ahead.time,
                     failure) ||
         account_rows_read(r->source, at, n, r->ahead.account, failure))
@@ -127,14 +127,14 @@ static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure
     snprintf(time, sizeof time, "%s/velocity/value", r->group);
     bool velocity = source_has(r->source, time);
     if (velocity &&
-        report_rows_read_table(r, at, RECORDS(layout_velocity, n, r->ahead.row), failure))
+        report_rows_read_table(r, at, RECORDS(velocity_fields, n, r->ahead.row), failure))
         return failure->status;
     for (int64_t i = 0; i < n && !velocity; i++)
         r->ahead.row[i].err.velocity = r->ahead.row[i].err.velocity_error = NAN; // not known
     snprintf(time, sizeof time, "%s/dissipation/value", r->group);
     bool balanced = source_has(r->source, "/particles/all") && source_has(r->source, time);
     if (balanced &&
-        report_rows_read_table(r, at, RECORDS(layout_balance, n, r->ahead.row), failure))
+        report_rows_read_table(r, at, RECORDS(balance_fields, n, r->ahead.row), failure))
         return failure->status;
     bool has[PARTS];
     for (int k = 0; k < PARTS; k++) {
@@ -189,7 +189,7 @@ void report_rows_close(struct report_rows *r)
 /* ---- to a document ---- */
 
 /* One table of the balances, beside the report, whose clocks they share */
-static int write_table(struct table_write *s, const struct column *table, const struct report *rep,
+static int write_table(struct table_write *s, const struct field *table, const struct report *rep,
                        bool first, struct failure *failure)
 {
     const char *solver = LAYOUT_REPORT;
@@ -204,7 +204,7 @@ static int write_table(struct table_write *s, const struct column *table, const 
 static int write_balance(struct table_write *s, const struct report *rep, bool first,
                          struct failure *failure)
 {
-    if (write_table(s, layout_balance, rep, first, failure)) return failure->status;
+    if (write_table(s, balance_fields, rep, first, failure)) return failure->status;
     for (int k = 0; k < PARTS; k++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s/value", LAYOUT_REPORT, parts[k].columns[0].name);
@@ -219,11 +219,11 @@ int report_rows_write(struct table_write *s, const struct report *rep, struct fa
 {
     const char *solver = LAYOUT_REPORT;
     bool first = !table_write_grows(s, LAYOUT_REPORT "/eps/value");
-    if (table_write_columns(s, solver, "/value", RECORDS(layout_report, 1, rep), CHUNK_FRAMES,
+    if (table_write_columns(s, solver, "/value", RECORDS(report_fields, 1, rep), CHUNK_FRAMES,
                             failure) ||
-        table_write_clocks(s, solver, layout_report, rep->step, rep->t, failure) ||
+        table_write_clocks(s, solver, report_fields, rep->step, rep->t, failure) ||
         (rep->criterion == CRITERION_VELOCITY &&
-         write_table(s, layout_velocity, rep, first, failure)) ||
+         write_table(s, velocity_fields, rep, first, failure)) ||
         (rep->balanced && write_balance(s, rep, first, failure)))
         return failure->status;
     if (first &&
@@ -242,16 +242,15 @@ static const char home[] = "/nsd/account";
 
 /* A column each, from the table of what is watched */
 struct report_rows_columns {
-    struct column c[ACCOUNT_ROWS + 2];
+    struct field c[ACCOUNT_ROWS + 2];
 };
 
 static struct report_rows_columns columns(void)
 {
-    struct report_rows_columns t = { { { "steps", "1", COLUMN_I64, 1,
-                                         offsetof(struct account, steps) } } };
+    struct report_rows_columns t = { { FIELD(struct account, steps, I64, 1, "steps", "1", 0) } };
     for (int k = 0; k < ACCOUNT_ROWS; k++)
-        t.c[1 + k] = (struct column){ account_watched[k].name, account_watched[k].units, COLUMN_F64,
-                                      4, offsetof(struct account, worst[k]) };
+        t.c[1 + k] = (struct field)FIELD(struct account, worst[k], F64, 4, account_watched[k].name,
+                                         account_watched[k].units, 0);
     return t;
 }
 
@@ -274,7 +273,7 @@ static int report_rows_check(const struct account *a, struct failure *failure)
 int64_t account_rows_count(const struct source *source, int64_t n)
 {
     struct report_rows_columns t = columns();
-    for (const struct column *c = t.c; c->name; c++) {
+    for (const struct field *c = t.c; c->name; c++) {
         char path[80];
         uint64_t shape[4];
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
@@ -288,8 +287,8 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
 {
     struct report_rows_columns t = columns();
     char path[80];
-    for (const struct column *c = t.c; c->name; c++) {
-        const struct column one[] = { *c, { 0 } };
+    for (const struct field *c = t.c; c->name; c++) {
+        const struct field one[] = { *c, { 0 } };
         snprintf(path, sizeof path, "%s/%s/value", home, c->name);
         if (!source_has(source, path)) continue; // of a version that does not watch it
         if (table_read_finite(source, home, "/value", start, RECORDS(one, n, account), failure))

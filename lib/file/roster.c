@@ -39,24 +39,39 @@ void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struc
 
 void roster_free(struct roster *r)
 {
-    free(r->id), free(r->radius), free(r->mass);
+    free(r->id), free(r->fixed);
     *r = (struct roster){ 0 };
 }
 
 static int roster_grow(struct roster *r, struct failure *failure)
 {
     if (r->rows < r->room) return 0;
+    if (!r->bytes)
+        for (const struct field *b = body_columns; b->name; b++)
+            r->bytes += b->traits & FIELD_SAME ? field_bytes(b) : 0;
     size_t room = r->room ? 2 * (size_t)r->room : 256;
     int32_t *id = realloc(r->id, room * sizeof *id);
     if (id) r->id = id;
-    double *radius = realloc(r->radius, room * sizeof *radius);
-    if (radius) r->radius = radius;
-    double *mass = realloc(r->mass, room * sizeof *mass);
-    if (mass) r->mass = mass;
-    if (!id || !radius || !mass)
-        return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
+    char *fixed = realloc(r->fixed, room * r->bytes);
+    if (fixed) r->fixed = fixed;
+    if (!id || !fixed) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     r->room = (int64_t)room;
     return 0;
+}
+
+/* Keeps the numbers of body i that do not move in a row, or says in which of them it differs from that row: NULL: in none */
+static const char *roster_fixed(struct roster *r, const struct packing *p, int64_t i, int64_t row,
+                                bool keep)
+{
+    char *at = r->fixed + (size_t)row * r->bytes;
+    for (const struct field *b = body_columns; b->name; b++) {
+        const size_t bytes = b->traits & FIELD_SAME ? field_bytes(b) : 0;
+        const char none[sizeof(quat)] = { 0 }, *x = field_array(b, p) ? field_row(b, p, i) : none;
+        if (keep && bytes) memcpy(at, x, bytes);
+        if (memcmp(at, x, bytes) != 0) return b->name;
+        at += bytes;
+    }
+    return NULL;
 }
 
 /* The row of body i, at or after `from`: bodies keep their order. New ones get the next. */
@@ -65,8 +80,11 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
 {
     while (from < r->rows && r->id[from] != p->id[i]) from++;
     if (from < r->rows) {
-        if (r->radius[from] == p->radius[i] && r->mass[from] == p->mass[i]) return from;
-        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's"), -1;
+        const char *differs = roster_fixed(r, p, i, from, false);
+        if (!differs) return from;
+        return failure_set(failure, EX_DATAERR,
+                           "other bodies than the trajectory's: their %s differs", differs),
+               -1;
     }
     if (roster_grow(r, failure)) return -1;
     for (int64_t k = r->rows - 1; k >= 0 && r->id[k] >= p->id[i]; k--)
@@ -74,14 +92,15 @@ static int64_t roster_row_of(struct roster *r, const struct packing *p, int64_t 
             return failure_set(failure, EX_DATAERR,
                                "bodies in another order than the trajectory's"),
                    -1;
-    r->id[r->rows] = p->id[i], r->radius[r->rows] = p->radius[i], r->mass[r->rows] = p->mass[i];
+    r->id[r->rows] = p->id[i];
+    roster_fixed(r, p, i, r->rows, true);
     return r->rows++;
 }
 
 /* Has the column a dataset of [frames][rows]? That of ids says which bodies a frame has. */
-static bool roster_moves(const struct body_column *b)
+static bool roster_moves(const struct field *b)
 {
-    return b->traits & BODY_MOVES || b == &body_columns[BODY_id];
+    return b->traits & FIELD_MOVES || b == &body_columns[BODY_id];
 }
 
 /* The tables of bodies go on with those from `first` on, the last ones of the packing. */
@@ -89,15 +108,15 @@ static int write_new(struct table_write *s, const struct packing *p, int64_t fir
                      struct failure *failure)
 {
     const hsize_t n = (hsize_t)(p->n - first);
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
+    for (const struct field *b = body_columns; b->name; b++) {
+        const struct field *c = b;
         const hsize_t shape[2] = { n, (hsize_t)c->width };
         char path[80];
-        if (roster_moves(b) || !column_array(c, p)) continue;
+        if (roster_moves(b) || !field_array(c, p)) continue;
         layout_body_path(b, path);
         if (table_write_rows(s,
                              (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
-                                               s->chunk_bodies, column_row(c, p, first), c->units },
+                                               s->chunk_bodies, field_row(c, p, first), c->units },
                              failure))
             return failure->status;
     }
@@ -129,20 +148,20 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
     return 0;
 }
 
-static void moving_path(const struct body_column *b, char path[80])
+static void moving_path(const struct field *b, char path[80])
 {
-    snprintf(path, 80, "/particles/all/%s/value", b->column.name);
+    snprintf(path, 80, "/particles/all/%s/value", b->name);
 }
 
 /* A column of bodies that move, of body i in row[i] */
-static int write_spread(struct roster *r, struct table_write *s, const struct body_column *b,
+static int write_spread(struct roster *r, struct table_write *s, const struct field *b,
                         const struct packing *p, const int64_t *row, struct failure *failure)
 {
-    const struct column *c = &b->column;
-    const char *data = column_array(c, p);
+    const struct field *c = b;
+    const char *data = field_array(c, p);
     char path[80];
     moving_path(b, path);
-    size_t number = column_size(c->type), bytes = column_bytes(c);
+    size_t number = field_size(c->type), bytes = field_bytes(c);
     char *all = malloc((size_t)r->width * bytes);
     if (!all) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
     const double none = NAN;
@@ -163,8 +182,8 @@ static int write_spread(struct roster *r, struct table_write *s, const struct bo
 int roster_write(struct roster *r, struct table_write *s, const struct packing *p,
                  const int64_t *row, struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (!roster_moves(b) || !column_array(&b->column, p)) continue;
+    for (const struct field *b = body_columns; b->name; b++) {
+        if (!roster_moves(b) || !field_array(b, p)) continue;
         if (write_spread(r, s, b, p, row, failure)) return failure->status;
     }
     return 0;
@@ -200,17 +219,17 @@ int roster_find(struct source *source, int64_t k, int64_t **row, int64_t *n,
 }
 
 /* A column of p's bodies, of body i from row[i]: of frame k, or of a table that all frames share */
-static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct body_column *b,
+static int read_spread(struct source *s, int64_t k, const int64_t *row, const struct field *b,
                        struct packing *p, struct failure *failure)
 {
-    const struct column *c = &b->column;
+    const struct field *c = b;
     const int64_t n = p->n;
-    char path[80], *out = column_array(c, p);
+    char path[80], *out = field_array(c, p);
     if (roster_moves(b))
         moving_path(b, path);
     else
         layout_body_path(b, path);
-    if (b->traits & BODY_OPTIONAL && !source_has(s, path)) return 0;
+    if (b->traits & FIELD_OPTIONAL && !source_has(s, path)) return 0;
     uint64_t shape[4];
     int rank = source_shape(s, path, shape);
     const bool moving = roster_moves(b);
@@ -219,7 +238,7 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
     int64_t rows = (int64_t)shape[moving], most = n ? row[n - 1] + 1 : 0; // rows ascend
     if (rows < most || rows > INT32_MAX)
         return failure_set(failure, EX_DATAERR, "%s: fewer rows than bodies", path);
-    size_t bytes = (size_t)c->width * column_size(c->type);
+    size_t bytes = (size_t)c->width * field_size(c->type);
     char *all = malloc((size_t)rows * bytes + 1);
     if (!all) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
     int e =
@@ -234,32 +253,13 @@ static int read_spread(struct source *s, int64_t k, const int64_t *row, const st
 int roster_read(struct source *source, int64_t k, const int64_t *row, struct packing *p,
                 struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        if (column_array(&b->column, p) && read_spread(source, k, row, b, p, failure))
-            return failure->status;
+    for (const struct field *b = body_columns; b->name; b++) {
+        if (field_array(b, p) && read_spread(source, k, row, b, p, failure)) return failure->status;
     }
     return 0;
 }
 
 static const char flow[] = "/nsd/flow", events[] = "/nsd/flow/events";
-
-/* A column of n passages, as one frame */
-static int write_passages(struct table_write *s, const struct column *c, int32_t n,
-                          const struct flow_count *from, struct failure *failure)
-{
-    for (; c->name && n > 0; c++) {
-        char path[80];
-        int64_t data[1000]; // as wide as a double; at most 1000 of each (scene_flow.c)
-        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        column_gather(c, n, from, sizeof *from, data);
-        const hsize_t shape[2] = { 1, (hsize_t)n };
-        if (table_write_rows(
-                s, (struct dataset){ path, c->type, 2, shape, CHUNK_FRAMES, data, c->units },
-                failure))
-            return failure->status;
-    }
-    return 0;
-}
 
 #define NUMBERS "/nsd/flow/numbers"
 
@@ -276,20 +276,20 @@ int flow_write(struct table_write *s, const struct packing *p, struct failure *f
 {
     if (!packing_varies(p)) return 0;
     bool first = !table_write_grows(s, "/nsd/flow/events/id");
-    if (write_passages(s, layout_poured, p->pours, p->poured, failure) ||
-        write_passages(s, layout_removed, p->removals, p->removed, failure) ||
-        table_write_span(s, "/nsd/flow/events", s->events, p->events.n, failure) ||
-        table_write_columns(s, events, "", RECORDS(layout_events, p->events.n, p->events.e),
-                            CHUNK_CONTACTS, failure))
+    if ((p->pours && table_write_frame(s, flow, RECORDS(poured_fields, p->pours, p->poured),
+                                       CHUNK_FRAMES, failure)) ||
+        (p->removals && table_write_frame(s, flow, RECORDS(removed_fields, p->removals, p->removed),
+                                          CHUNK_FRAMES, failure)) ||
+        table_write_list(s, events, &s->events, RECORDS(event_fields, p->events.n, p->events.e),
+                         failure))
         return failure->status;
-    if (s->growing) s->events += p->events.n;
     if (!first) return write_numbers(s, p, failure);
     s->first_id = p->first_id;
     return h5_attr(s->file, flow, "first_id", h5_scalar(H5T_NATIVE_INT32, &p->first_id), failure);
 }
 
 /* The clock of the particles, for columns in a group */
-static int link_clocks(struct table_write *s, const char *where, const struct column *c,
+static int link_clocks(struct table_write *s, const char *where, const struct field *c,
                        struct failure *failure)
 {
     return table_write_link(s, "/particles/all/position/step", "step", where, c, failure) ||
@@ -300,9 +300,9 @@ static int link_clocks(struct table_write *s, const char *where, const struct co
 
 int flow_link(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    static const struct column ids[] = { { .name = "id" }, { 0 } };
-    if ((p->pours > 0 && link_clocks(s, flow, layout_poured, failure)) ||
-        (p->removals > 0 && link_clocks(s, flow, layout_removed, failure)))
+    static const struct field ids[] = { { .name = "id" }, { 0 } };
+    if ((p->pours > 0 && link_clocks(s, flow, poured_fields, failure)) ||
+        (p->removals > 0 && link_clocks(s, flow, removed_fields, failure)))
         return failure->status;
     return s->roster ? link_clocks(s, "/particles/all", ids, failure) : 0;
 }
@@ -320,17 +320,10 @@ static int32_t roster_count_of(struct source *s, const char *path, struct failur
            -1;
 }
 
-static int read_passages(struct source *s, int64_t k, const struct column *c, int32_t n,
+static int read_passages(struct source *s, int64_t k, const struct field *fields, int32_t n,
                          struct flow_count *to, struct failure *failure)
 {
-    for (; c->name && n > 0; c++) {
-        char path[80];
-        int64_t data[1000];
-        snprintf(path, sizeof path, "%s/%s/value", flow, c->name);
-        if (source_rows(s, path, (struct slab){ c->type, k, 1, n }, data, failure))
-            return failure->status;
-        column_scatter(c, n, data, to, sizeof *to);
-    }
+    if (n && table_read_frame(s, flow, k, RECORDS(fields, n, to), failure)) return failure->status;
     for (int32_t i = 0; i < n; i++)
         if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))
             return failure_set(failure, EX_DATAERR,
@@ -340,25 +333,19 @@ static int read_passages(struct source *s, int64_t k, const struct column *c, in
 
 static int check_event(const struct event *e, struct failure *failure)
 {
-    bool good = isfinite(e->t) && (e->came == 0 || e->came == 1) && e->which >= 0 &&
-                e->radius > 0 && isfinite(e->radius) && e->mass >= 0 && isfinite(e->mass) &&
-                v3_finite(e->x) && v3_finite(e->v);
-    return good ? 0 : failure_set(failure, EX_DATAERR, "%s: a number is out of range", events);
+    for (const struct field *f = event_fields; f->name; f++)
+        if (field_trouble(f, (const char *)e + f->offset))
+            return failure_set(failure, EX_DATAERR, "%s: a number is out of range", events);
+    return 0;
 }
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct failure *failure)
 {
-    struct span span;
-    if (table_read_span(s, (struct table_spans){ events, "id", 1 }, k, &span, failure))
+    if (table_read_list(s, (struct table_spans){ events, "id", 1 }, k,
+                        (struct list_of){ &p->events.e, &p->events.n, &p->events.room },
+                        RECORDS(event_fields, 0, p->events.e), failure))
         return failure->status;
-    const int64_t start = span.start, count = span.count;
-    if (!(p->events.e = calloc((size_t)count + 1, sizeof *p->events.e)))
-        return failure_set(failure, EX_SOFTWARE, "no memory for events");
-    p->events.n = count, p->events.room = count + 1;
-    if (table_read_columns(s, events, "", start, RECORDS(layout_events, count, p->events.e),
-                           failure))
-        return failure->status;
-    for (int64_t i = 0; i < count; i++)
+    for (int64_t i = 0; i < p->events.n; i++)
         if (check_event(&p->events.e[i], failure)) return failure->status;
     return 0;
 }
@@ -382,8 +369,8 @@ int flow_tables_read(struct source *s, int64_t k, struct packing *p, struct fail
     if (removals < 0 || packing_alloc_passages(p, pours, removals, failure)) return failure->status;
     if (source_attribute(s, flow, "first_id", (struct numbers){ COLUMN_I32, -1, &p->first_id },
                          failure) ||
-        read_passages(s, k, layout_poured, pours, p->poured, failure) ||
-        read_passages(s, k, layout_removed, removals, p->removed, failure))
+        read_passages(s, k, poured_fields, pours, p->poured, failure) ||
+        read_passages(s, k, removed_fields, removals, p->removed, failure))
         return failure->status;
     if (p->first_id < 0) return failure_set(failure, EX_DATAERR, "%s@first_id: is negative", flow);
     return read_events(s, k, p, failure);

@@ -13,8 +13,8 @@
 struct roster {
     int64_t rows, room; /* bodies that ever were; how many there is memory for */
     int32_t *id;        /* [rows] */
-    double *radius;     /* [rows] m */
-    double *mass;       /* [rows] kg */
+    char *fixed;        /* [rows][bytes] the numbers that do not move, one after another */
+    size_t bytes;       /* of all of them */
     int64_t width;      /* rows that the datasets have */
 };
 

@@ -66,7 +66,7 @@ static int answer_block(struct served *s, const struct served_entry *e, const st
                         const struct serve_block *b, struct sink *sink, struct failure *failure)
 {
     const struct object *o = &e->object;
-    struct reply reply = { .there = true, .size = column_size(q->type) };
+    struct reply reply = { .there = true, .size = field_size(q->type) };
     for (uint32_t k = 0; k < o->rank; k++) reply.size *= b->count[k];
     if (served_stored(e, b->stored * o->size, failure)) return failure->status;
     hid_t set = served_set(s, e, failure);
@@ -184,7 +184,7 @@ static int answer_attribute(struct served *s, const struct request *q, struct si
                     (long long)points, (long long)want);
     else if (want && H5Aread(attr, column_native(q->type), numbers) < 0)
         failure_set(failure, EX_DATAERR, "%s@%s: cannot be read", path, q->name);
-    else if (sink_bytes(sink, &reply, numbers, (size_t)want * column_size(q->type)))
+    else if (sink_bytes(sink, &reply, numbers, (size_t)want * field_size(q->type)))
         failure_set(failure, EX_SOFTWARE, "%s: not sent", path);
     if (space >= 0) H5Sclose(space);
     if (disk >= 0) H5Tclose(disk);

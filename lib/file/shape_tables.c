@@ -16,14 +16,14 @@ struct shape_tables_row {
     double round, volume, moment[3];
 };
 
-static const struct column layout_rows[] = {
-    { "form", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, form) },
-    { "vertices", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, vertices) },
-    { "faces", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, faces) },
-    { "corners", "1", COLUMN_I32, 1, offsetof(struct shape_tables_row, corners) },
-    { "round", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, round) },
-    { "volume", "1", COLUMN_F64, 1, offsetof(struct shape_tables_row, volume) },
-    { "moment", "1", COLUMN_F64, 3, offsetof(struct shape_tables_row, moment) },
+static const struct field layout_rows[] = {
+    FIELD(struct shape_tables_row, form, I32, 1, "form", "1", 0),
+    FIELD(struct shape_tables_row, vertices, I32, 1, "vertices", "1", 0),
+    FIELD(struct shape_tables_row, faces, I32, 1, "faces", "1", 0),
+    FIELD(struct shape_tables_row, corners, I32, 1, "corners", "1", 0),
+    FIELD(struct shape_tables_row, round, F64, 1, "round", "1", 0),
+    FIELD(struct shape_tables_row, volume, F64, 1, "volume", "1", 0),
+    FIELD(struct shape_tables_row, moment, F64, 3, "moment", "1", 0),
     { 0 },
 };
 
@@ -173,10 +173,10 @@ static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct fa
                                                 s->volume,
                                                 { s->moment[0], s->moment[1], s->moment[2] } };
     }
-    for (const struct column *c = layout_rows; c->name && !failure->status; c++) {
+    for (const struct field *c = layout_rows; c->name && !failure->status; c++) {
         char path[80];
         snprintf(path, sizeof path, SHAPE "/%s", c->name);
-        column_gather(c, (int64_t)n, row, sizeof *row, out);
+        field_gather(c, (int64_t)n, row, sizeof *row, out);
         h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
                  c->units, failure);
     }

@@ -164,7 +164,7 @@ int source_rows(struct source *s, const char *path, struct slab rows, void *out,
     const enum column_type type = rows.type;
     const int64_t start = rows.start, n = rows.n, width = rows.width;
     struct request q = request_of(REQUEST_ROWS, path);
-    struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
+    struct taker t = { .out = out, .size = (uint64_t)(n * width) * field_size(type) };
     if (!t.size) t.out = &q; // nothing is written there
     const struct listed *l = list_find(&s->list, path);
     if (l && l->object.data && l->object.rank && start >= 0 && n >= 0 && width > 0) {
@@ -184,7 +184,7 @@ int source_part(struct source *s, const char *path, int64_t row, struct slab row
     const enum column_type type = rows.type;
     const int64_t first = rows.start, n = rows.n, width = rows.width;
     struct request q = request_of(REQUEST_PART, path);
-    struct taker t = { .out = out, .size = (uint64_t)(n * width) * column_size(type) };
+    struct taker t = { .out = out, .size = (uint64_t)(n * width) * field_size(type) };
     if (!t.size) t.out = &q; // nothing is written there
     const struct listed *l = list_find(&s->list, path);
     if (l && l->object.data && l->object.rank >= 2 && row >= 0 && first >= 0 && n >= 0) {
@@ -219,7 +219,7 @@ void *source_read_all(struct source *s, const char *path, enum column_type type,
         *count = 0;
     }
     if (source_ask(s, &q, &t, failure)) return NULL;
-    *count = t.size / column_size(type);
+    *count = t.size / field_size(type);
     return t.out;
 }
 
@@ -230,7 +230,7 @@ int source_read(struct source *s, const char *path, enum column_type type, uint6
     void *data = source_read_all(s, path, type, &found, failure);
     if (!data) return failure->status;
     if (found == count)
-        memcpy(out, data, (size_t)count * column_size(type));
+        memcpy(out, data, (size_t)count * field_size(type));
     else
         failure_set(failure, EX_DATAERR, "%s: %llu values, %llu are needed", path,
                     (unsigned long long)found, (unsigned long long)count);
@@ -272,7 +272,7 @@ int source_attribute(struct source *s, const char *path, const char *name, struc
 {
     struct request q = request_of(REQUEST_ATTRIBUTE, path);
     uint64_t n = numbers.count < 0 ? 1 : (uint64_t)numbers.count;
-    struct taker t = { .out = numbers.to, .size = n * column_size(numbers.type) };
+    struct taker t = { .out = numbers.to, .size = n * field_size(numbers.type) };
     q.type = numbers.type, q.n = numbers.count;
     const struct listed *l = list_attribute(&s->list, path, name);
     if (l && l->object.size && l->object.data / l->object.size == n &&

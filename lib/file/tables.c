@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int check_finite(const char *path, const struct column *c, int64_t n, const void *data,
+static int check_finite(const char *path, const struct field *c, int64_t n, const void *data,
                         struct failure *failure)
 {
     const double *x = data;
@@ -18,17 +18,29 @@ static int check_finite(const char *path, const struct column *c, int64_t n, con
     return 0;
 }
 
+/* Has the document the field? Of those that follow each other and have one predicate, the first decides. */
+static bool tables_has(struct source *s, const char *path, const struct field *f,
+                       const struct records *o, bool before)
+{
+    if (!f->when && !(f->traits & FIELD_OPTIONAL)) return true;
+    if (f->when && o->of) return f->when(o->of);
+    const bool follows = f->when && f > o->fields && f[-1].when == f->when;
+    return follows ? before : source_has(s, path);
+}
+
 static int tables_read_columns(struct source *s, const char *group, const char *tail, int64_t start,
                                struct records o, bool finite, struct failure *failure)
 {
-    for (const struct column *c = o.columns; c->name; c++) {
+    bool there = true;
+    for (const struct field *c = o.fields; c->name; c++) {
         char path[80];
         snprintf(path, sizeof path, "%s/%s%s", group, c->name, tail);
-        char *data = calloc((size_t)o.n + 1, column_bytes(c));
+        if (!(there = tables_has(s, path, c, &o, there))) continue;
+        char *data = calloc((size_t)o.n + 1, field_bytes(c));
         if (!data) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
         int e = source_rows(s, path, (struct slab){ c->type, start, o.n, c->width }, data, failure);
         if (!e && finite) e = check_finite(path, c, o.n, data, failure);
-        if (!e) column_scatter(c, o.n, data, o.structs, o.stride);
+        if (!e) field_scatter(c, o.n, data, o.structs, o.stride);
         free(data);
         if (e) return e;
     }
@@ -45,6 +57,40 @@ int table_read_finite(struct source *s, const char *group, const char *tail, int
                       struct records o, struct failure *failure)
 {
     return tables_read_columns(s, group, tail, start, o, true, failure);
+}
+
+int table_read_frame(struct source *s, const char *group, int64_t k, struct records o,
+                     struct failure *failure)
+{
+    for (const struct field *c = o.fields; c->name; c++) {
+        char path[80];
+        uint64_t shape[4];
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        // no memory is allocated for rows that are not there
+        if (source_shape(s, path, shape) != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)o.n)
+            return failure_set(failure, EX_DATAERR, "%s: not of shape frames x %lld x %d", path,
+                               (long long)o.n, c->width);
+        char *row = calloc((size_t)o.n + 1, field_bytes(c));
+        if (!row) return failure_set(failure, EX_SOFTWARE, "%s: no memory", path);
+        if (!source_rows(s, path, (struct slab){ c->type, k, 1, o.n * c->width }, row, failure))
+            field_scatter(c, o.n, row, o.structs, o.stride);
+        free(row);
+        if (failure->status) return failure->status;
+    }
+    return 0;
+}
+
+int table_read_list(struct source *s, struct table_spans table, int64_t k, struct list_of list,
+                    struct records rows, struct failure *failure)
+{
+    struct span span;
+    if (table_read_span(s, table, k, &span, failure)) return failure->status;
+    if (!(rows.structs = calloc((size_t)span.count + 1, rows.stride)))
+        return failure_set(failure, EX_SOFTWARE, "%s: no memory", table.group);
+    memcpy(list.rows, &rows.structs, sizeof rows.structs);
+    *list.n = span.count, *list.room = span.count + 1;
+    rows.n = span.count;
+    return table_read_columns(s, table.group, "", span.start, rows, failure);
 }
 
 int table_read_span(struct source *r, struct table_spans table, int64_t k, struct span *span,
@@ -234,14 +280,14 @@ static int64_t last_frame(const struct table_write *s, const char *path)
     return (int64_t)size[0] - 1;
 }
 
-static int write_body_column(struct table_write *s, const struct body_column *b,
-                             const struct packing *p, struct failure *failure)
+static int write_body_column(struct table_write *s, const struct field *b, const struct packing *p,
+                             struct failure *failure)
 {
-    const struct column *c = &b->column;
+    const struct field *c = b;
     const hsize_t n = (hsize_t)(s->distributed ? s->distributed->n : p->n);
     const hsize_t shape[3] = { 1, n, (hsize_t)c->width };
-    const void *data = s->distributed ? NULL : column_array(c, p);
-    bool moves = b->traits & BODY_MOVES;
+    const void *data = s->distributed ? NULL : field_array(c, p);
+    bool moves = b->traits & FIELD_MOVES;
     char path[80];
     layout_body_path(b, path);
     if (moves ? table_write_rows(s, (struct dataset){ path, c->type, 3, shape, 1, data, c->units },
@@ -262,8 +308,8 @@ static int write_body_column(struct table_write *s, const struct body_column *b,
 int table_write_bodies(struct table_write *s, bool moving, const struct packing *p,
                        struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && !(b->traits & BODY_MOVES) == !moving &&
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && !(b->traits & FIELD_MOVES) == !moving &&
             write_body_column(s, b, p, failure))
             return failure->status;
     return 0;
@@ -272,12 +318,13 @@ int table_write_bodies(struct table_write *s, bool moving, const struct packing 
 int table_write_columns(struct table_write *s, const char *where, const char *tail,
                         struct records o, hsize_t chunk_rows, struct failure *failure)
 {
-    for (const struct column *c = o.columns; c->name; c++) {
+    for (const struct field *c = o.fields; c->name; c++) {
         char path[80];
+        if (!field_is_kept(c, &o)) continue;
         snprintf(path, sizeof path, "%s/%s%s", where, c->name, tail);
-        void *data = malloc((size_t)(o.n + 1) * column_bytes(c));
+        void *data = malloc((size_t)(o.n + 1) * field_bytes(c));
         if (!data) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
-        column_gather(c, o.n, o.structs, o.stride, data);
+        field_gather(c, o.n, o.structs, o.stride, data);
         hsize_t shape[2] = { (hsize_t)o.n, (hsize_t)c->width };
         int e = table_write_rows(s,
                                  (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
@@ -289,6 +336,45 @@ int table_write_columns(struct table_write *s, const char *where, const char *ta
     return 0;
 }
 
+int table_write_frame(struct table_write *s, const char *group, struct records o,
+                      hsize_t chunk_frames, struct failure *failure)
+{
+    for (const struct field *c = o.fields; !failure->status && c->name; c++) {
+        char path[80];
+        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
+        void *row = malloc((size_t)(o.n + 1) * field_bytes(c));
+        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
+        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
+        field_gather(c, o.n, o.structs, o.stride, row);
+        table_write_rows(s,
+                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
+                                           chunk_frames, row, c->units },
+                         failure);
+        free(row);
+    }
+    return failure->status;
+}
+
+int table_write_list(struct table_write *s, const char *group, int64_t *so_far, struct records rows,
+                     struct failure *failure)
+{
+    if (table_write_span(s, group, *so_far, rows.n, failure) ||
+        table_write_columns(s, group, "", rows, CHUNK_CONTACTS, failure))
+        return failure->status;
+    if (s->growing) *so_far += rows.n;
+    return 0;
+}
+
+int table_write_once(struct table_write *s, const char *group, struct records rows,
+                     struct failure *failure)
+{
+    const bool growing = s->growing;
+    s->growing = false;
+    table_write_columns(s, group, "", rows, 0, failure);
+    s->growing = growing;
+    return failure->status;
+}
+
 int table_write_close(struct table_write *s)
 {
     herr_t e = 0;
@@ -298,7 +384,7 @@ int table_write_close(struct table_write *s)
 }
 
 int table_write_link(struct table_write *s, const char *from, const char *name, const char *where,
-                     const struct column *c, struct failure *failure)
+                     const struct field *c, struct failure *failure)
 {
     char to[80];
     for (; c->name; c++) {
@@ -311,7 +397,7 @@ int table_write_link(struct table_write *s, const char *from, const char *name, 
 }
 
 /* A number of the frame, WHERE/name, that is linked to the columns when it is first written */
-static int write_clock(struct table_write *s, const char *where, const struct column *columns,
+static int write_clock(struct table_write *s, const char *where, const struct field *columns,
                        struct dataset o, struct failure *failure)
 {
     char path[80];
@@ -321,7 +407,7 @@ static int write_clock(struct table_write *s, const char *where, const struct co
     return linked ? 0 : table_write_link(s, path, o.path, where, columns, failure);
 }
 
-int table_write_clocks(struct table_write *s, const char *where, const struct column *columns,
+int table_write_clocks(struct table_write *s, const char *where, const struct field *columns,
                        int64_t step, double time, struct failure *failure)
 {
     const struct dataset steps = { .path = "step", .type = COLUMN_I64, .data = &step };

@@ -1,6 +1,5 @@
 /*
- * file/tables.h: tables of file/layout.h out of the datasets of a document. The inverse of
- * file/tables.h.
+ * file/tables.h: tables of fields [base/field.h] out of the datasets of a document, and into them.
  */
 #ifndef NSD_TABLES_H
 #define NSD_TABLES_H
@@ -29,6 +28,18 @@ struct table_spans {
 /* That of frame k. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int table_read_span(struct source *source, struct table_spans table, int64_t k, struct span *span,
                     struct failure *failure);
+
+/* Frame k of the datasets group/NAME/value [frames][n][width], into the records. Returns the same. */
+int table_read_frame(struct source *source, const char *group, int64_t k, struct records records,
+                     struct failure *failure);
+/* A list that grows: its array, the number of rows and of those that there is memory for */
+struct list_of {
+    void *rows; /* where the pointer to them is */
+    int64_t *n, *room;
+};
+/* The rows that frame k has in a table, into a new list of `rows`, whose number and array are not used. Returns the same. */
+int table_read_list(struct source *source, struct table_spans table, int64_t k, struct list_of list,
+                    struct records rows, struct failure *failure);
 
 /* A dataset of steps, *n of them; to be freed. NULL: not there, or no memory. */
 int64_t *table_read_steps(struct source *source, const char *path, int64_t *n,
@@ -111,11 +122,21 @@ bool table_write_grows(const struct table_write *tables, const char *path);
 int table_write_columns(struct table_write *tables, const char *group, const char *tail,
                         struct records records, hsize_t chunk_rows, struct failure *failure);
 
+/* The frame's row of the datasets group/NAME/value [frames][n][width] */
+int table_write_frame(struct table_write *tables, const char *group, struct records records,
+                      hsize_t chunk_frames, struct failure *failure);
+/* The rows that the frame has in the tables of a group, of which there are *so_far */
+int table_write_list(struct table_write *tables, const char *group, int64_t *so_far,
+                     struct records rows, struct failure *failure);
+/* What all frames share, also of a trajectory: datasets of their own */
+int table_write_once(struct table_write *tables, const char *group, struct records rows,
+                     struct failure *failure);
+
 /* Hard links WHERE/COLUMN/name to the dataset `from` for all columns */
 int table_write_link(struct table_write *tables, const char *from, const char *name,
-                     const char *where, const struct column *columns, struct failure *failure);
+                     const char *where, const struct field *columns, struct failure *failure);
 /* Writes WHERE/step and WHERE/time (s), and links them to all columns there. */
-int table_write_clocks(struct table_write *tables, const char *where, const struct column *columns,
+int table_write_clocks(struct table_write *tables, const char *where, const struct field *columns,
                        int64_t step, double time, struct failure *failure);
 
 /* Closes the datasets; the file stays open. Returns -1 where something could not be written. */

@@ -61,8 +61,8 @@ static bool is_unknown(const char *path)
         if (!name) continue;
         for (const char *const *k = looked_through[g].known; *k; k++)
             if (!strcmp(*k, name)) return false;
-        for (const struct body_column *b = body_columns; b->column.name; b++)
-            if (!strcmp(looked_through[g].group, "/particles/all") && !strcmp(b->column.name, name))
+        for (const struct field *b = body_columns; b->name; b++)
+            if (!strcmp(looked_through[g].group, "/particles/all") && !strcmp(b->name, name))
                 return false;
         return true;
     }

@@ -11,7 +11,7 @@
 
 enum { FEW = 64 /* faces: a chunk has many frames of these, else one */ };
 
-static void path_of(const struct column *c, char path[80])
+static void path_of(const struct field *c, char path[80])
 {
     snprintf(path, 80, SUMS_HOME "/%s/value", c->name);
 }
@@ -29,7 +29,7 @@ int sum_tables_write_static(struct table_write *s, const struct packing *p, stru
 static int check_kept(const struct table_write *s, const struct packing *p, struct failure *failure)
 {
     char path[80];
-    path_of(layout_sums, path);
+    path_of(sum_fields, path);
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (!s->growing || first) return 0;
     if (p->sums.n && p->sums.since != s->sums_since)
@@ -47,28 +47,17 @@ int sum_tables_write(struct table_write *s, const struct packing *p, struct fail
 {
     const int32_t n = p->sums.n;
     if (check_kept(s, p, failure) || !n) return failure->status;
-    for (const struct column *c = layout_sums; !failure->status && c->name; c++) {
-        char path[80];
-        const hsize_t shape[3] = { 1, (hsize_t)n, (hsize_t)c->width };
-        double *row = malloc(((size_t)n * (size_t)c->width + 1) * sizeof *row);
-        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
-        path_of(c, path);
-        column_gather(c, n, p->sums.face, sizeof *p->sums.face, row);
-        table_write_rows(s,
-                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
-                                           n < FEW ? CHUNK_FRAMES : 1, row, c->units },
-                         failure);
-        free(row);
-    }
+    table_write_frame(s, SUMS_HOME, RECORDS(sum_fields, n, p->sums.face),
+                      n < FEW ? CHUNK_FRAMES : 1, failure);
     return failure->status ? failure->status
-                           : table_write_clocks(s, SUMS_HOME, layout_sums, p->step, p->t, failure);
+                           : table_write_clocks(s, SUMS_HOME, sum_fields, p->step, p->t, failure);
 }
 
 int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
 {
     uint64_t shape[4];
     char path[80];
-    path_of(layout_sums, path);
+    path_of(sum_fields, path);
     struct wall_faces faces;
     if (!source_has(r, path)) return 0;
     if (wall_faces_init(&faces, p->walls, p->wall, NULL, failure)) return failure->status;
@@ -78,20 +67,8 @@ int sum_tables_read(struct source *r, int64_t k, struct packing *p, struct failu
     if (source_shape(r, path, shape) != 3 || shape[1] != (uint64_t)n)
         return failure_set(failure, EX_DATAERR, "%s: not of shape frames x %d faces x 3", path, n);
     if (sums_begin(&p->sums, p->walls, p->wall, p->t, failure)) return failure->status;
-    double *row = calloc(3 * (size_t)n + 1, sizeof *row);
-    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
-    for (const struct column *c = layout_sums; !failure->status && c->name; c++) {
-        path_of(c, path);
-        int rank = source_shape(r, path, shape);
-        if (rank != (c->width == 1 ? 2 : 3) || shape[1] != (uint64_t)n ||
-            (c->width > 1 && shape[2] != (uint64_t)c->width))
-            failure_set(failure, EX_DATAERR, "%s: not of shape frames x %d faces", path, n);
-        else if (!source_rows(r, path, (struct slab){ c->type, k, 1, (int64_t)n * c->width }, row,
-                              failure))
-            column_scatter(c, n, row, p->sums.face, sizeof *p->sums.face);
-    }
-    free(row);
-    if (failure->status) return failure->status;
+    if (table_read_frame(r, SUMS_HOME, k, RECORDS(sum_fields, n, p->sums.face), failure))
+        return failure->status;
     return source_attribute(r, SUMS_HOME, "since",
                             (struct numbers){ COLUMN_F64, -1, &p->sums.since }, failure);
 }

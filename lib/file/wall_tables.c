@@ -9,6 +9,22 @@
 
 #define BOUNDARY "/particles/boundary"
 
+/* /particles/boundary/NAME [B][width], where any moves NAME/value [F][B][width]: where they are. It
+   follows from the tables above, and is not read. */
+struct boundary_motion {
+    vec3 x; /* m: the point of reference */
+    quat q; /* from the orientation in which the shape is described */
+    vec3 v; /* m/s: of that point */
+    vec3 w; /* rad/s */
+};
+static const struct field boundary_motion_fields[] = {
+    FIELD(struct boundary_motion, x, F64, 3, "position", "m", FIELD_MOVES),
+    FIELD(struct boundary_motion, q, F64, 4, "orientation", "1", FIELD_MOVES),
+    FIELD(struct boundary_motion, v, F64, 3, "velocity", "m s-1", FIELD_MOVES),
+    FIELD(struct boundary_motion, w, F64, 3, "angular_velocity", "rad s-1", FIELD_MOVES),
+    { 0 },
+};
+
 /* ---- from a document ---- */
 
 /* The loads as they are in frame k, in `group` */
@@ -16,25 +32,9 @@ static int read_loads(struct source *r, const char *group, int64_t k, struct pac
                       struct failure *failure)
 {
     if (!source_has(r, group)) return 0;
-    char spread[60], rate[60];
-    snprintf(spread, sizeof spread, "%s/spread", group);
-    snprintf(rate, sizeof rate, "%s/rate", group);
-    if (table_read_columns(r, group, "", 0, RECORDS(layout_loads, p->walls, p->wall), failure) ||
-        (source_has(r, spread) &&
-         table_read_columns(r, group, "", 0, RECORDS(layout_spread, p->walls, p->wall), failure)) ||
-        (source_has(r, rate) &&
-         table_read_columns(r, group, "", 0, RECORDS(layout_rate, p->walls, p->wall), failure)))
+    if (table_read_columns(r, group, "", 0, RECORDS(load_fields, p->walls, p->wall), failure))
         return failure->status;
-    double *row = calloc((size_t)p->walls + 1, sizeof *row);
-    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
-    for (const struct column *c = layout_yield; !failure->status && c->name; c++) {
-        char path[80];
-        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!source_rows(r, path, (struct slab){ c->type, k, 1, p->walls }, row, failure))
-            column_scatter(c, p->walls, row, p->wall, sizeof *p->wall);
-    }
-    free(row);
-    return failure->status;
+    return table_read_frame(r, group, k, RECORDS(load_motion_fields, p->walls, p->wall), failure);
 }
 
 /* The number of rows of a dataset of so many dimensions */
@@ -74,7 +74,7 @@ static int read_signals(struct source *r, const struct signals *of, struct packi
     if (!source_has(r, group)) return 0;
     if (wall_tables_count_rows(r, boundary, 1, &n, failure) ||
         wall_tables_count_rows(r, rows, 2, &m, failure) || drives_alloc(d, n, m, failure) ||
-        table_read_columns(r, group, "", 0, RECORDS(layout_drive, n, d->drive), failure) ||
+        table_read_columns(r, group, "", 0, RECORDS(drive_fields, n, d->drive), failure) ||
         source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, failure))
         return failure->status;
     for (int32_t k = 0; k < n; k++) {
@@ -115,7 +115,7 @@ static int read_planes(struct source *r, int64_t k, struct packing *p, struct fa
     if (!source_has(r, "/walls/plane")) return 0;
     if (wall_tables_count_rows(r, "/walls/plane/point", 2, &n, failure) ||
         packing_alloc_walls(p, n, failure) ||
-        table_read_columns(r, "/walls/plane", "", 0, RECORDS(layout_plane, n, p->wall), failure))
+        table_read_columns(r, "/walls/plane", "", 0, RECORDS(wall_fields, n, p->wall), failure))
         return failure->status;
     return read_loads(r, "/walls/load", k, p, failure);
 }
@@ -127,15 +127,7 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
     if (!source_has(r, body)) return read_planes(r, k, p, failure);
     if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, failure) ||
         packing_alloc_walls(p, n, failure) ||
-        table_read_columns(r, body, "", 0, RECORDS(layout_plane, n, p->wall), failure) ||
-        (source_has(r, BOUNDARY "/body/shape") &&
-         table_read_columns(r, body, "", 0, RECORDS(layout_boundary, n, p->wall), failure)) ||
-        (source_has(r, BOUNDARY "/body/weld") &&
-         table_read_columns(r, body, "", 0, RECORDS(layout_weld, n, p->wall), failure)) ||
-        (source_has(r, BOUNDARY "/body/wear") &&
-         table_read_columns(r, body, "", 0, RECORDS(layout_wear, n, p->wall), failure)) ||
-        (source_has(r, BOUNDARY "/body/belt") &&
-         table_read_columns(r, body, "", 0, RECORDS(layout_belt, n, p->wall), failure)) ||
+        table_read_columns(r, body, "", 0, RECORDS(wall_fields, n, p->wall), failure) ||
         read_loads(r, BOUNDARY "/load", k, p, failure) || read_drives(r, p, failure) ||
         wall_tables_read_mesh(r, p, failure))
         return failure->status;
@@ -144,53 +136,10 @@ int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct 
 
 /* ---- to a document ---- */
 
-/* Planes that are there for ever need no table of shapes. */
-static bool any_shapes(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
-    return false;
-}
-
-static bool any_welds(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].weld > 0) return true;
-    return false;
-}
-
-static bool any_wear(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].wear > 0) return true;
-    return false;
-}
-
-static bool any_belts(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (v3_norm(p->wall[w].belt) > 0) return true;
-    return false;
-}
-
 static bool any_loads(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way) return true;
-    return false;
-}
-
-static bool any_spread(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.spread) return true;
-    return false;
-}
-
-static bool any_rates(const struct packing *p)
-{
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.rate != 0) return true;
     return false;
 }
 
@@ -228,7 +177,7 @@ static int write_signals(struct table_write *s, const char *group, const struct 
     char rows[60];
     snprintf(rows, sizeof rows, "%s/row", group);
     if (!d->n) return 0;
-    if (table_write_columns(s, group, "", RECORDS(layout_drive, d->n, d->drive), 0, failure))
+    if (table_write_once(s, group, RECORDS(drive_fields, d->n, d->drive), failure))
         return failure->status;
     return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, failure);
 }
@@ -255,57 +204,16 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct fai
 int boundary_tables_write_static(struct table_write *s, const struct packing *p,
                                  struct failure *failure)
 {
-    bool growing = s->growing;
     struct boundary_motion *m = NULL;
-    const char *body = BOUNDARY "/body";
-    s->growing = false;
-    if (!table_write_columns(s, body, "", RECORDS(layout_plane, p->walls, p->wall), 0, failure) &&
-        !(any_shapes(p) &&
-          table_write_columns(s, body, "", RECORDS(layout_boundary, p->walls, p->wall), 0,
-                              failure)) &&
-        !(any_welds(p) &&
-          table_write_columns(s, body, "", RECORDS(layout_weld, p->walls, p->wall), 0, failure)) &&
-        !(any_wear(p) &&
-          table_write_columns(s, body, "", RECORDS(layout_wear, p->walls, p->wall), 0, failure)) &&
-        !(any_belts(p) &&
-          table_write_columns(s, body, "", RECORDS(layout_belt, p->walls, p->wall), 0, failure)) &&
-        !write_drives(s, p, failure) && !write_mesh(s, p, failure) && any_loads(p) &&
-        !table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_loads, p->walls, p->wall), 0,
-                             failure) &&
-        !(any_spread(p) &&
-          table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_spread, p->walls, p->wall), 0,
-                              failure)) &&
-        any_rates(p))
-        table_write_columns(s, BOUNDARY "/load", "", RECORDS(layout_rate, p->walls, p->wall), 0,
-                            failure);
+    if (!table_write_once(s, BOUNDARY "/body", RECORDS_OF(p, wall_fields, p->walls, p->wall),
+                          failure) &&
+        !write_drives(s, p, failure) && !write_mesh(s, p, failure) && any_loads(p))
+        table_write_once(s, BOUNDARY "/load", RECORDS(load_fields, p->walls, p->wall), failure);
     s->at_rest = !any_may_move(p);
     if (!failure->status && s->at_rest && (m = motions(p, failure)))
-        table_write_columns(s, BOUNDARY, "", RECORDS(layout_boundary_motion, p->walls, m), 0,
-                            failure);
+        table_write_once(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), failure);
     free(m);
-    s->growing = growing;
     return failure->status;
-}
-
-/* One row of a table of [frames][walls] */
-static int write_row(struct table_write *s, const char *group, struct records o,
-                     const struct packing *p, struct failure *failure)
-{
-    for (const struct column *c = o.columns; !failure->status && c->name; c++) {
-        char path[80];
-        const hsize_t shape[3] = { 1, (hsize_t)o.n, (hsize_t)c->width };
-        double *row = malloc(((size_t)o.n * (size_t)c->width + 1) * sizeof *row);
-        snprintf(path, sizeof path, "%s/%s/value", group, c->name);
-        if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
-        column_gather(c, o.n, o.structs, o.stride, row);
-        table_write_rows(s,
-                         (struct dataset){ path, c->type, c->width == 1 ? 2 : 3, shape,
-                                           CHUNK_FRAMES, row, c->units },
-                         failure);
-        free(row);
-    }
-    return failure->status ? failure->status
-                           : table_write_clocks(s, group, o.columns, p->step, p->t, failure);
 }
 
 int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -316,9 +224,14 @@ int boundary_tables_write(struct table_write *s, const struct packing *p, struct
             failure, EX_DATAERR,
             "boundaries move, and in the first frame none could: begin another trajectory");
     struct boundary_motion *m = motions(p, failure);
-    if (m && !write_row(s, BOUNDARY, RECORDS(layout_boundary_motion, p->walls, m), p, failure) &&
-        any_loads(p))
-        write_row(s, BOUNDARY "/load", RECORDS(layout_yield, p->walls, p->wall), p, failure);
+    if (m &&
+        !table_write_frame(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), CHUNK_FRAMES,
+                           failure) &&
+        !table_write_clocks(s, BOUNDARY, boundary_motion_fields, p->step, p->t, failure) &&
+        any_loads(p) &&
+        !table_write_frame(s, BOUNDARY "/load", RECORDS(load_motion_fields, p->walls, p->wall),
+                           CHUNK_FRAMES, failure))
+        table_write_clocks(s, BOUNDARY "/load", load_motion_fields, p->step, p->t, failure);
     free(m);
     return failure->status;
 }
@@ -329,7 +242,6 @@ static const char text_path[] = NAMES_HOME "/text";
 int name_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const struct names *names = &p->names;
-    bool growing = s->growing;
     size_t length = 1;
     if (!names->n) return 0;
     for (int32_t k = 0; k < names->n; k++) length += strlen(names->text[k]) + 1;
@@ -339,11 +251,8 @@ int name_tables_write(struct table_write *s, const struct packing *p, struct fai
         size_t n = strlen(names->text[k]);
         memcpy(at, names->text[k], n), at[n] = '\n', at += n + 1;
     }
-    s->growing = false;
     if (!h5_write_text(s->file, text_path, text, failure) && names->rows)
-        table_write_columns(s, NAMES_HOME, "", RECORDS(layout_names, names->rows, names->row), 0,
-                            failure);
-    s->growing = growing;
+        table_write_once(s, NAMES_HOME, RECORDS(named_fields, names->rows, names->row), failure);
     free(text);
     return failure->status;
 }
@@ -360,7 +269,7 @@ static int read_rows(struct source *r, struct packing *p, struct failure *failur
     if (!p->names.row) return failure_set(failure, EX_SOFTWARE, "no memory for the names");
     p->names.rows = (int32_t)shape[0];
     return table_read_columns(r, NAMES_HOME, "", 0,
-                              RECORDS(layout_names, p->names.rows, p->names.row), failure);
+                              RECORDS(named_fields, p->names.rows, p->names.row), failure);
 }
 
 int name_tables_read(struct source *r, struct packing *p, struct failure *failure)

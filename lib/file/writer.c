@@ -7,9 +7,11 @@
 #include "file/h5.h"
 #include "file/roster.h"
 #include "file/stream.h"
+#include "state/part.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <jansson.h>
 #include <libgen.h>
 #include <limits.h>
 #include <stdio.h>
@@ -29,15 +31,10 @@ static const char CUT_OFF[] = "has been cut off by another program";
 
 /* What every frame of a trajectory shares */
 struct common_part {
-    int dim;
-    int64_t n;
-    double dt, theta, tolerance;
-    bool adapts;
-    enum overlap overlap;
-    uint32_t
-        crc; /* of their radii and masses; 0 where bodies come and go: file/roster.c sees to it */
-    int32_t pours, removals;
-    uint32_t cell; /* of the cell: what repeats, from where, and its drive */
+    struct packing settings; /* owned */
+    int64_t n;               /* bodies */
+    /* Of a column of theirs that does not move; 0 where bodies come and go: file/roster.c sees to it */
+    uint32_t crc[BODY_COLUMNS];
 };
 
 struct writer {
@@ -428,60 +425,65 @@ static int flush(struct writer *s, struct failure *failure)
     return good ? 0 : output_failed(s, failure, "cannot be written (full?)");
 }
 
-static uint32_t cell_crc(const struct cell *c)
+/* The checksum of a column of bodies, as far as all frames share it */
+static uint32_t column_crc(const struct field *b, const struct packing *p)
 {
-    uint32_t crc = document_crc(0, c->repeats, sizeof c->repeats);
-    crc = document_crc(crc, &c->origin, sizeof c->origin);
-    crc = document_crc(crc, c->gradient, (size_t)c->gradients * sizeof *c->gradient);
-    crc = document_crc(crc, c->mass, sizeof c->mass);
-    crc = document_crc(crc, &c->size_mass, sizeof c->size_mass);
-    crc = document_crc(crc, &c->mean, sizeof c->mean);
-    crc = document_crc(crc, c->factor, (size_t)c->factors * sizeof *c->factor);
-    return document_crc(crc, c->stress, sizeof c->stress);
+    const void *rows = packing_varies(p) || !(b->traits & FIELD_SAME) ? NULL : field_array(b, p);
+    return rows ? document_crc(1, rows, (size_t)p->n * field_bytes(b)) : 0;
 }
 
-static struct common_part shared_of(const struct frame *f)
+static int common_part_init(struct common_part *o, const struct frame *f, struct failure *failure)
 {
-    const struct packing *p = &f->packing;
-    struct common_part o = { .dim = p->dim,
-                             .dt = packing_whole_dt(p),
-                             .theta = p->theta,
-                             .tolerance = p->tolerance,
-                             .adapts = p->adapts,
-                             .overlap = p->overlap };
-    o.pours = p->pours, o.removals = p->removals;
-    if (packing_varies(p)) return o;
-    o.n = bodies_of(f), o.cell = cell_crc(&p->cell);
-    o.crc = document_crc(0, p->radius, (size_t)p->n * sizeof *p->radius);
-    o.crc = document_crc(o.crc, p->mass, (size_t)p->n * sizeof *p->mass);
-    size_t pairs = p->law ? (size_t)p->kinds * (size_t)p->kinds : 0;
-    if (pairs) o.crc = document_crc(o.crc, p->law, pairs * sizeof *p->law);
-    return o;
+    const struct packing settings = packing_settings(&f->packing);
+    packing_free(&o->settings);
+    if (packing_copy(&o->settings, &settings, failure))
+        return memset(o, 0, sizeof *o), failure->status;
+    o->settings.pours = f->packing.pours, o->settings.removals = f->packing.removals;
+    o->n = bodies_of(f);
+    for (int k = 0; k < BODY_COLUMNS; k++) o->crc[k] = column_crc(&body_columns[k], &f->packing);
+    return 0;
+}
+
+/* Are two scenes the same but for spaces and the order of keys? */
+static bool same_scene(const char *x, const char *y)
+{
+    if (!x || !y || !strcmp(x, y)) return !x == !y;
+    json_t *a = json_loads(x, 0, NULL), *b = json_loads(y, 0, NULL);
+    bool same = a && b && json_equal(a, b);
+    json_decref(a), json_decref(b);
+    return same;
 }
 
 /* What is stored only with the first frame has to be true of all. */
 static int writer_check_same(const struct writer *s, const struct frame *f, struct failure *failure)
 {
-    const struct common_part p = s->first, q = shared_of(f);
-    if (p.pours != q.pours || p.removals != q.removals)
+    const struct packing *p = &s->first.settings, *q = &f->packing;
+    const int64_t n = bodies_of(f);
+    if (p->pours != q->pours || p->removals != q->removals)
         return failure_set(failure, EX_DATAERR, "other pours or removals than the trajectory's");
-    if (p.n != q.n)
+    if (!packing_varies(q) && s->first.n != n)
         return failure_set(failure, EX_DATAERR, "%lld bodies, and the trajectory has %lld",
-                           (long long)q.n, (long long)p.n);
-    if (p.dim != q.dim || p.dt != q.dt || p.theta != q.theta)
-        return failure_set(failure, EX_DATAERR, "dim, dt or theta differ from the trajectory's");
-    if (p.adapts != q.adapts)
+                           (long long)n, (long long)s->first.n);
+    const double dt = packing_whole_dt(q), first_dt = packing_whole_dt(p);
+    if (dt != first_dt)
+        return failure_set(failure, EX_DATAERR, "dt is %.15g s, and the trajectory's is %.15g s",
+                           dt, first_dt);
+    if (p->adapts != q->adapts)
         return failure_set(failure, EX_DATAERR,
                            "frames with a time step of their own and others in one trajectory");
-    if (p.tolerance != q.tolerance)
+    if (p->tolerance != q->tolerance)
         return failure_set(failure, EX_DATAERR,
                            "frames with an automatic time step and others in one trajectory");
-    if (p.overlap && q.overlap && p.overlap != q.overlap) // that of a scene is not said yet
+    if (p->overlap && q->overlap && p->overlap != q->overlap) // that of a scene is not said yet
         return failure_set(failure, EX_DATAERR, "overlap differs from the trajectory's");
-    if (p.crc != q.crc)
-        return failure_set(failure, EX_DATAERR, "other bodies than the trajectory's");
-    if (p.cell != q.cell)
-        return failure_set(failure, EX_DATAERR, "another cell than the trajectory's");
+    if (packing_same_settings(p, q, failure)) return failure->status;
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        if (s->first.crc[k] != column_crc(&body_columns[k], q))
+            return failure_set(failure, EX_DATAERR,
+                               "other bodies than the trajectory's: their %s differs",
+                               body_columns[k].name);
+    if (!same_scene(p->scene, q->scene))
+        return failure_set(failure, EX_DATAERR, "the scene differs from the trajectory's");
     if (f->packing.step <= s->step)
         return failure_set(failure, EX_DATAERR,
                            "step %lld after step %lld: a trajectory's steps increase",
@@ -514,7 +516,7 @@ static int trajectory_begin(struct writer *s, const struct frame *f, struct fail
         s->doc.roster = &s->roster;
     }
     if (failure->status || reserve(s, f, failure)) return failure->status;
-    s->first = shared_of(f);
+    if (common_part_init(&s->first, f, failure)) return failure->status;
     s->step = f->packing.step - 1;
     s->doc.distributed = f->distributed;
     return write_header(s, 0, 0, failure) || frame_write_static(&s->doc, f, failure)
@@ -629,7 +631,7 @@ int writer_close(struct writer *s, struct failure *failure)
     if (!e && s->linked && output_removed(s->fd))
         e = output_failed(s, failure, "another program has removed it");
     if (s->disk >= 0) close(s->disk);
-    roster_free(&s->roster), vtkhdf_free(s->vtk);
+    roster_free(&s->roster), vtkhdf_free(s->vtk), packing_free(&s->first.settings);
     if (s->begun) output_drop(s->begun);
     writer_unlist(s);
     if (!s->output && close(s->fd) && !e) e = output_failed(s, failure, strerror(errno));
@@ -645,7 +647,7 @@ void writer_drop(struct writer *s)
     writer_unlist(s);
     if (s->doc.file >= 0) table_write_close(&s->doc), H5Fclose(s->doc.file);
     if (s->disk >= 0) close(s->disk);
-    roster_free(&s->roster);
+    roster_free(&s->roster), packing_free(&s->first.settings);
     if (s->begun) output_drop(s->begun);
     if (s->output) output_drop(s->output);
     free(s);

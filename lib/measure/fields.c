@@ -16,20 +16,21 @@ static const double FLAT =
 static const int64_t MOST_POINTS = 1500000; /* 1 GB: a point has 632 bytes */
 static const double USUAL_CELLS = 32;       /* along an axis: what a picture shows, in a moment */
 
-const struct quantity field_quantity[FIELD_COUNT + 1] = {
-    [FIELD_DENSITY] = { "density", "kg m-3", 1, "mass" },
-    [FIELD_FRACTION] = { "fraction", "1", 1, "solid volume" },
-    [FIELD_MOMENTUM] = { "momentum", "kg m-2 s-1", 3, "momentum" },
-    [FIELD_VELOCITY] = { "velocity", "m s-1", 3, "momentum over density" },
-    [FIELD_STRESS] = { "stress", "Pa", 9, "of contacts and motion, compression positive" },
-    [FIELD_CONTACTS] = { "contact_stress", "Pa", 9, "of contacts" },
-    [FIELD_KINETIC] = { "kinetic_stress", "Pa", 9, "of motion" },
-    [FIELD_GRADIENT] = { "velocity_gradient", "s-1", 9,
-                         "dv_i/dx_j of the affine flow that fits best" },
-    [FIELD_STRAIN_RATE] = { "strain_rate", "s-1", 9, "its symmetric part" },
-    [FIELD_SHEAR_RATE] = { "shear_rate", "s-1", 1, "size of its deviator, sqrt(2 D:D)" },
-    [FIELD_TEMPERATURE] = { "temperature", "m2 s-2", 1, "granular temperature about that flow" },
-    [FIELD_INERTIAL] = { "inertial_number", "1", 1, "shear rate times d sqrt(rho_s/p)" },
+const struct quantity field_quantity[CONTINUUM_COUNT + 1] = {
+    [CONTINUUM_DENSITY] = { "density", "kg m-3", 1, "mass" },
+    [CONTINUUM_FRACTION] = { "fraction", "1", 1, "solid volume" },
+    [CONTINUUM_MOMENTUM] = { "momentum", "kg m-2 s-1", 3, "momentum" },
+    [CONTINUUM_VELOCITY] = { "velocity", "m s-1", 3, "momentum over density" },
+    [CONTINUUM_STRESS] = { "stress", "Pa", 9, "of contacts and motion, compression positive" },
+    [CONTINUUM_CONTACTS] = { "contact_stress", "Pa", 9, "of contacts" },
+    [CONTINUUM_KINETIC] = { "kinetic_stress", "Pa", 9, "of motion" },
+    [CONTINUUM_GRADIENT] = { "velocity_gradient", "s-1", 9,
+                             "dv_i/dx_j of the affine flow that fits best" },
+    [CONTINUUM_STRAIN_RATE] = { "strain_rate", "s-1", 9, "its symmetric part" },
+    [CONTINUUM_SHEAR_RATE] = { "shear_rate", "s-1", 1, "size of its deviator, sqrt(2 D:D)" },
+    [CONTINUUM_TEMPERATURE] = { "temperature", "m2 s-2", 1,
+                                "granular temperature about that flow" },
+    [CONTINUUM_INERTIAL] = { "inertial_number", "1", 1, "shear rate times d sqrt(rho_s/p)" },
 };
 
 /* ---- the grid ---- */
@@ -72,7 +73,7 @@ int fields_init(struct fields *f, const struct snapshot *s, double width, double
     *f = (struct fields){ .width = width > 0 ? width : fields_mean_diameter(s->p) };
     if (!s->p->n) return failure_set(failure, EX_DATAERR, "no bodies to lay a grid over");
     if (grid_init(f, s, spacing, failure)) return failure->status;
-    for (int k = 0; k < FIELD_COUNT; k++) {
+    for (int k = 0; k < CONTINUUM_COUNT; k++) {
         size_t numbers = (size_t)fields_points(f) * (size_t)field_quantity[k].width;
         if (!(f->x[k] = calloc(numbers, sizeof *f->x[k])))
             return failure_set(failure, EX_SOFTWARE, "no memory for fields");
@@ -83,7 +84,7 @@ int fields_init(struct fields *f, const struct snapshot *s, double width, double
 
 void fields_free(struct fields *f)
 {
-    for (int k = 0; k < FIELD_COUNT; k++) free(f->x[k]);
+    for (int k = 0; k < CONTINUUM_COUNT; k++) free(f->x[k]);
     free(f->moment);
     *f = (struct fields){ 0 };
 }
@@ -161,10 +162,10 @@ static void fields_add_body(struct fields *f, int dim, vec3 x, const struct fiel
                 const vec3 d = v3_sub(x, point_at(f, i, j, k));
                 double phi = fields_along(f, dim, v3_scale(-1, d), v3(0, 0, 0));
                 if (phi == 0) continue;
-                double *momentum = f->x[FIELD_MOMENTUM] + 3 * at, m = phi * b->mass;
-                f->x[FIELD_DENSITY][at] += m, f->x[FIELD_FRACTION][at] += phi * b->volume;
+                double *momentum = f->x[CONTINUUM_MOMENTUM] + 3 * at, m = phi * b->mass;
+                f->x[CONTINUUM_DENSITY][at] += m, f->x[CONTINUUM_FRACTION][at] += phi * b->volume;
                 momentum[0] += m * b->v.x, momentum[1] += m * b->v.y, momentum[2] += m * b->v.z;
-                add_tensor(f->x[FIELD_KINETIC] + 9 * at, m, b->v, b->v);
+                add_tensor(f->x[CONTINUUM_KINETIC] + 9 * at, m, b->v, b->v);
                 double *sum = f->moment + MOMENTS * at;
                 add_tensor(sum + MOMENT_VD, m, b->v, d), add_tensor(sum + MOMENT_DD, m, d, d);
                 sum[MOMENT_D] += m * d.x, sum[MOMENT_D + 1] += m * d.y,
@@ -181,7 +182,7 @@ static void fields_add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 f
             for (int64_t i = c.from[0]; i <= c.to[0]; i++) {
                 double phi = fields_along(f, dim, v3_sub(point_at(f, i, j, k), x), l);
                 int64_t at = (k * f->n[1] + j) * f->n[0] + i;
-                if (phi > 0) add_tensor(f->x[FIELD_CONTACTS] + 9 * at, phi, force, l);
+                if (phi > 0) add_tensor(f->x[CONTINUUM_CONTACTS] + 9 * at, phi, force, l);
             }
 }
 
@@ -190,13 +191,13 @@ static void fields_add_contact(struct fields *f, int dim, vec3 x, vec3 l, vec3 f
 static void fields_finish(struct fields *f)
 {
     for (int64_t i = 0; i < fields_points(f); i++) {
-        double density = f->x[FIELD_DENSITY][i], *v = f->x[FIELD_VELOCITY] + 3 * i;
-        double *kinetic = f->x[FIELD_KINETIC] + 9 * i;
+        double density = f->x[CONTINUUM_DENSITY][i], *v = f->x[CONTINUUM_VELOCITY] + 3 * i;
+        double *kinetic = f->x[CONTINUUM_KINETIC] + 9 * i;
         for (int k = 0; k < 3; k++)
-            v[k] = density > 0 ? f->x[FIELD_MOMENTUM][3 * i + k] / density : 0;
+            v[k] = density > 0 ? f->x[CONTINUUM_MOMENTUM][3 * i + k] / density : 0;
         for (int k = 0; k < 9; k++) {
             kinetic[k] -= density * v[k / 3] * v[k % 3];
-            f->x[FIELD_STRESS][9 * i + k] = kinetic[k] + f->x[FIELD_CONTACTS][9 * i + k];
+            f->x[CONTINUUM_STRESS][9 * i + k] = kinetic[k] + f->x[CONTINUUM_CONTACTS][9 * i + k];
         }
     }
 }
@@ -239,9 +240,9 @@ static void fields_multiply(double c[9], const double a[9], const double b[9])
    [Artoni and Richard 2015]. NaN where the bodies within reach do not span the space. */
 static void finish_gradient(struct fields *f, int dim, int64_t i)
 {
-    const double density = f->x[FIELD_DENSITY][i], *v = f->x[FIELD_VELOCITY] + 3 * i;
-    const double *sum = f->moment + MOMENTS * i, *kinetic = f->x[FIELD_KINETIC] + 9 * i;
-    double *G = f->x[FIELD_GRADIENT] + 9 * i, *D = f->x[FIELD_STRAIN_RATE] + 9 * i;
+    const double density = f->x[CONTINUUM_DENSITY][i], *v = f->x[CONTINUUM_VELOCITY] + 3 * i;
+    const double *sum = f->moment + MOMENTS * i, *kinetic = f->x[CONTINUUM_KINETIC] + 9 * i;
+    double *G = f->x[CONTINUUM_GRADIENT] + 9 * i, *D = f->x[CONTINUUM_STRAIN_RATE] + 9 * i;
     double C[9], M[9], inverse[9], flow[9], trace = 0, size = 0, left = 0;
     for (int k = 0; k < 9; k++) {
         C[k] = sum[MOMENT_VD + k] - v[k / 3] * sum[MOMENT_D + k % 3];
@@ -250,7 +251,8 @@ static void finish_gradient(struct fields *f, int dim, int64_t i)
     if (!(density > 0) ||
         !fields_invert(inverse, M, dim, FLAT * 0.5 * f->width * f->width * density)) {
         for (int k = 0; k < 9; k++) G[k] = D[k] = NAN;
-        f->x[FIELD_SHEAR_RATE][i] = f->x[FIELD_TEMPERATURE][i] = f->x[FIELD_INERTIAL][i] = NAN;
+        f->x[CONTINUUM_SHEAR_RATE][i] = f->x[CONTINUUM_TEMPERATURE][i] =
+            f->x[CONTINUUM_INERTIAL][i] = NAN;
         return;
     }
     fields_multiply(G, C, inverse);
@@ -263,19 +265,20 @@ static void finish_gradient(struct fields *f, int dim, int64_t i)
         const double d = D[k] - (diagonal ? trace / dim : 0);
         size += 2 * d * d;
     }
-    f->x[FIELD_SHEAR_RATE][i] = sqrt(size);
-    f->x[FIELD_TEMPERATURE][i] = fmax(left, 0) / (dim * density);
+    f->x[CONTINUUM_SHEAR_RATE][i] = sqrt(size);
+    f->x[CONTINUUM_TEMPERATURE][i] = fmax(left, 0) / (dim * density);
 }
 
 /* d and rho_s are the means by mass of the bodies within reach; p is that of contacts and motion. Where nothing presses
    there is no inertial number. */
 static void finish_inertial(struct fields *f, int dim, int64_t i)
 {
-    const double density = f->x[FIELD_DENSITY][i], *stress = f->x[FIELD_STRESS] + 9 * i;
+    const double density = f->x[CONTINUUM_DENSITY][i], *stress = f->x[CONTINUUM_STRESS] + 9 * i;
     const double diameter = f->moment[MOMENTS * i + MOMENT_DIAMETER] / density;
-    const double solid = density / f->x[FIELD_FRACTION][i];
+    const double solid = density / f->x[CONTINUUM_FRACTION][i];
     const double p = (stress[0] + stress[4] + (dim == 3 ? stress[8] : 0)) / dim;
-    f->x[FIELD_INERTIAL][i] = p > 0 ? f->x[FIELD_SHEAR_RATE][i] * diameter * sqrt(solid / p) : NAN;
+    f->x[CONTINUUM_INERTIAL][i] =
+        p > 0 ? f->x[CONTINUUM_SHEAR_RATE][i] * diameter * sqrt(solid / p) : NAN;
 }
 
 /* The grid as a region, for images */
@@ -305,7 +308,7 @@ int fields_set(struct fields *f, const struct snapshot *s, struct failure *failu
     const bool solved = s->s && (s->s->found || !s->s->n);
     const double ahead = !s->s ? 0 : s->moved ? -step_after(p) : step_ahead(p);
     if (check_reach(f, p, &r, ahead, failure)) return failure->status;
-    for (int k = 0; k < FIELD_COUNT; k++)
+    for (int k = 0; k < CONTINUUM_COUNT; k++)
         memset(f->x[k], 0,
                (size_t)fields_points(f) * (size_t)field_quantity[k].width * sizeof(double));
     memset(f->moment, 0, (size_t)fields_points(f) * MOMENTS * sizeof *f->moment);
@@ -325,7 +328,7 @@ int fields_set(struct fields *f, const struct snapshot *s, struct failure *failu
             fields_add_contact(f, p->dim, v3_axpy(y, ahead, region_rate(&w, &r)), l,
                                branch_force(p, s->s, i));
     }
-    for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[FIELD_CONTACTS][i] = NAN;
+    for (int64_t i = 0; !solved && i < 9 * fields_points(f); i++) f->x[CONTINUUM_CONTACTS][i] = NAN;
     fields_finish(f);
     for (int64_t i = 0; i < fields_points(f); i++)
         finish_gradient(f, p->dim, i), finish_inertial(f, p->dim, i);

@@ -16,30 +16,30 @@
 #include "measure/snapshot.h"
 #include "measure/table.h"
 
-enum field {
-    FIELD_DENSITY,
-    FIELD_FRACTION,
-    FIELD_MOMENTUM,
-    FIELD_VELOCITY,
-    FIELD_STRESS,
-    FIELD_CONTACTS,
-    FIELD_KINETIC,
-    FIELD_GRADIENT,
-    FIELD_STRAIN_RATE,
-    FIELD_SHEAR_RATE,
-    FIELD_TEMPERATURE,
-    FIELD_INERTIAL,
-    FIELD_COUNT
+enum continuum {
+    CONTINUUM_DENSITY,
+    CONTINUUM_FRACTION,
+    CONTINUUM_MOMENTUM,
+    CONTINUUM_VELOCITY,
+    CONTINUUM_STRESS,
+    CONTINUUM_CONTACTS,
+    CONTINUUM_KINETIC,
+    CONTINUUM_GRADIENT,
+    CONTINUUM_STRAIN_RATE,
+    CONTINUUM_SHEAR_RATE,
+    CONTINUUM_TEMPERATURE,
+    CONTINUUM_INERTIAL,
+    CONTINUUM_COUNT
 };
 /* Their names and units; one without a name ends them. */
-extern const struct quantity field_quantity[FIELD_COUNT + 1];
+extern const struct quantity field_quantity[CONTINUUM_COUNT + 1];
 
 struct fields {
-    int64_t n[3];           /* points along the axes; x counts fastest */
-    vec3 origin, step;      /* m: the first point, and from one to the next */
-    double width;           /* m: w */
-    double *moment;         /* [points][MOMENTS] sums that the fields are made of */
-    double *x[FIELD_COUNT]; /* [points][width of the quantity] */
+    int64_t n[3];               /* points along the axes; x counts fastest */
+    vec3 origin, step;          /* m: the first point, and from one to the next */
+    double width;               /* m: w */
+    double *moment;             /* [points][MOMENTS] sums that the fields are made of */
+    double *x[CONTINUUM_COUNT]; /* [points][width of the quantity] */
 };
 
 /*

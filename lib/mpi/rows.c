@@ -46,7 +46,7 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
     struct rows_block b = { 0 };
     struct parcel *out = parcels_new(t), mine = { 0 };
     int64_t from, end;
-    const struct column *c;
+    const struct field *c;
     if (!t->me)
         b = (struct rows_block){ first, block->n, all, block->dim, packing_optional(block) };
     MPI_Bcast(&b, sizeof b, MPI_BYTE, 0, t->mpi);
@@ -54,14 +54,14 @@ void rows_take(struct rows *r, struct comm *t, const struct packing *block, int6
     if (!b.first) rows_make_room(r, &b);
     for (int q = 0; q < t->n && !t->me; q++)
         for (int k = 0; common(&b, t, q, &from, &end) && k < BODY_COLUMNS; k++)
-            if (column_array(c = &body_columns[k].column, block))
-                parcel_put(t, &out[q], column_row(c, block, from - first),
-                           (size_t)(end - from) * column_bytes(c));
+            if (field_array(c = &body_columns[k], block))
+                parcel_put(t, &out[q], field_row(c, block, from - first),
+                           (size_t)(end - from) * field_bytes(c));
     comm_scatter(t, out, &mine);
     for (int k = 0; common(&b, t, t->me, &from, &end) && k < BODY_COLUMNS; k++)
-        if (column_array(c = &body_columns[k].column, &r->p))
-            parcel_take(t, &mine, column_row(c, &r->p, from - r->first),
-                        (size_t)(end - from) * column_bytes(c));
+        if (field_array(c = &body_columns[k], &r->p))
+            parcel_take(t, &mine, field_row(c, &r->p, from - r->first),
+                        (size_t)(end - from) * field_bytes(c));
     for (int64_t i = 0; i < b.n && !t->me; i++)
         r->mass += block->mass[i], r->heavy += block->mass[i] > 0;
     parcel_free(&mine), parcels_free(t, out);
@@ -92,11 +92,11 @@ static int holder_of(const struct rows *r, int32_t row)
 }
 
 /* The column's numbers of all own bodies, for those who have their rows; c NULL: their rows */
-static void send_off(const struct haul *h, const struct column *c, struct parcel *out)
+static void send_off(const struct haul *h, const struct field *c, struct parcel *out)
 {
     const struct subdomain *y = h->part;
-    size_t bytes = c ? column_bytes(c) : 0;
-    const char *from = c ? column_array(c, &y->p) : NULL;
+    size_t bytes = c ? field_bytes(c) : 0;
+    const char *from = c ? field_array(c, &y->p) : NULL;
     for (int64_t i = 0; i < y->p.n; i++) {
         if (y->owner[i] != y->comm->me) continue;
         struct parcel *to = &out[holder_of(h->rows, y->row[i])];
@@ -133,12 +133,12 @@ void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-void haul_column(struct haul *h, const struct column *c, void *to)
+void haul_column(struct haul *h, const struct field *c, void *to)
 {
     struct comm *t = h->rows->comm;
-    size_t bytes = column_bytes(c);
+    size_t bytes = field_bytes(c);
     if (!h->part) {
-        memcpy(to, column_array(c, &h->rows->p), (size_t)h->n * bytes);
+        memcpy(to, field_array(c, &h->rows->p), (size_t)h->n * bytes);
         return;
     }
     struct parcel *out = parcels_new(t), *in = parcels_new(t);
@@ -204,7 +204,7 @@ static bool rows_write_rows(hid_t file, const struct target *o, int64_t first, i
 static bool write_by_first(const struct rows *r, hid_t file, const struct target *o, void *mine)
 {
     struct comm *t = r->comm;
-    size_t bytes = (size_t)o->width * column_size((enum column_type)o->type);
+    size_t bytes = (size_t)o->width * field_size((enum column_type)o->type);
     bool good = true;
     for (int q = 0; q < t->n; q++) {
         int64_t first = rows_begin(r->all, t->n, q), n = rows_begin(r->all, t->n, q + 1) - first;
@@ -305,7 +305,7 @@ static struct target *spread_targets(struct comm *t, const struct files_wish *wi
     if (!t->me && wish->path) snprintf(path, PATH_MAX, "%s", wish->path);
     *gather = wish->gather;
     for (int k = 0; k < wish->places && !t->me; k++) {
-        const struct column *c = place[k].column;
+        const struct field *c = place[k].column;
         struct target x;
         memset(&x, 0, sizeof x);
         memcpy(x.path, place[k].path, sizeof x.path);
@@ -338,9 +338,10 @@ int files_fill(const struct rows *r, const struct subdomain *y, const struct fil
     bool good = comm_most(t, by_all && ours < 0) == 0;
     haul_begin(&h, r, y);
     for (int k = 0; k < places; k++) {
-        const struct column c = { NULL, NULL, (enum column_type)o[k].type, o[k].width,
-                                  o[k].offset };
-        char *data = comm_new(t, h.n, column_bytes(&c));
+        const struct field c = { .type = (enum column_type)o[k].type,
+                                 .width = o[k].width,
+                                 .offset = o[k].offset };
+        char *data = comm_new(t, h.n, field_bytes(&c));
         haul_column(&h, &c, data);
         if (!by_all)
             good &= write_by_first(r, wish->file, &o[k], data);

@@ -43,7 +43,7 @@ struct haul {
 
 void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y);
 /* to[n][width] = the column's numbers in the rows of this rank. */
-void haul_column(struct haul *h, const struct column *c, void *to);
+void haul_column(struct haul *h, const struct field *c, void *to);
 void haul_end(struct haul *h);
 
 /*

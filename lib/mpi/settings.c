@@ -1,6 +1,8 @@
 /* mpi/settings.c: what a packing has besides its bodies [mpi/settings.h]. */
 #include "mpi/settings.h"
 
+#include "state/part.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,34 +19,34 @@ static char *take_text(struct comm *t, struct parcel *o)
     return NULL;
 }
 
-static void put_drives(struct comm *t, struct parcel *o, const struct drives *d)
+/* Does a rank get the array from the first? */
+static bool is_sent(const struct part *a)
 {
-    parcel_put_array(t, o, d->drive, d->n, sizeof *d->drive);
-    parcel_put_array(t, o, d->row, d->rows, sizeof *d->row);
+    return a->traits & PART_SETTING && !(a->traits & PART_AGAIN);
 }
 
-static void take_drives(struct comm *t, struct parcel *o, struct drives *d)
+static void put_part(struct comm *t, struct parcel *o, const struct part *a,
+                     const struct packing *p)
 {
-    drives_free(d);
-    d->n = (int32_t)parcel_take_array(t, o, &d->drive, sizeof *d->drive);
-    d->rows = (int32_t)parcel_take_array(t, o, &d->row, sizeof *d->row);
+    const int64_t n = part_count(a, p);
+    const char *rows = part_array(a, p);
+    const int8_t there = rows != NULL;
+    parcel_put(t, o, &there, 1);
+    for (int64_t i = 0; there && a->traits & PART_TEXT && i < n; i++)
+        put_text(t, o, ((char *const *)(const void *)rows)[i]);
+    if (there && !(a->traits & PART_TEXT)) parcel_put(t, o, rows, (size_t)n * a->bytes);
 }
 
-static void settings_put_names(struct comm *t, struct parcel *o, const struct names *names)
+static void take_part(struct comm *t, struct parcel *o, const struct part *a, struct packing *p)
 {
-    parcel_put(t, o, &names->n, sizeof names->n);
-    for (int32_t k = 0; k < names->n; k++) put_text(t, o, names->text[k]);
-    parcel_put_array(t, o, names->row, names->rows, sizeof *names->row);
-}
-
-static void take_names(struct comm *t, struct parcel *o, struct names *names)
-{
-    int32_t n;
-    names_free(names);
-    parcel_take(t, o, &n, sizeof n);
-    names->text = comm_new(t, n, sizeof *names->text);
-    for (; names->n < n; names->n++) names->text[names->n] = take_text(t, o);
-    names->rows = (int32_t)parcel_take_array(t, o, &names->row, sizeof *names->row);
+    const int64_t n = part_count(a, p);
+    int8_t there;
+    parcel_take(t, o, &there, 1);
+    if (!there) return;
+    void *rows = comm_new(t, n, a->bytes);
+    for (int64_t i = 0; a->traits & PART_TEXT && i < n; i++) ((char **)rows)[i] = take_text(t, o);
+    if (!(a->traits & PART_TEXT)) parcel_take(t, o, rows, (size_t)n * a->bytes);
+    part_set_array(a, p, rows);
 }
 
 static void put_shapes(struct comm *t, struct parcel *o, const struct shapes *list)
@@ -73,7 +75,6 @@ static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes
 {
     int32_t n;
     struct failure failure = { 0 };
-    shapes_free(list);
     parcel_take(t, o, &n, sizeof n);
     for (int32_t k = 1; k < n; k++) {
         struct shape s = { 0 };
@@ -95,85 +96,31 @@ static void settings_take_shapes(struct comm *t, struct parcel *o, struct shapes
     }
 }
 
-static void settings_put_cell(struct comm *t, struct parcel *o, const struct cell *c)
-{
-    parcel_put(t, o, c, sizeof *c);
-    parcel_put_array(t, o, c->gradient, c->gradients, sizeof *c->gradient);
-    parcel_put_array(t, o, c->factor, c->factors, sizeof *c->factor);
-}
-
-static void settings_take_cell(struct comm *t, struct parcel *o, struct cell *c)
-{
-    cell_free(c);
-    parcel_take(t, o, c, sizeof *c);
-    c->gradients = (int32_t)parcel_take_array(t, o, &c->gradient, sizeof *c->gradient);
-    c->factors = (int32_t)parcel_take_array(t, o, &c->factor, sizeof *c->factor);
-}
-
-/* Numbers that are not pointers */
-struct settings_numbers {
-    int64_t step;
-    double t, dt, theta, t0, pulls_most;
-    int64_t step0;
-    vec3 g;
-    uint64_t seed;
-    int32_t dim, overlap, kinds, has_law, first_id;
-    uint32_t optional; /* packing_optional() */
-};
-
 static void settings_put(struct comm *t, struct parcel *o, const struct packing *p)
 {
-    struct settings_numbers n;
-    int64_t k2 = (int64_t)p->kinds * p->kinds;
-    memset(&n, 0, sizeof n); // its gaps, too: parcels are compared by nobody, but read by valgrind
-    n.step = p->step, n.t = p->t, n.dt = p->dt, n.theta = p->theta, n.g = p->g, n.seed = p->seed;
-    n.pulls_most = p->pulls_most;
-    n.t0 = p->t0, n.step0 = p->step0;
-    n.dim = p->dim, n.overlap = (int32_t)p->overlap, n.kinds = p->kinds, n.first_id = p->first_id;
-    n.has_law = p->law != NULL, n.optional = packing_optional(p);
-    parcel_put(t, o, &n, sizeof n);
-    parcel_put_array(t, o, p->wall, p->walls, sizeof *p->wall);
-    put_drives(t, o, &p->drives), put_drives(t, o, &p->pushes);
-    put_drives(t, o, &p->pulls);
-    parcel_put_array(t, o, p->mesh.vertex, p->mesh.vertices, sizeof *p->mesh.vertex);
-    parcel_put_array(t, o, p->mesh.element, p->mesh.elements, sizeof *p->mesh.element);
-    settings_put_names(t, o, &p->names);
-    settings_put_cell(t, o, &p->cell);
+    const struct packing settings = packing_settings(p);
+    uint32_t columns = 0;
+    for (int k = 0; k < BODY_COLUMNS; k++)
+        columns |= field_array(&body_columns[k], p) ? 1u << k : 0;
+    parcel_put(t, o, &settings, sizeof settings); // with pointers, of which no other rank makes use
+    parcel_put(t, o, &columns, sizeof columns);
     put_shapes(t, o, &p->shapes);
-    for (int32_t k = 0; k < p->kinds; k++) put_text(t, o, p->kind_name[k]);
-#define PUT(member, ...) parcel_put_array(t, o, p->member, k2, sizeof *p->member);
-    EVERY_PAIR_COLUMN(PUT)
-#undef PUT
-    if (p->law) parcel_put_array(t, o, p->law, k2, sizeof *p->law);
+    for (const struct part *a = packing_parts; a->name; a++)
+        if (is_sent(a)) put_part(t, o, a, p);
 }
 
 static void settings_take(struct comm *t, struct parcel *o, struct packing *p)
 {
-    struct settings_numbers n;
     struct failure failure = { 0 };
-    parcel_take(t, o, &n, sizeof n);
+    uint32_t columns;
     packing_free(p);
-    if (packing_init(p, n.dim, 0, &failure) || packing_alloc_kinds(p, n.kinds, &failure))
-        settings_fail(t, &failure);
-    p->step = n.step, p->t = n.t, p->dt = n.dt, p->theta = n.theta, p->g = n.g, p->seed = n.seed;
-    p->pulls_most = n.pulls_most;
-    p->t0 = n.t0, p->step0 = n.step0;
-    p->overlap = (enum overlap)n.overlap, p->first_id = n.first_id;
-    free(p->wall);
-    p->walls = (int32_t)parcel_take_array(t, o, &p->wall, sizeof *p->wall);
-    take_drives(t, o, &p->drives), take_drives(t, o, &p->pushes);
-    take_drives(t, o, &p->pulls);
-    p->mesh.vertices = (int32_t)parcel_take_array(t, o, &p->mesh.vertex, sizeof *p->mesh.vertex);
-    p->mesh.elements = (int32_t)parcel_take_array(t, o, &p->mesh.element, sizeof *p->mesh.element);
-    take_names(t, o, &p->names);
-    settings_take_cell(t, o, &p->cell);
+    parcel_take(t, o, p, sizeof *p), parcel_take(t, o, &columns, sizeof columns);
+    packing_disown(p);
+    p->memory.on = false, p->outside = (struct external_force){ 0 };
     settings_take_shapes(t, o, &p->shapes, p->dim);
-    for (int32_t k = 0; k < p->kinds; k++) free(p->kind_name[k]), p->kind_name[k] = take_text(t, o);
-#define TAKE(member, ...) free(p->member), parcel_take_array(t, o, &p->member, sizeof *p->member);
-    EVERY_PAIR_COLUMN(TAKE)
-#undef TAKE
-    if (n.has_law) parcel_take_array(t, o, &p->law, sizeof *p->law);
-    if (packing_alloc_optional(p, n.optional, &failure)) settings_fail(t, &failure);
+    for (const struct part *a = packing_parts; a->name; a++)
+        if (is_sent(a)) take_part(t, o, a, p);
+    if (packing_alloc_optional(p, columns, &failure)) settings_fail(t, &failure);
 }
 
 void settings_spread(struct comm *t, struct packing *p)

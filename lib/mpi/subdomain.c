@@ -2,6 +2,7 @@
 #include "mpi/subdomain.h"
 
 #include "mpi/settings.h"
+#include "state/part.h"
 
 #include <malloc.h>
 #include <stdlib.h>
@@ -50,25 +51,25 @@ static size_t force_bytes(const struct packing *p)
 static void put_body(struct comm *t, struct parcel *to, const struct packing *p, int64_t i,
                      bool moving)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
-            parcel_put(t, to, column_row(&b->column, p, i), column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && (!moving || b->traits & FIELD_MOVES))
+            parcel_put(t, to, field_row(b, p, i), field_bytes(b));
 }
 
 static void take_body(struct comm *t, struct parcel *from, struct packing *p, int64_t i,
                       bool moving)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && (!moving || b->traits & BODY_MOVES))
-            parcel_take(t, from, column_row(&b->column, p, i), column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && (!moving || b->traits & FIELD_MOVES))
+            parcel_take(t, from, field_row(b, p, i), field_bytes(b));
 }
 
 /* Bytes of a traveller with all that follows it */
 static size_t traveller_bytes(const struct packing *p)
 {
     size_t bytes = sizeof(struct traveller) + force_bytes(p);
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p)) bytes += column_bytes(&b->column);
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p)) bytes += field_bytes(b);
     return bytes;
 }
 
@@ -123,9 +124,8 @@ static void subdomain_begin_empty(struct subdomain *y, struct comm *t, struct de
     struct failure failure = { 0 };
     *y = (struct subdomain){ .comm = t, .territory = space };
     if (!t->me) {
-        struct packing none = *settings;
-        none.n = 0, none.events.n = 0, none.bonds.n = 0, none.scene = NULL;
-        none.memory = (struct memory){ 0 }, none.outside = (struct external_force){ 0 };
+        struct packing none = packing_settings(settings);
+        none.scene = NULL;
         if (packing_copy(&y->p, &none, &failure)) subdomain_fail(y, &failure);
     }
     settings_spread(t, &y->p);

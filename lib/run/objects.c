@@ -250,7 +250,7 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
     if (__builtin_mul_overflow(n, width, &bytes) || bytes > INT64_MAX / 32)
         return objects_no_memory(failure);
     if (source_frame(d->source, failure)) return failure->status;
-    void *data = calloc((size_t)bytes + 1, column_size(type));
+    void *data = calloc((size_t)bytes + 1, field_size(type));
     if (!data) return objects_no_memory(failure);
     const struct slab slab = { type, first, n, width };
     int e = 0;
@@ -259,7 +259,7 @@ int nsd_rows(struct nsd_document *d, const char *path, int64_t first, int64_t n,
     if (e) return free(data), e;
     free(d->data);
     d->data = data;
-    const int64_t size = (int64_t)column_size(type);
+    const int64_t size = (int64_t)field_size(type);
     *out = (struct nsd_array){ .size = out->size,
                                .data = data,
                                .unit = "",

@@ -125,20 +125,10 @@ static void cell_repeated(const struct nsd_run *r, void *out)
     for (int k = 0; k < 3; k++) ((int8_t *)out)[k] = r->f.packing.cell.repeats[k];
 }
 
-#define BODY(member)    OF_BODIES, 'd', 1, offsetof(struct packing, member), NULL
-#define BODY3(member)   OF_BODIES, 'd', 3, offsetof(struct packing, member), NULL
 #define ACT(designator) OF_ACTS, 'd', 3, offsetof(struct control, designator), NULL
 
+/* Before these come the columns of bodies [state/body_columns.h]. */
 static const struct read_row table[] = {
-    { "position", "m", BODY3(x) },
-    { "orientation", "1", OF_BODIES, 'd', 4, offsetof(struct packing, q), NULL },
-    { "velocity", "m s-1", BODY3(v) },
-    { "angular_velocity", "rad s-1", BODY3(w) },
-    { "radius", "m", BODY(radius) },
-    { "mass", "kg", BODY(mass) },
-    { "inertia", "kg m2", BODY(inertia) },
-    { "id", "1", OF_BODIES, 'i', 1, offsetof(struct packing, id), NULL },
-    { "kind", "1", OF_BODIES, 'i', 1, offsetof(struct packing, kind), NULL },
     { "force", "N", ACT(force[CONTROL_LASTING]) },
     { "torque", "N m", ACT(torque[CONTROL_LASTING]) },
     { "force_once", "N", ACT(force[CONTROL_ONCE]) },
@@ -162,12 +152,27 @@ static const struct read_row table[] = {
     { "cell_rates", "m s-1", OF_CELL, 'd', 3, 0, cell_rates },
     { "cell_periodic", "1", OF_CELL, 'b', 1, 0, cell_repeated },
 };
-enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 13 };
+enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 4 };
 _Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array that is made");
+
+static const char *column_name(int k)
+{
+    return k == BODY_kind ? "kind" : body_columns[k].name; // "species" is H5MD's word
+}
 
 const char *nsd_array_name(int k)
 {
-    return k >= 0 && k < ROWS ? table[k].name : NULL;
+    if (k >= 0 && k < BODY_COLUMNS) return column_name(k);
+    return k >= 0 && k < BODY_COLUMNS + ROWS ? table[k - BODY_COLUMNS].name : NULL;
+}
+
+/* The row of the table that a column of bodies would have */
+static struct read_row column_as_row(int k)
+{
+    const struct field *b = &body_columns[k];
+    const char type = b->type == COLUMN_F64 ? 'd' : b->type == COLUMN_I8 ? 'b' : 'i';
+    return (
+        struct read_row){ column_name(k), b->units, OF_BODIES, type, b->width, b->offset, NULL };
 }
 
 /* The array, made anew in place of what it was */
@@ -181,12 +186,12 @@ static void *read_make(struct nsd_run *r, int k, int64_t n, struct failure *fail
     return r->made[k - FIRST_MADE] = data;
 }
 
-static void *data_of(struct nsd_run *r, int k, int64_t n, struct failure *failure)
+static void *data_of(struct nsd_run *r, const struct read_row *t, int64_t n,
+                     struct failure *failure)
 {
-    const struct read_row *t = &table[k];
     const char *owner = t->rows == OF_BODIES ? (char *)&r->f.packing : (char *)&r->driver.acts;
     void *data;
-    if (t->make) return read_make(r, k, n, failure);
+    if (t->make) return read_make(r, (int)(t - table), n, failure);
     if (t->rows == OF_ACTS) {
         const bool torque = t->at >= offsetof(struct control, torque);
         const int term = (int)((t->at - (torque ? offsetof(struct control, torque)
@@ -197,6 +202,7 @@ static void *data_of(struct nsd_run *r, int k, int64_t n, struct failure *failur
             true; // what is written there acts
     }
     memcpy(&data, owner + t->at, sizeof data);
+    if (!data) failure_set(failure, NSD_USAGE, "no body of the run has '%s'", t->name);
     return data;
 }
 
@@ -207,15 +213,16 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
     if (!failure) return NSD_USAGE;
     if (!out || out->size < sizeof *out)
         return failure_set(failure, NSD_USAGE, "an array's size is not that of struct nsd_array");
-    while (k < ROWS && (!name || strcmp(table[k].name, name) != 0)) k++;
-    if (k == ROWS)
+    while (nsd_array_name(k) && (!name || strcmp(nsd_array_name(k), name) != 0)) k++;
+    if (!nsd_array_name(k))
         return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
-    const struct read_row *t = &table[k];
+    const struct read_row of_bodies = column_as_row(k < BODY_COLUMNS ? k : 0);
+    const struct read_row *t = k < BODY_COLUMNS ? &of_bodies : &table[k - BODY_COLUMNS];
     int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
                 : t->rows == OF_BOUNDARIES ? r->f.packing.walls
                 : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
                                            : r->f.packing.n;
-    void *data = data_of(r, k, n, failure);
+    void *data = data_of(r, t, n, failure);
     if (!data) return failure->status;
     const int64_t size = (int64_t)read_size_of(t->type);
     *out = (struct nsd_array){ .size = out->size,

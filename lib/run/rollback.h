@@ -9,10 +9,8 @@
 
 /* All zero to begin with */
 struct rollback {
-    int64_t n, room;     /* bodies; reactions there is memory for */
-    vec3 *x, *v, *w;     /* [n] */
-    quat *q;             /* [n] */
-    int32_t (*image)[3]; /* [n] */
+    int64_t n, room;            /* bodies; reactions there is memory for */
+    void *column[BODY_COLUMNS]; /* [n] of those that move and that the packing has, else NULL */
     struct wall *wall;
     int32_t walls;
     struct recall *recall; /* [room] */

@@ -6,24 +6,15 @@
 #ifndef NSD_BODY_COLUMNS_H
 #define NSD_BODY_COLUMNS_H
 
-#include "base/column.h"
+#include "base/field.h"
 #include "base/vec.h"
 
 #include <stdint.h>
 
-enum {
-    BODY_MOVES = 1, /* each frame of a document has its values */
-    BODY_OPTIONAL =
-        2, /* the array is NULL where no body has the number: the document has no dataset of it */
-    BODY_BY_SETTINGS = 4, /* the array is there where the packing has shapes, or a periodic cell */
-    BODY_POSITIVE = 8,    /* else real numbers are finite */
-    BODY_NOT_NEGATIVE = 16
-};
-
 typedef int32_t edge_count[3];
 
 /*
- * X(C type, member, type and numbers in documents, name, unit, traits)
+ * X(C type, member, type and numbers in documents, name, unit, range, traits)
  *
  *   radius   of the ball around it
  *   mass     0: immovable or prescribed
@@ -36,18 +27,19 @@ typedef int32_t edge_count[3];
  *   image    edges to add to x for the way that the body has gone; NULL: the cell is not periodic
  */
 #define EACH_BODY_COLUMN(X)                                                                        \
-    X(double, radius, F64, 1, "radius", "m", BODY_POSITIVE)                                        \
-    X(double, mass, F64, 1, "mass", "kg", BODY_NOT_NEGATIVE)                                       \
-    X(double, inertia, F64, 1, "inertia", "kg m2", BODY_NOT_NEGATIVE)                              \
-    X(int32_t, id, I32, 1, "id", "1", 0)                                                           \
-    X(int32_t, kind, I32, 1, "species", "1", 0)                                                    \
-    X(int32_t, shape, I32, 1, "shape", "1", BODY_BY_SETTINGS)                                      \
-    X(int32_t, group, I32, 1, "group", "1", BODY_OPTIONAL)                                         \
-    X(vec3, x, F64, 3, "position", "m", BODY_MOVES)                                                \
-    X(vec3, v, F64, 3, "velocity", "m s-1", BODY_MOVES)                                            \
-    X(vec3, w, F64, 3, "angular_velocity", "rad s-1", BODY_MOVES)                                  \
-    X(quat, q, F64, 4, "orientation", "1", BODY_MOVES)                                             \
-    X(edge_count, image, I32, 3, "image", "1", BODY_MOVES | BODY_BY_SETTINGS | BODY_OPTIONAL)
+    X(double, radius, F64, 1, "radius", "m", POSITIVE, FIELD_SAME)                                 \
+    X(double, mass, F64, 1, "mass", "kg", NOT_NEGATIVE, FIELD_SAME)                                \
+    X(double, inertia, F64, 1, "inertia", "kg m2", NOT_NEGATIVE, FIELD_SAME)                       \
+    X(int32_t, id, I32, 1, "id", "1", ANY, FIELD_SAME)                                             \
+    X(int32_t, kind, I32, 1, "species", "1", ANY, FIELD_SAME)                                      \
+    X(int32_t, shape, I32, 1, "shape", "1", ANY, FIELD_SAME | FIELD_BY_SETTINGS)                   \
+    X(int32_t, group, I32, 1, "group", "1", ANY, FIELD_SAME | FIELD_OPTIONAL)                      \
+    X(vec3, x, F64, 3, "position", "m", FINITE, FIELD_MOVES)                                       \
+    X(vec3, v, F64, 3, "velocity", "m s-1", FINITE, FIELD_MOVES)                                   \
+    X(vec3, w, F64, 3, "angular_velocity", "rad s-1", FINITE, FIELD_MOVES)                         \
+    X(quat, q, F64, 4, "orientation", "1", FINITE, FIELD_MOVES)                                    \
+    X(edge_count, image, I32, 3, "image", "1", ANY,                                                \
+      FIELD_MOVES | FIELD_BY_SETTINGS | FIELD_OPTIONAL)
 
 #define BODY_POINTER(ctype, member, ...) ctype *member;
 
@@ -56,12 +48,8 @@ typedef int32_t edge_count[3];
 enum { EACH_BODY_COLUMN(BODY_NUMBER) BODY_COLUMNS };
 #undef BODY_NUMBER
 
-struct body_column {
-    struct column column;
-    unsigned traits; /* BODY_... */
-};
 _Static_assert(BODY_COLUMNS < 32, "sets of columns are bits");
 /* [BODY_COLUMNS], and one without a name */
-extern const struct body_column body_columns[];
+extern const struct field body_columns[];
 
 #endif

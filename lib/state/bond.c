@@ -10,17 +10,6 @@ void bonds_free(struct bonds *s)
     *s = (struct bonds){ 0 };
 }
 
-int bonds_copy(struct bonds *to, const struct bonds *from, struct failure *failure)
-{
-    *to = (struct bonds){ 0 };
-    for (int64_t i = 0; i < from->n; i++)
-        if (!bonds_add(to, &from->bond[i])) {
-            bonds_free(to);
-            return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
-        }
-    return 0;
-}
-
 struct bond *bonds_add(struct bonds *s, const struct bond *bond)
 {
     if (s->n == s->room) {

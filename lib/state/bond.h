@@ -44,8 +44,6 @@ struct bonds {
 };
 
 void bonds_free(struct bonds *bonds);
-/* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int bonds_copy(struct bonds *to, const struct bonds *from, struct failure *failure);
 /* Appends one; NULL when memory is short. */
 struct bond *bonds_add(struct bonds *bonds, const struct bond *bond);
 /* Back into order, after keys have changed */

@@ -129,22 +129,6 @@ static int copy_push(double **to, const double *x, int32_t walls, struct failure
     return 0;
 }
 
-int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n,
-                        int32_t walls, struct failure *failure)
-{
-    const struct lasting *s = &from->lasts;
-    *to = (struct external_force){ .steered = from->steered, .most = from->most };
-    if (copy_vectors(&to->force, from->force, n, failure) ||
-        copy_vectors(&to->torque, from->torque, n, failure) ||
-        copy_push(&to->push, from->push, walls, failure) ||
-        copy_vectors(&to->lasts.force, s->force, n, failure) ||
-        copy_vectors(&to->lasts.torque, s->torque, n, failure) ||
-        copy_push(&to->lasts.push, s->push, walls, failure) ||
-        (from->length && external_force_say(to, from->words, from->length, failure)))
-        return external_force_free(to), failure->status;
-    return 0;
-}
-
 int external_force_begin(struct external_force *o, const double *mass, int64_t n, int32_t walls,
                          struct failure *failure)
 {

@@ -48,10 +48,6 @@ struct external_force {
 void external_force_free(struct external_force *outside);
 /* The forces are of a step that has been made, and the words are written: they are gone, but for those that last. */
 void external_force_forget(struct external_force *outside);
-/* to = a deep copy for n bodies and so many walls; to need not be initialised. Returns 0 or EX_SOFTWARE, where there
-   is nothing to free. */
-int external_force_copy(struct external_force *to, const struct external_force *from, int64_t n,
-                        int32_t walls, struct failure *failure);
 /* *to = force or torque, [n], zero, unless it exists; push[walls], likewise. Each returns 0 or EX_SOFTWARE, where nothing
    has changed. */
 int external_force_alloc(vec3 **to, int64_t n, struct failure *failure);

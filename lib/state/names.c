@@ -27,12 +27,9 @@ static int add_text(struct names *s, const char *text, size_t n, struct failure 
 
 static int names_add_row(struct names *s, struct named row, struct failure *failure)
 {
-    // the room doubles: it is used up where the number of rows is a power of two
-    if (!(s->rows & (s->rows - 1))) {
-        struct named *more = realloc(s->row, 2 * ((size_t)s->rows + 1) * sizeof *more);
-        if (!more) return names_no_memory(failure);
-        s->row = more;
-    }
+    struct named *more = realloc(s->row, ((size_t)s->rows + 1) * sizeof *more);
+    if (!more) return names_no_memory(failure);
+    s->row = more;
     s->row[s->rows++] = row;
     return 0;
 }

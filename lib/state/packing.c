@@ -1,6 +1,8 @@
 /* state/packing.c: memory for a packing, and the check of its numbers. */
 #include "state/packing.h"
 
+#include "state/fields.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,38 +36,37 @@ static void *array(int64_t n, size_t size)
     return calloc(n > 0 ? (size_t)n : 1, size);
 }
 
-#define ROW(ctype, member, type, width, name, unit, traits)                                        \
-    { { name, unit, COLUMN_##type, width, offsetof(struct packing, member) }, traits },
-const struct body_column body_columns[] = { EACH_BODY_COLUMN(ROW){ { 0 }, 0 } };
+#define ROW(ctype, member, type, width, name, unit, bounds, ...)                                   \
+    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds),
+const struct field body_columns[] = { EACH_BODY_COLUMN(ROW){ 0 } };
 #undef ROW
 
-static bool is_optional(const struct body_column *b)
+static bool is_optional(const struct field *b)
 {
-    return b->traits & (BODY_OPTIONAL | BODY_BY_SETTINGS);
+    return b->traits & (FIELD_OPTIONAL | FIELD_BY_SETTINGS);
 }
 
-static void free_column(struct packing *p, const struct column *c)
+static void free_column(struct packing *p, const struct field *c)
 {
-    free(column_array(c, p));
-    column_set_array(c, p, NULL);
+    free(field_array(c, p));
+    field_set_array(c, p, NULL);
 }
 
 int packing_alloc_column(struct packing *p, int column, struct failure *failure)
 {
-    const struct column *c = &body_columns[column].column;
+    const struct field *c = &body_columns[column];
     free_column(p, c);
-    column_set_array(c, p, array(p->n, column_bytes(c)));
-    return column_array(c, p) ? 0
-                              : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
-                                            (long long)p->n, c->name);
+    field_set_array(c, p, array(p->n, field_bytes(c)));
+    return field_array(c, p) ? 0
+                             : failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies' %s",
+                                           (long long)p->n, c->name);
 }
 
 uint32_t packing_optional(const struct packing *p)
 {
     uint32_t set = 0;
     for (int k = 0; k < BODY_COLUMNS; k++)
-        if (is_optional(&body_columns[k]) && column_array(&body_columns[k].column, p))
-            set |= 1u << k;
+        if (is_optional(&body_columns[k]) && field_array(&body_columns[k], p)) set |= 1u << k;
     return set;
 }
 
@@ -105,23 +106,6 @@ static void kinds_free(struct packing *p)
 #define FREE(member, ...) free(p->member), p->member = NULL;
     EVERY_PAIR_COLUMN(FREE)
 #undef FREE
-}
-
-void packing_free(struct packing *p)
-{
-    for (int k = 0; k < BODY_COLUMNS; k++) free_column(p, &body_columns[k].column);
-    free(p->wall), free(p->scene);
-    shapes_free(&p->shapes), names_free(&p->names), sums_free(&p->sums);
-    drives_free(&p->drives), drives_free(&p->pushes), drives_free(&p->pulls);
-    mesh_free(&p->mesh);
-    free(p->poured), free(p->removed);
-    events_free(&p->events);
-    bonds_free(&p->bonds);
-    memory_free(&p->memory);
-    external_force_free(&p->outside);
-    cell_free(&p->cell);
-    kinds_free(p);
-    memset(p, 0, sizeof *p);
 }
 
 int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure)
@@ -201,16 +185,16 @@ int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
 
 int packing_resize(struct packing *p, int64_t n, struct failure *failure)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++) {
-        const struct column *c = &b->column;
-        size_t bytes = column_bytes(c);
-        char *old = column_array(c, p);
+    for (const struct field *b = body_columns; b->name; b++) {
+        const struct field *c = b;
+        size_t bytes = field_bytes(c);
+        char *old = field_array(c, p);
         if (!old && is_optional(b)) continue;
         char *more = realloc(old, (n > 0 ? (size_t)n : 1) * bytes);
         if (!more)
             return failure_set(failure, EX_SOFTWARE, "no memory for %lld bodies", (long long)n);
         if (n > p->n) memset(more + (size_t)p->n * bytes, 0, (size_t)(n - p->n) * bytes);
-        column_set_array(c, p, more);
+        field_set_array(c, p, more);
     }
     int64_t had = p->n;
     if (external_force_resize(&p->outside, had, n, failure)) return failure->status;
@@ -221,10 +205,9 @@ int packing_resize(struct packing *p, int64_t n, struct failure *failure)
 
 void packing_copy_body(struct packing *p, int64_t to, const struct packing *from, int64_t i)
 {
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p) && column_array(&b->column, from))
-            memcpy(column_row(&b->column, p, to), column_row(&b->column, from, i),
-                   column_bytes(&b->column));
+    for (const struct field *b = body_columns; b->name; b++)
+        if (field_array(b, p) && field_array(b, from))
+            memcpy(field_row(b, p, to), field_row(b, from, i), field_bytes(b));
 }
 
 struct packing packing_with_bodies(const struct packing *p, const struct packing *bodies,
@@ -232,60 +215,9 @@ struct packing packing_with_bodies(const struct packing *p, const struct packing
 {
     struct packing q = *p;
     q.n = n;
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        column_set_array(&b->column, &q,
-                         column_array(&b->column, bodies) ? column_row(&b->column, bodies, first)
-                                                          : NULL);
+    for (const struct field *b = body_columns; b->name; b++)
+        field_set_array(b, &q, field_array(b, bodies) ? field_row(b, bodies, first) : NULL);
     return q;
-}
-
-int packing_copy(struct packing *to, const struct packing *p, struct failure *failure)
-{
-    if (packing_init(to, p->dim, p->n, failure)) return failure->status;
-    if (packing_alloc_walls(to, p->walls, failure) || packing_alloc_kinds(to, p->kinds, failure))
-        goto fail;
-    size_t n = (size_t)p->n, k2 = (size_t)p->kinds * (size_t)p->kinds;
-    to->step = p->step, to->t = p->t, to->dt = p->dt, to->theta = p->theta, to->g = p->g;
-    to->t0 = p->t0, to->step0 = p->step0, to->adapts = p->adapts, to->halved = p->halved;
-    to->tolerance = p->tolerance;
-    to->overlap = p->overlap;
-    to->seed = p->seed, to->pulls_most = p->pulls_most;
-    if (cell_copy(&to->cell, &p->cell) || shapes_copy(&to->shapes, &p->shapes, failure) ||
-        packing_alloc_optional(to, packing_optional(p), failure))
-        goto fail;
-    for (const struct body_column *b = body_columns; b->column.name; b++)
-        if (column_array(&b->column, p))
-            memcpy(column_array(&b->column, to), column_array(&b->column, p),
-                   n * column_bytes(&b->column));
-    memcpy(to->wall, p->wall, (size_t)p->walls * sizeof *p->wall);
-    if (drives_copy(&to->drives, &p->drives, failure) ||
-        drives_copy(&to->pushes, &p->pushes, failure) ||
-        drives_copy(&to->pulls, &p->pulls, failure) || mesh_copy(&to->mesh, &p->mesh, failure) ||
-        names_copy(&to->names, &p->names, failure) || sums_copy(&to->sums, &p->sums, failure))
-        goto fail;
-#define COPY(member, ...) memcpy(to->member, p->member, k2 * sizeof *p->member);
-    EVERY_PAIR_COLUMN(COPY)
-#undef COPY
-    if (p->law && packing_alloc_laws(to, failure)) goto fail;
-    if (p->law) memcpy(to->law, p->law, k2 * sizeof *p->law);
-    if (bonds_copy(&to->bonds, &p->bonds, failure) || memory_copy(&to->memory, &p->memory, failure))
-        goto fail;
-    if (external_force_copy(&to->outside, &p->outside, p->n, p->walls, failure)) goto fail;
-    for (int32_t i = 0; i < p->kinds; i++) {
-        free(to->kind_name[i]);
-        if (!(to->kind_name[i] = strdup(p->kind_name[i]))) goto fail;
-    }
-    if (p->scene && !(to->scene = strdup(p->scene))) goto fail;
-    if (packing_alloc_passages(to, p->pours, p->removals, failure)) goto fail;
-    to->first_id = p->first_id;
-    for (int32_t k = 0; k < p->pours; k++) to->poured[k] = p->poured[k];
-    for (int32_t k = 0; k < p->removals; k++) to->removed[k] = p->removed[k];
-    for (int64_t i = 0; i < p->events.n; i++)
-        if (events_add(&to->events, &p->events.e[i], failure)) goto fail;
-    return 0;
-fail:
-    packing_free(to);
-    return failure_set(failure, EX_SOFTWARE, "no memory for a copy of the packing");
 }
 
 void packing_count_from(struct packing *p, double t0, int64_t step0)
@@ -343,21 +275,6 @@ struct whole packing_whole(const struct packing *p)
         if (p->bonds.bond[i].beta > 0 && !bond_anchored(&p->bonds.bond[i]))
             all.apart = dmax(all.apart, p->bonds.bond[i].gap);
     return all;
-}
-
-/* What is wrong with a column's real numbers of body i, or NULL */
-static const char *packing_number_trouble(const struct body_column *b, const struct packing *p,
-                                          int64_t i)
-{
-    const double *x = column_row(&b->column, p, i);
-    for (int k = 0; k < b->column.width; k++) {
-        if ((b->traits & BODY_POSITIVE) && !(x[k] > 0 && isfinite(x[k])))
-            return "must be positive and finite";
-        if ((b->traits & BODY_NOT_NEGATIVE) && !(x[k] >= 0 && isfinite(x[k])))
-            return "must be finite and not negative";
-        if (!isfinite(x[k])) return "is not finite";
-    }
-    return NULL;
 }
 
 static const char *body_trouble(const struct packing *p, int64_t i)
@@ -458,8 +375,6 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
                  w->elements > p->mesh.elements - w->first_element))
         return "its mesh is missing";
     if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
-    if (!(w->wear >= 0 && isfinite(w->wear))) return "wear must be finite and not negative";
-    if (!v3_finite(w->belt)) return "belt is not finite";
     if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
     return packing_load_trouble(p, w);
 }
@@ -512,12 +427,11 @@ static int packing_check_each_body(const struct packing *p, int64_t first, struc
 {
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = NULL;
-        for (const struct body_column *b = body_columns; b->column.name && !trouble; b++) {
-            bool real = b->column.type == COLUMN_F64 && column_array(&b->column, p);
-            trouble = real ? packing_number_trouble(b, p, i) : NULL;
+        for (const struct field *b = body_columns; b->name && !trouble; b++) {
+            trouble = field_array(b, p) ? field_trouble(b, field_row(b, p, i)) : NULL;
             if (trouble)
                 return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
-                                   b->column.name, trouble);
+                                   b->name, trouble);
         }
         if ((trouble = body_trouble(p, i)))
             return failure_set(failure, EX_DATAERR, "body %lld: %s", (long long)(first + i),
@@ -568,7 +482,13 @@ int packing_check(const struct packing *p, struct failure *failure)
         drives_check(&p->pushes, p->walls, p->dim, "push", failure))
         return failure->status; // before any wall is asked where it is
     for (int32_t i = 0; i < p->walls; i++) {
-        const char *trouble = wall_trouble(p, &p->wall[i]);
+        const struct wall *w = &p->wall[i];
+        for (const struct field *f = wall_fields; f->name; f++) {
+            const char *trouble = field_trouble(f, (const char *)w + f->offset);
+            if (trouble)
+                return failure_set(failure, EX_DATAERR, "wall %d: %s %s", i, f->name, trouble);
+        }
+        const char *trouble = wall_trouble(p, w);
         if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
     }
     if (check_room(p, failure)) return failure->status;

@@ -6,10 +6,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-void sums_free(struct wall_sums *s)
+void sums_forget_faces(struct wall_sums *s)
 {
     if (s->faces) wall_faces_free(s->faces);
-    free(s->faces), free(s->face);
+    free(s->faces);
+    s->faces = NULL;
+}
+
+void sums_free(struct wall_sums *s)
+{
+    sums_forget_faces(s);
+    free(s->face);
     *s = (struct wall_sums){ 0 };
 }
 

@@ -38,6 +38,8 @@ struct wall_sums {
 int sums_begin(struct wall_sums *s, int32_t walls, const struct wall *wall, double t,
                struct failure *failure);
 void sums_free(struct wall_sums *s);
+/* Frees `faces` alone. */
+void sums_forget_faces(struct wall_sums *s);
 int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct failure *failure);
 /* Are they of these walls' faces, and finite? Returns 0 or EX_DATAERR. */
 int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall,

@@ -102,6 +102,12 @@ class Frame:
     def _fixed(self, name):
         return self._all[name][()][self._rows]
 
+    def __getattr__(self, name):
+        """Any other number of the bodies, by the name of its dataset in nsd-format(5)."""
+        if name.startswith("_") or name not in self._all:
+            raise AttributeError(f"the document has no {name} of bodies", name=name, obj=self)
+        return self._moving(name) if isinstance(self._all[name], Group) else self._fixed(name)
+
     x = cached_property(lambda self: self._moving("position"))  # m
     v = cached_property(lambda self: self._moving("velocity"))  # m/s
     w = cached_property(lambda self: self._moving("angular_velocity"))  # rad/s

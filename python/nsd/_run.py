@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import itertools
 import json
 import math
 import os
@@ -184,6 +185,9 @@ class Run:
     inertia: NDArray[np.float64]
     id: NDArray[np.int32]
     kind: NDArray[np.int32]
+    shape: NDArray[np.int32]
+    group: NDArray[np.int32]
+    image: NDArray[np.int32]
     force: Any  # NDArray[np.float64], to which anything like an array may be assigned
     torque: Any
     force_once: Any
@@ -584,6 +588,8 @@ for _name, _text in {
     "position": "[n, 3] m: of the bodies' centres", "orientation": "[n, 4] unit quaternions (w, x, y, z)",
     "velocity": "[n, 3] m/s", "angular_velocity": "[n, 3] rad/s", "radius": "[n] m: of the circumscribed ball",
     "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "kind": "[n] number of the kind of material",
+    "shape": "[n] number of the shape, 0: a ball", "group": "[n] 1 + number of the group's name, 0: none",
+    "image": "[n, 3] edges of the periodic cell to add to position",
     "contact_body": "[c, 2] ids of bodies a and b; -1-w: boundary w", "contact_point": "[c, 3] m",
     "contact_normal": "[c, 3] unit vectors from a to b", "contact_gap": "[c] m; negative: overlap",
     "contact_friction": "[c] coefficients", "contact_force": "[c, 3] N: on b",
@@ -600,6 +606,11 @@ for _name, _text in {
     "force_once": "[n, 3] N: in the next step", "torque_once": "[n, 3] N m: in the next step",
 }.items():
     setattr(Run, _name, _view(_name, _text, True))
+for _k in itertools.count():  # numbers of bodies that no line above describes
+    if (_bytes := library.nsd_array_name(_k)) is None:
+        break
+    if not hasattr(Run, _bytes.decode()):
+        setattr(Run, _bytes.decode(), _view(_bytes.decode(), "[n]: a number of each body, see nsd-format(5)"))
 for _name, _number_name, _kind, _text in (
     ("time", "time", float, "s"), ("dt", "dt", float, "s: the time step"), ("step_number", "step", int, "steps made"),
     ("dim", "dim", int, "2 or 3"), ("contacts", "contacts", int, "number of contacts of the last step"),

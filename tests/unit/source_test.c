@@ -147,7 +147,7 @@ static bool converts(char class, int bytes, whole v)
     static const enum column_type type[] = { COLUMN_I64, COLUMN_I32, COLUMN_I8 };
     for (int k = 0; k < 3; k++) {
         int64_t i = 0;
-        int size = (int)column_size(type[k]);
+        int size = (int)field_size(type[k]);
         bool fits = v >= least('i', size) && v <= most('i', size);
         good &= listed_numbers(&l, 0, 1, type[k], &i) == fits;
         int64_t mask = size == 8 ? -1 : ((int64_t)1 << 8 * size) - 1;

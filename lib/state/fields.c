@@ -1,0 +1,396 @@
+#include "state/fields.h"
+
+#include "state/packing.h"
+#include "state/report.h"
+
+#include <math.h>
+
+/* ---- a packing: what all frames share, attributes of /nsd ---- */
+
+const struct field packing_fields[] = {
+    FIELD(struct packing, dim, I32, 1, "dim", "1", FIELD_SAME),
+    FIELD(struct packing, theta, F64, 1, "theta", "1", FIELD_SAME, .range = FIELD_FRACTION),
+    FIELD(struct packing, g, F64, 3, "gravity", "m s-2", FIELD_SAME | FIELD_STEERED,
+          .range = FIELD_FINITE),
+    FIELD(struct packing, seed, I64, 1, "seed", "1", FIELD_SAME),
+    FIELD(struct packing, pulls_most, F64, 1, "acceleration of the forces", "m s-2", FIELD_SAME),
+    { 0 },
+};
+
+/* ---- the cell ---- */
+
+const struct field cell_fields[] = {
+    FIELD(struct packing, cell.repeats, I8, 3, "periodic", "1", FIELD_SAME),
+    FIELD(struct packing, cell.origin, F64, 3, "origin", "m", FIELD_SAME),
+    FIELD(struct packing, cell.mass, F64, 9, "mass", "kg", FIELD_SAME),
+    FIELD(struct packing, cell.stress, F64, 9, "stress", "Pa", FIELD_SAME),
+    FIELD(struct packing, cell.size_mass, F64, 1, "size_mass", "kg m2", FIELD_SAME),
+    FIELD(struct packing, cell.mean, F64, 1, "mean", "Pa", FIELD_SAME),
+    { 0 },
+};
+_Static_assert(sizeof(bool) == 1, "flags are bytes in documents");
+
+/* Where the cell is periodic: members of struct cell, [F][3][3] */
+const struct field box_fields[] = {
+    FIELD(struct cell, edge, F64, 9, "box/edges", "m", FIELD_MOVES),
+    FIELD(struct cell, rate, F64, 9, "box/rate", "m s-1", FIELD_MOVES),
+    { 0 },
+};
+
+const struct field gradient_fields[] = {
+    FIELD(struct cell_gradient, t, F64, 1, "time", "s", FIELD_SAME),
+    FIELD(struct cell_gradient, L, F64, 9, "gradient", "s-1", FIELD_SAME),
+    { 0 },
+};
+
+const struct field factor_fields[] = {
+    FIELD(struct cell_factor, t, F64, 2, "factor", "s; 1", FIELD_SAME),
+    { 0 },
+};
+
+/* ---- walls: /particles/boundary/body/NAME [walls][width] ---- */
+
+/* Planes that are there for ever need no table of shapes. */
+static bool any_shapes(const void *of)
+{
+    const struct packing *p = of;
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
+    return false;
+}
+
+const struct field wall_fields[] = {
+    FIELD(struct wall, x, F64, 3, "point", "m", FIELD_SAME | FIELD_STEERED),
+    FIELD(struct wall, n, F64, 3, "normal", "1", FIELD_SAME),
+    FIELD(struct wall, v, F64, 3, "velocity", "m s-1", FIELD_SAME | FIELD_STEERED),
+    FIELD(struct wall, kind, I32, 1, "species", "1", FIELD_SAME),
+    FIELD(struct wall, shape, I32, 1, "shape", "1", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, side, I32, 1, "side", "1", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, along, F64, 3, "along", "1", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, size, F64, 3, "size", "m", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, arc, F64, 1, "arc", "rad", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, first_element, I32, 2, "elements", "1", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, until, F64, 1, "until", "s", FIELD_SAME, .when = any_shapes),
+    FIELD(struct wall, weld, F64, 1, "weld", "m", FIELD_SAME | FIELD_OPTIONAL),
+    FIELD(struct wall, wear, F64, 1, "wear", "Pa-1", FIELD_SAME | FIELD_OPTIONAL,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct wall, belt, F64, 3, "belt", "m s-1", FIELD_SAME | FIELD_OPTIONAL,
+          .range = FIELD_FINITE),
+    { 0 },
+};
+
+/* /particles/boundary/load/NAME [walls][width], where any wall yields; of those that move NAME/value [frames][walls] */
+const struct field load_fields[] = {
+    FIELD(struct wall, load.way, I32, 1, "way", "1", FIELD_SAME),
+    FIELD(struct wall, load.axis, F64, 3, "axis", "1", FIELD_SAME),
+    FIELD(struct wall, load.point, F64, 3, "point", "m", FIELD_SAME),
+    FIELD(struct wall, load.mass, F64, 1, "mass", "kg, kg m2", FIELD_SAME),
+    FIELD(struct wall, load.force, F64, 1, "force", "N, N m", FIELD_SAME),
+    FIELD(struct wall, load.spread, I32, 1, "spread", "1", FIELD_SAME | FIELD_OPTIONAL),
+    FIELD(struct wall, load.rate, F64, 1, "rate", "s-1", FIELD_SAME | FIELD_OPTIONAL),
+    { 0 },
+};
+const struct field load_motion_fields[] = {
+    FIELD(struct wall, load.speed, F64, 1, "speed", "m s-1, rad s-1", FIELD_MOVES),
+    FIELD(struct wall, load.travel, F64, 1, "travel", "m, rad", FIELD_MOVES),
+    { 0 },
+};
+
+/* /particles/boundary/drive/NAME and, where a load is one in time, push/NAME [drives][width] */
+const struct field drive_fields[] = {
+    FIELD(struct drive, boundary, I32, 1, "boundary", "1", FIELD_SAME),
+    FIELD(struct drive, turns, I32, 1, "turns", "1", FIELD_SAME),
+    FIELD(struct drive, signal, I32, 1, "signal", "1", FIELD_SAME),
+    FIELD(struct drive, axis, F64, 3, "axis", "1", FIELD_SAME),
+    FIELD(struct drive, point, F64, 3, "point", "m", FIELD_SAME),
+    FIELD(struct drive, value, F64, 1, "value", "m s-1, rad s-1, m, rad", FIELD_SAME),
+    FIELD(struct drive, frequency, F64, 1, "frequency", "s-1", FIELD_SAME),
+    FIELD(struct drive, phase, F64, 1, "phase", "rad", FIELD_SAME),
+    FIELD(struct drive, from, F64, 1, "from", "s", FIELD_SAME),
+    FIELD(struct drive, until, F64, 1, "until", "s", FIELD_SAME),
+    FIELD(struct drive, clock, F64, 1, "clock", "s", FIELD_SAME),
+    FIELD(struct drive, first, I32, 2, "rows", "1", FIELD_SAME),
+    { 0 },
+};
+
+/* /nsd/force/NAME [forces][width]: forces and torques on bodies, and their tables in /nsd/force/row */
+const struct field pull_fields[] = {
+    FIELD(struct drive, boundary, I32, 1, "id", "1", FIELD_SAME),
+    FIELD(struct drive, turns, I32, 1, "turns", "1", FIELD_SAME),
+    FIELD(struct drive, signal, I32, 1, "signal", "1", FIELD_SAME),
+    FIELD(struct drive, axis, F64, 3, "axis", "1", FIELD_SAME),
+    FIELD(struct drive, value, F64, 1, "value", "N, N m", FIELD_SAME),
+    FIELD(struct drive, frequency, F64, 1, "frequency", "s-1", FIELD_SAME),
+    FIELD(struct drive, phase, F64, 1, "phase", "rad", FIELD_SAME),
+    FIELD(struct drive, from, F64, 1, "from", "s", FIELD_SAME),
+    FIELD(struct drive, until, F64, 1, "until", "s", FIELD_SAME),
+    FIELD(struct drive, first, I32, 2, "rows", "1", FIELD_SAME),
+    { 0 },
+};
+
+const struct field drive_row_fields[] = {
+    FIELD(struct drive_row, t, F64, 2, "row", "s; m, rad", FIELD_SAME),
+    { 0 },
+};
+
+/* /particles/boundary/mesh/NAME [n][3] */
+typedef int32_t corners[3];
+const struct field vertex_fields[] = {
+    { .name = "vertex", .units = "m", .type = COLUMN_F64, .width = 3, .traits = FIELD_SAME },
+    { 0 },
+};
+const struct field element_fields[] = {
+    { .name = "element", .units = NULL, .type = COLUMN_I32, .width = 3, .traits = FIELD_SAME },
+    { 0 },
+};
+
+/* /nsd/names/NAME [rows][width], where any wall has a name */
+const struct field named_fields[] = {
+    FIELD(struct named, name, I32, 1, "name", "1", FIELD_SAME),
+    FIELD(struct named, boundary, I32, 1, "boundary", "1", FIELD_SAME),
+    FIELD(struct named, first, I32, 2, "faces", "1", FIELD_SAME),
+    { 0 },
+};
+
+/* ---- materials: /nsd/law/NAME [kinds][kinds] where any pair has a law beyond friction and restitution ---- */
+
+#define MATERIAL(member, name, unit, ...)                                                          \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME),
+#define OPTIONAL(member, name, unit, ...)                                                          \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME | FIELD_OPTIONAL),
+/* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
+const struct field material_fields[] = {
+    EACH_PAIR_COLUMN(MATERIAL) EACH_OPTIONAL_PAIR_COLUMN(OPTIONAL){ 0 },
+};
+#undef MATERIAL
+#undef OPTIONAL
+
+#define LAW(member, name, unit, ...)                                                               \
+    FIELD(struct pair_law, member, F64, 1, name, unit, FIELD_SAME __VA_ARGS__)
+const struct field law_fields[] = {
+    LAW(cohesion, "cohesion", "N"),
+    LAW(range, "range", "m"),
+    LAW(volume, "volume", "m3"),
+    LAW(tension, "tension", "N m-1"),
+    LAW(wetting, "wetting", "rad"),
+    LAW(mu_r, "mu_r", "m"),
+    LAW(mu_p, "mu_p", "m"),
+    LAW(cn, "c_n", "N m-3"),
+    LAW(ct, "c_t", "N m-3"),
+    LAW(w, "w", "J m-2"),
+    LAW(eta, "eta", "N s m-1"),
+    LAW(area, "area", "m2"),
+    LAW(beta, "beta", "1"),
+    LAW(made, "made", "s"),
+    LAW(forever, "forever", "1"),
+    LAW(impact, "impact", "1", | FIELD_OPTIONAL),
+    { 0 },
+};
+
+/* ---- what lasts of pairs ---- */
+
+static bool has_shapes(const void *of)
+{
+    return ((const struct packing *)of)->shape;
+}
+
+/* Has a row of this packing a feature? */
+static bool has_features(const void *of)
+{
+    const struct packing *p = of;
+    return p->mesh.elements || p->shape;
+}
+
+static bool has_images(const void *of)
+{
+    return cell_repeats(&((const struct packing *)of)->cell);
+}
+
+static bool has_rolling(const void *of)
+{
+    return packing_rolls(of);
+}
+
+/* /nsd/bonds/NAME [bonds][width], of each frame `count` rows from `start` on. Places where there are shapes */
+const struct field bond_fields[] = {
+    FIELD(struct bond, a, I32, 2, "body", "1", FIELD_MOVES),
+    FIELD(struct bond, feature, I32, 1, "feature", "1", FIELD_MOVES),
+    FIELD(struct bond, shift, I8, 3, "shift", "1", FIELD_MOVES),
+    FIELD(struct bond, wet, I8, 1, "wet", "1", FIELD_MOVES),
+    FIELD(struct bond, beta, F64, 1, "beta", "1", FIELD_MOVES),
+    FIELD(struct bond, gap, F64, 1, "gap", "m", FIELD_MOVES),
+    FIELD(struct bond, n, F64, 3, "normal", "1", FIELD_MOVES),
+    FIELD(struct bond, slip, F64, 3, "slip", "m", FIELD_MOVES),
+    FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes),
+    FIELD(struct bond, at_a, F64, 3, "anchor_a", "m", FIELD_MOVES, .when = has_shapes),
+    FIELD(struct bond, at_b, F64, 3, "anchor_b", "m", FIELD_MOVES, .when = has_shapes),
+    FIELD(struct bond, axis, F64, 3, "axis", "1", FIELD_MOVES, .when = has_shapes),
+    { 0 },
+};
+
+/* /nsd/memory/NAME [reactions][width], of each frame that has it `count` rows from `start` on */
+const struct field recall_fields[] = {
+    FIELD(struct recall, a, I32, 2, "body", "1", FIELD_MOVES),
+    FIELD(struct recall, r, F64, 3, "impulse", "N s", FIELD_MOVES),
+    FIELD(struct recall, feature, I32, 1, "feature", "1", FIELD_MOVES, .when = has_features),
+    FIELD(struct recall, shift, I8, 3, "shift", "1", FIELD_MOVES, .when = has_images),
+    FIELD(struct recall, m, F64, 3, "moment", "N m s", FIELD_MOVES, .when = has_rolling),
+    { 0 },
+};
+
+/* ---- sums and counts ---- */
+
+/* /particles/boundary/sums/NAME/value [frames][faces][width] where they are kept */
+const struct field sum_fields[] = {
+    FIELD(struct face_sums, impulse, F64, 3, "impulse", "N s", FIELD_MOVES),
+    FIELD(struct face_sums, moment, F64, 3, "moment", "N m s", FIELD_MOVES),
+    FIELD(struct face_sums, normal, F64, 1, "normal", "N s", FIELD_MOVES),
+    FIELD(struct face_sums, tangential, F64, 1, "tangential", "N s", FIELD_MOVES),
+    FIELD(struct face_sums, work, F64, 1, "work", "J", FIELD_MOVES),
+    FIELD(struct face_sums, friction, F64, 1, "friction", "J", FIELD_MOVES),
+    FIELD(struct face_sums, rub, F64, 1, "rub", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* /nsd/flow/NAME/value [frames][pours], or [removals] */
+const struct field poured_fields[] = {
+    FIELD(struct flow_count, bodies, I64, 1, "poured", "1", FIELD_MOVES),
+    FIELD(struct flow_count, mass, F64, 1, "poured_mass", "kg", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    { 0 },
+};
+const struct field removed_fields[] = {
+    FIELD(struct flow_count, bodies, I64, 1, "removed", "1", FIELD_MOVES),
+    FIELD(struct flow_count, mass, F64, 1, "removed_mass", "kg", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    { 0 },
+};
+
+/* /nsd/flow/events/NAME [events][width], of each frame `count` rows from `start` on */
+const struct field event_fields[] = {
+    FIELD(struct event, step, I64, 1, "step", "1", FIELD_MOVES),
+    FIELD(struct event, t, F64, 1, "time", "s", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct event, id, I32, 1, "id", "1", FIELD_MOVES),
+    FIELD(struct event, came, I8, 1, "came", "1", FIELD_MOVES, .range = FIELD_FLAG),
+    FIELD(struct event, which, I32, 1, "which", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct event, radius, F64, 1, "radius", "m", FIELD_MOVES, .range = FIELD_POSITIVE),
+    FIELD(struct event, mass, F64, 1, "mass", "kg", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct event, x, F64, 3, "position", "m", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct event, v, F64, 3, "velocity", "m s-1", FIELD_MOVES, .range = FIELD_FINITE),
+    { 0 },
+};
+
+/* ---- contacts: /contacts/NAME [contacts][width]; /contacts/frame, their basis, is handled apart ---- */
+
+const struct field contact_fields[] = {
+    FIELD(struct contact, a, I32, 2, "body", "1", FIELD_MOVES),
+    FIELD(struct contact, x, F64, 3, "point", "m", FIELD_MOVES),
+    FIELD(struct contact, gap, F64, 1, "gap", "m", FIELD_MOVES),
+#define NUMBER(member, name, unit, ...)                                                            \
+    FIELD(struct contact, member, F64, 1, name, unit, FIELD_MOVES),
+    EACH_PAIR_COLUMN(NUMBER)
+#undef NUMBER
+        { 0 },
+};
+
+/* Beside the basis: */
+const struct field contact_key_fields[] = {
+    FIELD(struct contact, shift, I8, 3, "shift", "1", FIELD_MOVES, .when = has_images),
+    FIELD(struct contact, feature, I32, 1, "feature", "1", FIELD_MOVES, .when = has_features),
+    { 0 },
+};
+
+/* Where pairs have laws beyond friction and restitution */
+const struct field contact_law_fields[] = {
+    FIELD(struct contact_law, pull, F64, 1, "pull", "N", FIELD_MOVES),
+    FIELD(struct contact_law, stiff, F64, 2, "stiffness", "N m-1", FIELD_MOVES),
+    FIELD(struct contact_law, jump, F64, 3, "jump", "m", FIELD_MOVES),
+    FIELD(struct contact_law, beta, F64, 1, "beta", "1", FIELD_MOVES),
+    FIELD(struct contact_law, offset, F64, 1, "offset", "m s-1", FIELD_MOVES),
+    FIELD(struct contact_law, mu_r, F64, 1, "mu_r", "m", FIELD_MOVES),
+    FIELD(struct contact_law, mu_p, F64, 1, "mu_p", "m", FIELD_MOVES),
+    FIELD(struct contact_law, state, I8, 1, "tie", "1", FIELD_MOVES),
+    { 0 },
+};
+
+const struct field found_fields[] = {
+    FIELD(struct found, r, F64, 3, "reaction", "N s", FIELD_MOVES),
+    FIELD(struct found, u, F64, 3, "velocity", "m s-1", FIELD_MOVES),
+    FIELD(struct found, status, I8, 1, "status", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* ---- reports ---- */
+
+/*
+ * /nsd/solver/NAME/value [frames][width]. The five numbers of eps are
+ * eps_glob, motion, proj, bipotential, penetration.
+ */
+const struct field report_fields[] = {
+    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES),
+    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES),
+    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES),
+    FIELD(struct report, err.paper, F64, 5, "eps", "1", FIELD_MOVES),
+    FIELD(struct report, err.scaled, F64, 5, "eps_scaled", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural, F64, 1, "natural", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural_siconos, F64, 1, "natural_siconos", "1", FIELD_MOVES),
+    FIELD(struct report, err.natural_q, F64, 1, "natural_q", "1", FIELD_MOVES),
+    FIELD(struct report, err.max_penetration, F64, 1, "max_penetration", "m s-1", FIELD_MOVES),
+    FIELD(struct report, err.max_penetration_true, F64, 1, "max_penetration_true", "m s-1",
+          FIELD_MOVES),
+    FIELD(struct report, err.max_overlap, F64, 1, "max_overlap", "m", FIELD_MOVES),
+    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES),
+    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES),
+    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where the criterion is velocity */
+const struct field velocity_fields[] = {
+    FIELD(struct report, err.velocity, F64, 1, "velocity", "1", FIELD_MOVES),
+    FIELD(struct report, err.velocity_error, F64, 1, "velocity_error", "m s-1", FIELD_MOVES),
+    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where there are bodies */
+const struct field balance_fields[] = {
+    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES),
+    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES),
+    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES),
+    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES),
+    FIELD(struct report, balance.dissipation, F64, 1, "dissipation", "J", FIELD_MOVES),
+    FIELD(struct report, balance.momentum, F64, 3, "momentum", "N s", FIELD_MOVES),
+    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where pairs have laws beyond friction and restitution */
+const struct field bond_balance_fields[] = {
+    FIELD(struct report, balance.bond_change, F64, 1, "bond_change", "J", FIELD_MOVES),
+    FIELD(struct report, balance.bond_energy, F64, 1, "bond_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.broken, F64, 1, "broken", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where impacts may gain energy */
+const struct field gain_balance_fields[] = {
+    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where the cell moves */
+const struct field peculiar_balance_fields[] = {
+    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.peculiar_change, F64, 1, "peculiar_change", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where bodies that overlap are moved apart */
+const struct field projection_balance_fields[] = {
+    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES),
+    FIELD(struct report, balance.spun, F64, 3, "projection_angular_momentum", "N m s", FIELD_MOVES),
+    { 0 },
+};

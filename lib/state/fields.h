@@ -1,0 +1,32 @@
+/*
+ * state/fields.h: the tables of fields [base/field.h] of what a frame has: of a packing's parts [state/part.h], its
+ * contacts and its report. nsd-format(5) says the same in words. Rows stand in the order in which their datasets are made.
+ * A new member of a struct is a row here, and the place that uses it.
+ */
+#ifndef NSD_FIELDS_OF_STATE_H
+#define NSD_FIELDS_OF_STATE_H
+
+#include "base/field.h"
+
+extern const struct field packing_fields[], cell_fields[]; /* of struct packing */
+extern const struct field box_fields[];                    /* of struct cell: its edges */
+
+extern const struct field wall_fields[], load_fields[], load_motion_fields[]; /* of struct wall */
+extern const struct field drive_fields[], pull_fields[]; /* of struct drive: of walls, of bodies */
+extern const struct field drive_row_fields[], gradient_fields[], factor_fields[];
+extern const struct field vertex_fields[], element_fields[], named_fields[], law_fields[];
+extern const struct field material_fields[]; /* of struct packing: pointers to [kinds][kinds] */
+
+extern const struct field bond_fields[], recall_fields[], sum_fields[];
+extern const struct field poured_fields[], removed_fields[], event_fields[];
+
+/* Of struct contact, of its law and of what a solver finds at it */
+extern const struct field contact_fields[], contact_key_fields[], contact_law_fields[],
+    found_fields[];
+
+/* Of struct report */
+extern const struct field report_fields[], velocity_fields[], balance_fields[];
+extern const struct field bond_balance_fields[], gain_balance_fields[], peculiar_balance_fields[],
+    projection_balance_fields[];
+
+#endif
