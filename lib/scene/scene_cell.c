@@ -92,11 +92,10 @@ static int read_gradient(jnode a, struct scene *s, void *out)
     return 0;
 }
 
-static const struct key_type key_gradient = {
-    "MATRIX or array",
-    "{'anyOf': [{'$ref': 'matrix'}, {'type': 'array', 'items': {'$ref': 'gradient'}}]}", NULL, NULL,
-    &moment_keys
-};
+static const struct key_type key_gradient = { "MATRIX or array",
+                                              "{'anyOf': [{'$ref': 'matrix'}, {'type': 'array', "
+                                              "'items': {'$ref': 'gradient'}, 'minItems': 1}]}",
+                                              NULL, NULL, &moment_keys };
 
 /* ---- the stress ---- */
 
