@@ -119,7 +119,7 @@ static const struct key lattice_key[] = {
     { "count", &key_integer, AT(count), "-", REQUIRED, "500", "Number of bodies.",
       .most = INT32_MAX },
     GRAIN_ROWS(struct scene_bodies),
-    { "box", &key_box, AT(box), "m", "cell or wall", "{\"x\": [0, 1], ...}",
+    { "box", &key_box, AT(box), "m", "cell, wall", "{\"x\": [0, 1], ...}",
       "Region to fill; only its last axis may be open above. Default: the periodic cell, in rows "
       "along its edges; otherwise the first wall that is a box." },
     { "cells", &key_cells, AT(from), "-", "\"equal\"", "\"own\"",

@@ -85,7 +85,7 @@ extern const struct key_type key_shape, key_orientation, key_size;
       offsetof(T, size),                                                                           \
       "m",                                                                                         \
       REQUIRED,                                                                                    \
-      "{\"uniform\": [1, 2]}",                                                                     \
+      "1e-3",                                                                                      \
       "Radii; with a shape, of the circumscribed balls, and not required.",                        \
       .unless = "shape" },                                                                         \
         { "size",                                                                                  \
@@ -93,7 +93,7 @@ extern const struct key_type key_shape, key_orientation, key_size;
           offsetof(T, size),                                                                       \
           "-",                                                                                     \
           "1",                                                                                     \
-          "{\"uniform\": [1, 2]}",                                                                 \
+          "2",                                                                                     \
           "Scale factor of the shape; of a sieve curve it is half the aperture.",                  \
           .with = "shape",                                                                         \
           .without = "radius",                                                                     \

@@ -543,7 +543,7 @@ static const struct key form_key[] = {
     { "regular", &key_object, 0, "-", "-", "{\"sides\": 6, ...}",
       "A prism along z over a regular polygon; in 2D the polygon.", .choice = 1,
       .object = &regular_keys, .read = read_regular },
-    { "superquadric", &key_object, 0, "-", "-", "{\"radii\": [1, 2], ...}",
+    { "superquadric", &key_object, 0, "-", "-", "{\"radii\": ...}",
       "The polyhedron whose corners lie on (|x/a|^n + |y/b|^n)^(m/n) + |z/c|^m = 1, in 2D the "
       "polygon of |x/a|^n + |y/b|^n = 1.",
       .choice = 1, .object = &superquadric_keys, .read = read_superquadric },

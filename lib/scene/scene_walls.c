@@ -493,8 +493,8 @@ static const struct key room_key[] = {
       "Names of the walls: planes without a load of their own, and boxes. Other walls of the "
       "scene keep their motion." },
     { "pressure", &key_signal, 0, "Pa", "none", "1000",
-      "Mean pressure, which the size of the room yields to; in 2D in N/m. A signal is that of a "
-      "load. Default: the size does not yield.",
+      "Mean pressure that controls the size of the room; in 2D in N/m. A signal is that of a load. "
+      "Default: nothing controls the size.",
       .some = true },
     { "strain_rate", &key_vector, AT(rate), "1/s", "0", "[0.5, 0.5, -1]",
       "Rates at which the room becomes longer along x, y and z; a wall has that along its normal.",
