@@ -21,8 +21,9 @@ DESTDIR ?=
 CC      ?= cc
 CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
-# The manual that is made of cookbook/
+# The manuals that are made: of cookbook/, and of man/nsd-scene.5 and the keys of scenes
 COOKBOOK := build/man/nsd-cookbook.7
+SCENE    := build/man/nsd-scene.5
 
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
@@ -100,7 +101,7 @@ RANKS  := $(if $(MPI_PC),$(patsubst lib/%.c,$B/lib/%.o,$(wildcard lib/mpi/*.c) l
 MPI    := $(if $(MPI_PC),$B/nsd-step-mpi)
 CTEST := $(patsubst tests/%.c,$B/tests/%,$(wildcard tests/*/*_test.c))
 
-all: $(TOOLS) $(MPI) $B/nsd-fit $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
+all: $(TOOLS) $(MPI) $B/nsd-fit $B/libnsd.a $B/$(SONAME) $(COOKBOOK) $(SCENE)
 
 $B/tests/unit/fclib_test: TESTLIBS += -lfclib
 
@@ -166,7 +167,7 @@ $(RANKS): NSD_CFLAGS := $(MPI_H5) $(NSD_CFLAGS) $(MPI_PC)
 $B/nsd-step-mpi: $B/tools/nsd-step.o $B/lib/run/main.o $(RANKS) $B/internal.a
 	$(call Q,LD,$@)$(CC) $(NSD_LDFLAGS) $(LDFLAGS) -o $@ $^ $(MPI_PL) $(MPI_LD)
 
-tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK)
+tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) $(SCENE)
 
 # ---- set-up, checks, the demonstration ----
 
@@ -332,7 +333,7 @@ lint: lint-format lint-manuals lint-scripts lint-cppcheck lint-tidy
 lint-format:
 	clang-format --dry-run --Werror $(SOURCES)
 
-lint-manuals: $(COOKBOOK)
+lint-manuals: $(COOKBOOK) $(SCENE)
 	mandoc -T lint -W warning $(MANUALS)
 
 lint-scripts:
@@ -363,12 +364,17 @@ $(TIDY): lint-tidy-%:
 # ---- what is made for others ----
 
 # The manuals as HTML, in build/man
-MANUALS := $(wildcard man/*) $(COOKBOOK)
+MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
+
+# nsd-scene(5) has the tables of keys that nsd-gen knows
+$(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
+	@mkdir -p $(@D)
+	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
 
 # Links to manuals that are not ours become plain text.
 BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
@@ -376,7 +382,7 @@ LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" 
 
 docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
 
-build/man/nsd-cookbook.7.html: $(COOKBOOK)
+build/man/nsd-cookbook.7.html build/man/nsd-scene.5.html: build/man/%.html: build/man/%
 	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
 
 build/man/%.html: man/%

@@ -9,7 +9,7 @@ run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
 paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
-check=("${wall[@]}" python3-numpy perl libfclib-dev opencl-c-headers mandoc parallel time)
+check=("${wall[@]}" python3-numpy python3-jsonschema perl libfclib-dev opencl-c-headers mandoc parallel time)
 all=("${check[@]}" pandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format gcovr mmdebstrap
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev

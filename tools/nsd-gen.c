@@ -7,6 +7,7 @@
 #include "scene/scene_build.h"
 #include "scene/scene_carry.h"
 #include "scene/scene_height.h"
+#include "scene/schema.h"
 #include "scene/size_table.h"
 #include "scene/time_step.h"
 #include "state/servo_box.h"
@@ -21,7 +22,7 @@
 #define FAR 4 /* times the suggested time step: a scene's own is said to be too long from there */
 
 static int64_t dim = 3;
-static bool check;
+static bool check, schema, keys;
 static const char *from;
 
 static const struct cli_option own[] = {
@@ -31,12 +32,14 @@ static const struct cli_option own[] = {
       .help = "read a LAMMPS, LIGGGHTS or Yade file instead of a scene" },
     { CLI_FLAG, 0, "check", &check,
       .help = "print a suitable time step, masses and sizes as JSON, no document" },
+    { CLI_FLAG, 0, "schema", &schema, .help = "print the JSON Schema of scenes, no document" },
+    { CLI_FLAG, 0, "keys", &keys, .help = "print all keys of scenes as a table, no document" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
 
 const struct cli_tool tool = {
-    "nsd-gen", "N | SCENE.json | - | --from FILE",
+    "nsd-gen", "N | SCENE.json | - | --from FILE | --schema | --keys",
     "Builds a packing from a scene, or N balls of the sedimentation of the paper (500: its "
     "example\n"
     "3, 4: its example 2). Reads JSON, writes a document.",
@@ -47,6 +50,7 @@ const struct cli_tool tool = {
     "  jq '.mu = 0.5' scenes/paper/example3.json | nsd-gen - > rough.h5\n"
     "  nsd-gen --from dump.liggghts | nsd-step -n 1000 > out.h5\n"
     "  nsd-gen --check scenes/drum.json | jq .dt\n"
+    "  nsd-gen --keys | grep -i friction\n"
 };
 
 /* Reads the scene in a file, or in standard input (-), and sets the directory of its tables. */
@@ -356,6 +360,29 @@ static void tell(const struct scene *s, const struct packing *p)
     json_decref(j);
 }
 
+/* ---- the keys of scenes ---- */
+
+static void print_key(const char *const field[7])
+{
+    for (int i = 0; i < 7; i++) printf("%s%c", field[i], i < 6 ? '\t' : '\n');
+}
+
+static int print_keys(void)
+{
+    struct failure failure = { 0 };
+    if (keys) {
+        fputs("table\tkey\ttype\tunit\tdefault\texample\thelp\n", stdout);
+        schema_lines(print_key);
+    } else {
+        json_t *j = schema_of_scenes(&failure);
+        if (!j) die_why(&failure);
+        json_dumpf(j, stdout, JSON_INDENT(2)), putchar('\n');
+        json_decref(j);
+    }
+    if (fflush(stdout) || ferror(stdout)) die(EX_IOERR, "standard output: %s", strerror(errno));
+    return 0;
+}
+
 int tool_main(int argc, char **argv)
 {
     struct scene scene;
@@ -363,6 +390,9 @@ int tool_main(int argc, char **argv)
     struct writer *out = NULL;
     struct failure failure = { 0 };
     char *dir = NULL;
+    if ((schema || keys) && (argc || from || check || schema == keys))
+        die_usage("--schema and --keys stand alone");
+    if (schema || keys) return print_keys();
     if (from && argc) die_usage("--from takes the place of %s", argv[0]);
     if (!from && (argc != 1 || !*argv[0])) die_usage("one operand: a number of balls, or a scene");
     if (from && dim != 3)

@@ -155,7 +155,7 @@ static size_t write_path(const jnode *n, char *out, size_t room)
 
 int json_node_fault(jnode n, const char *format, ...)
 {
-    char way[200] = "", trouble[260]; // all keys of a scene have room
+    char way[200] = "", trouble[400]; // all keys of a scene have room
     int line, column;
     va_list ap;
     va_start(ap, format);
@@ -166,67 +166,6 @@ int json_node_fault(jnode n, const char *format, ...)
     line_and_column(&n, &line, &column);
     return failure_set(n.in->failure, EX_DATAERR, "%d:%d: %s%s%s", line, column, way,
                        length ? ": " : "", trouble);
-}
-
-/* ---- keys ---- */
-
-/* The next of the names, its length in *n; NULL after the last */
-static const char *next_name(const char *s, size_t *n)
-{
-    s += strspn(s, " ");
-    *n = strcspn(s, " ");
-    return *n ? s : NULL;
-}
-
-static bool json_node_is_among(const char *names, const char *key)
-{
-    size_t n;
-    for (const char *s = names; (s = next_name(s, &n)); s += n)
-        if (strlen(key) == n && !memcmp(s, key, n)) return true;
-    return false;
-}
-
-int json_node_only(jnode o, const char *names)
-{
-    const char *key;
-    json_t *value;
-    if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
-    json_object_foreach(
-        o.json, key,
-        value) if (strcmp(key, "comment") &&
-                   !json_node_is_among(
-                       names, key)) return json_node_fault(json_node_key(&o, key),
-                                                           "unknown key; known here: %s", names);
-    return 0;
-}
-
-int json_node_need(const jnode *o, const char *names)
-{
-    size_t n;
-    for (const char *s = names; (s = next_name(s, &n)); s += n) {
-        char key[32];
-        snprintf(key, sizeof key, "%.*s", (int)n, s);
-        if (!json_object_get(o->json, key))
-            return json_node_fault(json_node_key(o, key), "is missing");
-    }
-    return 0;
-}
-
-int json_node_choice(jnode o, const char *names)
-{
-    size_t n;
-    int i = 0, which = -1, found = 0;
-    for (const char *s = names; (s = next_name(s, &n)); s += n, i++) {
-        char key[32];
-        snprintf(key, sizeof key, "%.*s", (int)n, s);
-        if (json_object_get(o.json, key)) which = i, found++;
-    }
-    if (found == 1) return which;
-    json_node_fault(o,
-                    json_is_object(o.json) ? "needs one of the keys %s"
-                                           : "needs an object with one of the keys %s",
-                    names);
-    return -1;
 }
 
 /* ---- values ---- */

@@ -46,12 +46,6 @@ jnode json_node_item(const jnode *array, size_t index);
 /* Returns EX_DATAERR; the reason has the place of the node or of its nearest ancestor. */
 int json_node_fault(jnode node, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* Checks of an object's keys; names has blanks between. Each returns 0 or a fault's status. */
-int json_node_only(jnode object, const char *names);        /* these and "comment" are allowed */
-int json_node_need(const jnode *object, const char *names); /* all of these are needed */
-/* Exactly one of these is needed: returns which, from 0; -1: a fault. */
-int json_node_choice(jnode object, const char *names);
-
 /* Each returns 0 or the status of a fault. */
 int json_node_number(jnode node, enum json_range range, double *out);
 int json_node_integer(jnode node, int64_t least, int64_t most, int64_t *out);

@@ -1,141 +1,9 @@
 /*
  * scene/scene.h: a scene, what a packing is built from: a JSON object, checked, as a plain struct.
  *
- * SI units. A vector is [x, y, z], or [x, y] where dim is 2. Any object may have a
- * "comment". Unknown and repeated keys, wrong types and numbers out of range are errors, reported
- * as "line:column: path: trouble".
- *
- *   title     string
- *   dim       3 | 2                    [3] balls in space, or discs in the plane z = 0
- *   dt        number > 0 | "auto"      (needed) s; auto: by scene/time_step.h
- *   theta     0..1                     [0.5] of the theta-method
- *   gravity   vector                   [9.81 down the last axis] m/s^2
- *   seed      integer 0..2^32-1        [1] of the random numbers
- *   density   number > 0               [2500] kg/m^3 (kg/m^2 of discs)
- *   mu        number >= 0              [0] friction of every pair of kinds
- *   e_n, e_t  0..1                     [0] restitution, normal and tangential, of every pair
- *   kinds     { NAME: { density } }    kinds of material; "ball" and "wall" are always there
- *   pairs     [ { pair: [NAME, NAME], mu, e_n, e_t } ]       exceptions, each pair once
- *   time      number                   [0] s: of the packing; what moves by itself is where it then is
- *   overlap   true | false             [false] bodies may overlap at the start
- *   bodies    [ GROUP ]                [none]
- *   shapes    { NAME: SHAPE }          [none] shapes of grains; "ball" is always there
- *   walls     [ WALL ]                 [those of the first document among the bodies, else none]
- *   room      ROOM                     [none] walls whose size yields to a mean pressure, or changes by rates
- *   pour      [ POUR ]                 [none] grains that come, while the scene runs
- *   remove    [ REMOVAL ]              [none] grains that go
- *   cell      CELL or null             [that of the first document, else none] the box that repeats
- *
- * GROUP, one of
- *   { x: vector, radius: number }      one body
- *   { count: integer, radius: SIZE, box: BOX, cells, spacing, jitter, thermal }   a random lattice
- *   { random: { phi: 0..1 | count: integer }, radius: SIZE, box: BOX, thermal }   without a lattice:
- *                                      as many as fill phi of the box, or count
- *   { file: string }                   a table, one body a line: x y z r, or x y r where dim is 2;
- *                                      # begins a comment, the first may name columns, see below
- *   { document: string, frame: integer, at_rest: true | false }      the bodies of a document
- *                                      [nsd-format(5)]: frame [-1], -1 is the last, 0 the first
- *   { import: string, frame, at_rest, types: { "1": NAME, ... }, repeats: [true | false, ...] }   the balls of a
- *                                      file of another program [convert/import_file.h]: types are its numbers of
- *                                      materials [the kind of that name; "ball" where there is one type], repeats
- *                                      along which edges its box is periodic [as it says, else none]
- *   a relative name starts at the scene
- * with, for each of its bodies,
- *   v vector [0] m/s; w vector, or a number where dim is 2 [0] rad/s; kind NAME ["ball"];
- *   density [its kind's] or mass, kg; fixed true | false [false]: moves with v and w whatever
- *   happens, so that its mass does not matter. For a table or a document: [what it says]
- *   shape NAME [a ball], and then orientation "random" | rotation vector, rad, or an angle where dim is
- *   2 [as described], and in place of a radius, which is that of the ball around it, size SIZE [1]: how
- *   many times as large as described. x is its centre of mass. Not for a table or a document.
- *   name NAME [none; of a document: as it has them]: that of the group; several groups may have one
- * and for a lattice
- *   box      [the cell, in rows along its edges; else that of the first wall that is a BOX]
- *                                                      may be open only above (the last axis)
- *   cells    "equal" | "own" ["equal"]  all of one size, or each as its body needs it
- *   spacing  number >= 1 [1.05]        least edge of a cell, in largest diameters (own: in its own)
- *   jitter   0..1 [1]                  share of the free room in its cell that is used; no overlap
- *   thermal  number >= 0 [0]           m/s, standard deviation added to each component of v
- *
- * A table's first line may name its columns: "# x y z r kind", in any order. x y z and r or d (the
- * diameter) are needed; mass density vx vy vz wx wy wz qw qx qy qz id kind fixed may be there.
- *
- * SIZE, the radius in m: a number, or one of
- *   { uniform: [min, max] }
- *   { gaussian: { mean, sd, min, max } }           drawn again until it lies in [min, max]
- *   { lognormal: { median, sigma, min, max } }     sigma: of the logarithm
- *   { uniform_by_mass: [min, max] }                as much mass at every radius
- *   { power: { exponent, min, max } }              density by number: r^-exponent
- *   { sieve: [[size, passing], ...] }              share of the mass that passes a sieve of this
- *                                                  aperture (m, a diameter), from 0 to 1
- *
- * SHAPE, one of (m)
- *   { box: vector }                                sides along x, y (, z)
- *   { regular: { sides, radius, height } }         a prism along z, in the plane a polygon, no height
- *   { points: [vector, ...] }                      their convex hull
- *   { vertices: [vector, ...], faces: [[0, 1, 2, ...], ...] }     a convex polyhedron, as it is: corners
- *                                                  counterclockwise seen from outside
- *   { polygon: [[x, y], ...] }                     in the plane, convex, counterclockwise
- *     these with round m [0]: all points within that of it
- *   { capsule: { length, radius } }                length between the centres of its ends, along x
- *   { balls: [[x, y, z, r], ...] }                 a clump; in the plane [x, y, r]. In space with solid
- *                                                  { volume, centre, inertia: MATRIX }: what it stands for, of density 1
- *   { mesh: { file, scale }, clump: { balls: integer, error: 0..1 } }     balls that fill a closed surface
- *
- * BOX { x: [from, to], y: [from, to], z: [from, to] }: null is open, and so is an axis left out.
- *
- * WALL, a boundary: { point: vector, normal: vector } or { box: BOX }, or in space one of
- *   { rectangle: { center, normal, sides: [a, b], along } }   { disc: { center, normal, radius, hole } }
- *   { cylinder: { point, axis, radius, length, side, along, arc } }
- *   { cone: { point, axis, radii: [r, s], length, side, along, arc } }
- *   { sphere: { center, radius, side } }                      { mesh: { file, scale, at } }
- *   in the plane one of
- *   { segment: [[x, y], [x, y]] }      { polygon: { points: [[x, y], ...], closed } }
- *   { circle: { center, radius, side } }  { arc: { center, radius, along, arc, side } }
- *   with name NAME [none], velocity vector [0], kind ["wall"], drives [ DRIVE ], until s, weld m, wear 1/Pa and all
- *   but the box load. Several walls may have one name. Mesh and polygon may have parts: "groups", of the OBJ file, or
- *   [ { name: NAME, faces: [first, last] }, ... ], triangles or segments from 0 [state/names.h].
- *   Bodies stay on the side that the normal points to; in a box they stay inside.
- *   side inside [that] | outside | both. A boundary may yield to a load, on top of its motion:
- *   { along: vector, mass: kg, force: N [0], speed: m/s [0], travel: m [0] }  free along the vector
- *   { about: point, axis, mass: kg m^2, torque: N m [0], speed, travel }   about an axis there
- *   whose force or torque is a number or { table: [[t, N], ...], mean [0] } or
- *   { amplitude, frequency, phase, mean }.
- *   A plane may have { pressure: Pa, mass, speed, travel } instead, a number or such a signal: along its normal,
- *   times the face that the planes beside it leave. A mass that is left out is that of scene/time_step.h.
- *   Its weight is a force like others: gravity does not pull at boundaries.
- *
- * DRIVE { along: vector } or { about: point, axis: vector }, with speed, or amplitude, frequency and
- *   phase, or table [[t, way], ...]; from, until s [shape/drive.h]
- *
- * ROOM { walls: NAME or [NAME, ...], pressure: Pa, strain_rate: vector, center: vector, mass: kg, growth: 1/s, travel:
- *   [m, ...] }   planes that move in proportion to their distances from the center [state/servo_box.h]
- *   pressure    a number or a signal as of a load [none: the size does not yield]
- *   strain_rate 1/s, along the axes, extension is positive [0]; with a pressure its sum is 0
- *   center      [midway between opposite walls; where the room has only one of two, on the other]
- *   mass        of each wall, as of a load [scene/time_step.h]
- *   growth      1/s, of the size at the start [0];   travel, of each wall at the start [0]
- *
- * CELL { edges: [vector, ...] or lengths: vector [the first document's], repeats, origin, gradient, affine, stress }
- *   edges    dim of them, the cell's from its origin; lengths: along x, y, z
- *   repeats  [true | false, ...] [all true]   along which edges
- *   origin   vector [0]
- *   gradient MATRIX, 1/s, or [ { t: s, L: MATRIX } ], linear between and constant outside [0]: of
- *            velocity; the edges move with it, d edge/dt = L edge. MATRIX [[L_xx, L_xy], ...]
- *   affine   true | false [true with a gradient and no document]: at the start bodies have the
- *            velocity L (x - origin) as well
- *   stress   { pressure: Pa, mass: kg, factor }, { target: MATRIX, mass: kg, factor } or { mean: Pa, mass: kg,
- *            factor }: what edges yield to, as bodies of this mass [by rule: scene/time_step.h]; compression is positive, N/m in the plane. Number [i][j]: component
- *            i of edge j yields; null: it moves by the gradient. A pressure is one on the diagonal,
- *            of edges that repeat. mass may be a MATRIX of masses, of the same shape. A mean: the size of the
- *            cell yields, while the gradient changes its shape. factor [[t, x], ...]: multiplies the stress
- *
- * POUR { rate: bodies/s | mass_rate: kg/s, opening: { box: BOX } or { disc: { center, normal,
- *   radius } }, radius: SIZE, v, w, name, kind, density or mass, from [time] s, until s, count, and shape,
- *   size, orientation as of a group of bodies }
- *   [scene/inlet.h]; in the plane the disc is a segment.
- *
- * REMOVAL { outside: BOX } or { inside: BOX } or { below: { point, normal } } [anywhere], with kind [any], id integer
- *   or [integer, ...] [any], name of a group or of a pour [any], from, until s: bodies go whose centre is there.
+ * The objects of a scene, their keys and what these mean are in tables [scene/keys.h], which nsd-scene(5) prints. Any
+ * object may have a "comment". Unknown and repeated keys, wrong types and numbers out of range are errors, reported as
+ * "line:column: path: trouble".
  *
  * The paper's examples. The paper gives radii, mu, dt and (example 1) the initial velocity. Our
  * choices: density 2500 kg/m^3, g 9.81 m/s^2, e_n = e_t = 0, and
@@ -252,6 +120,7 @@ struct scene_mesh {
     int32_t wall;
     char *file;
     double scale;     /* m a unit of the file */
+    vec3 at;          /* m: where its origin is */
     bool groups;      /* the groups of the file are names of parts of the surface */
     int32_t left_out; /* triangles of the file that are not in the mesh */
 };
@@ -321,9 +190,16 @@ struct scene {
     int32_t fits;
     struct scene_fit *fit; /* [fits] clumps that were fitted to surfaces */
 
-    struct scene_files *files; /* while it is parsed */
-    bool rewritten;            /* the JSON, which now has what was in files */
-    char *text;                /* the JSON, without blanks outside strings */
+    /* while it is parsed: */
+    const char *title;
+    double density;          /* kg/m^3: of kinds that have none of their own */
+    struct scene_law common; /* of pairs that have none of their own */
+    bool boxed;              /* a wall is a box: */
+    struct scene_box box;    /* the first of them */
+    struct scene_files *files;
+
+    bool rewritten; /* the JSON, which now has what was in files */
+    char *text;     /* the JSON, without blanks outside strings */
 };
 
 /* Cells of a lattice along each axis, filled along x, then y, then z; and their edges (m). */

@@ -29,8 +29,7 @@ static int check_lattice(const jnode *o, int dim, const struct scene_bodies *b)
     if ((double)b->count <= places) return 0;
     return json_node_fault(
         json_node_key(o, "count"),
-        "%lld bodies, but the box has cells for %.0f: they need a height of %.4g m "
-        "along %s",
+        "%lld bodies, but the box has cells for %.0f: they need a height of %.4g m along %s",
         (long long)b->count, places, scene_lattice_height(b, dim), axis_name[dim - 1]);
 }
 
@@ -45,47 +44,152 @@ static int fill_cell(jnode o, const struct scene_cell *of, struct scene_bodies *
     return 0;
 }
 
-static int read_lattice(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
+#define AT(member) offsetof(struct scene_bodies, member)
+
+/* ---- what the bodies of every group have in common ---- */
+
+static const struct key group_key[] = {
+    { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
+    { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
+    { "kind", &key_kind, AT(kind), "-", "\"ball\"", "\"steel\"", "Kind of material." },
+    { "density", &key_positive, AT(density), "kg/m^3", "of the kind", "2600",
+      "Density; in 2D in kg/m^2." },
+    { "mass", &key_positive, AT(mass), "kg", "by density", "1e-3", "Mass, instead of density.",
+      .without = "density", .why = "density is given too" },
+    { "fixed", &key_bool, AT(fixed), "-", "false", "true",
+      "Move with the constant velocities v and w regardless of contacts." },
+    { "name", &key_group, AT(group), "-", "none", "\"charge\"",
+      "Name of the group, which each of its bodies has, see Names. Default: none; bodies of a "
+      "document keep theirs." },
+    { 0 },
+};
+
+static int finish_group(jnode o, struct scene *s, void *out)
+{
+    struct scene_bodies *b = out;
+    b->has_v = keys_has(&o, "v"), b->has_w = keys_has(&o, "w");
+    b->has_kind = keys_has(&o, "kind"), b->has_fixed = keys_has(&o, "fixed");
+    b->has_density = keys_has(&o, "density");
+    if (!b->has_density) b->density = s->kind[b->kind].density;
+    return 0;
+}
+
+static const struct keys group_keys = { "group", group_key, .finish = finish_group };
+
+/* ---- one body ---- */
+
+static const struct key one_key[] = {
+    { "x", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0.1]", "Position of the centre of mass." },
+    { "radius", &key_positive, AT(size.min), "m", REQUIRED, "1e-3",
+      "Radius; not required with a shape.", .unless = "shape" },
+    { "size", &key_positive, AT(size.min), "-", "1", "2", "Scale factor of the shape.",
+      .with = "shape", .without = "radius", .why = "a radius is given too" },
+    SHAPE_ROWS(struct scene_bodies),
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+
+static int finish_one(jnode o, struct scene *s, void *out)
+{
+    struct scene_bodies *b = out;
+    b->from = SCENE_ONE, b->count = 1;
+    if (!keys_has(&o, "radius")) b->size.min *= s->solid[b->form.shape].reach;
+    b->size.max = b->size.min;
+    return 0;
+}
+
+static const struct keys one_keys = { "body", one_key, .finish = finish_one };
+
+/* ---- a lattice ---- */
+
+static const struct key_type key_cells = { "\"equal\" or \"own\"", "{'enum': ['equal', 'own']}",
+                                           NULL, NULL };
+
+static int read_cells(jnode n, struct scene *s, void *member)
 {
     static const char *const cells[] = { "equal", "own", NULL };
     int own = 0;
-    if (json_node_only(o,
-                       "count radius size shape orientation box cells spacing jitter thermal v w "
-                       "kind density mass fixed name") ||
-        (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
-        json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &b->count) ||
-        scene_read_sizes(o, s, &b->form, &b->size) ||
-        json_node_word(json_node_key(&o, "cells"), cells, &own) ||
-        json_node_number(json_node_key(&o, "spacing"), J_ANY, &b->spacing) ||
-        json_node_number(json_node_key(&o, "jitter"), J_UNIT, &b->jitter) ||
-        json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
-        return 1;
-    if (!(b->spacing >= 1))
-        return json_node_fault(json_node_key(&o, "spacing"), "must be at least 1");
-    jnode box = json_node_key(&o, "box");
-    if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
-    if (own) b->from = SCENE_SHELVES;
-    if (!box.json && s->cell.given && own && !s->cell.goes_on)
+    (void)s;
+    if (json_node_word(n, cells, &own)) return 1;
+    if (own) *(enum scene_source *)member = SCENE_SHELVES;
+    return 0;
+}
+
+static const struct key lattice_key[] = {
+    { "count", &key_integer, AT(count), "-", REQUIRED, "500", "Number of bodies.",
+      .most = INT32_MAX },
+    GRAIN_ROWS(struct scene_bodies),
+    { "box", &key_box, AT(box), "m", "cell, wall", "{\"x\": [0, 1], ...}",
+      "Region to fill; only its last axis may be open above. Default: the periodic cell, in rows "
+      "along its edges; otherwise the first wall that is a box." },
+    { "cells", &key_cells, AT(from), "-", "\"equal\"", "\"own\"",
+      "equal: all cells have one size. own: each grain has a cell that fits it; grains are "
+      "sorted by size, and fill the box in rows and layers from below.",
+      .read = read_cells },
+    { "spacing", &key_number, AT(spacing), "-", "1.05", "1",
+      "Smallest edge of a cell, in largest diameters; with own cells, in diameters of the grain. "
+      "The cells fill the width of the box, and are as low as possible along the last axis.",
+      .least = 1, .most = INFINITY },
+    { "jitter", &key_share, AT(jitter), "-", "1", "0",
+      "Random displacement, as a fraction of the free space in the cell. It never makes bodies "
+      "overlap." },
+    { "thermal", &key_not_negative, AT(thermal), "m/s", "0", "0.5",
+      "Standard deviation of a random velocity that is added to each component." },
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+
+static int needs_box(jnode o, const struct scene *s)
+{
+    return keys_has(&o, "box") || s->boxed || s->cell.given
+               ? 0
+               : json_node_fault(json_node_key(&o, "box"), "is missing");
+}
+
+static int finish_lattice(jnode o, struct scene *s, void *out)
+{
+    struct scene_bodies *b = out;
+    const bool box = keys_has(&o, "box"), own = b->from == SCENE_SHELVES;
+    if (!own) b->from = SCENE_LATTICE;
+    if (needs_box(o, s) || scene_finish_grain(o, s, &b->form, &b->size)) return 1;
+    if (!box && s->cell.given && own && !s->cell.goes_on)
         return json_node_fault(o, "cells of their own need a box");
-    if (!box.json && (s->cell.given || s->cell.goes_on) && fill_cell(o, &s->cell, b)) return 1;
+    if (!box && (s->cell.given || s->cell.goes_on) && fill_cell(o, &s->cell, b)) return 1;
     return check_lattice(&o, s->dim, b);
 }
 
-static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_bodies *b)
+static const struct keys lattice_keys = { "lattice", lattice_key, .finish = finish_lattice };
+
+/* ---- a random packing ---- */
+
+static const struct key how_key[] = {
+    { "phi", &key_share, AT(phi), "-", "-", "0.5",
+      "As many bodies as fill this volume fraction of the box between the walls, at most 2^21.",
+      .choice = 1 },
+    { "count", &key_integer, AT(count), "-", "-", "500", "Number of bodies.", .choice = 1,
+      .most = INT32_MAX },
+    { 0 },
+};
+static const struct keys how_keys = { "random", how_key };
+
+static const struct key random_key[] = {
+    { "random", &key_object, 0, "-", REQUIRED, "{\"phi\": 0.5}", "How many bodies.",
+      .object = &how_keys },
+    GRAIN_ROWS(struct scene_bodies),
+    { "box", &key_box, AT(box), "m", "the cell", "{\"x\": [0, 1], ...}",
+      "Closed box. Default: the periodic cell, of any size and shape; bodies and their images "
+      "fill it across its border." },
+    { "thermal", &key_not_negative, AT(thermal), "m/s", "0", "0.5", "As for a lattice." },
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+
+static int finish_random(jnode o, struct scene *s, void *out)
 {
-    jnode how = json_node_key(&o, "random"), box = json_node_key(&o, "box");
-    if (json_node_only(o, "random radius size shape orientation box thermal v w kind density mass "
-                          "fixed name") ||
-        (!boxed && !s->cell.given && json_node_need(&o, "box")) ||
-        scene_read_sizes(o, s, &b->form, &b->size) ||
-        json_node_number(json_node_key(&o, "thermal"), J_NOT_NEGATIVE, &b->thermal))
-        return 1;
-    int which = json_node_choice(how, "phi count");
-    jnode phi = json_node_key(&how, "phi");
-    if (which < 0 || json_node_only(how, "phi count") || json_node_number(phi, J_UNIT, &b->phi) ||
-        json_node_integer(json_node_key(&how, "count"), 0, INT32_MAX, &b->count))
-        return 1;
-    if (box.json && scene_read_box(box, s->dim, &b->box)) return 1;
+    struct scene_bodies *b = out;
+    jnode box = json_node_key(&o, "box");
+    b->from = SCENE_RANDOM;
+    if (needs_box(o, s) || scene_finish_grain(o, s, &b->form, &b->size)) return 1;
     if (!box.json && s->cell.given && fill_cell(o, &s->cell, b)) return 1;
     for (int i = 0; i < s->dim; i++) {
         double width = b->box.hi[i] - b->box.lo[i];
@@ -99,24 +203,65 @@ static int read_random(jnode o, const struct scene *s, bool boxed, struct scene_
     return 0;
 }
 
-static int scene_bodies_read_document(jnode o, struct scene_bodies *b)
+static const struct keys random_keys = { "random_packing", random_key, .finish = finish_random };
+
+/* ---- files ---- */
+
+static const struct key table_key[] = {
+    { "file", &key_file, AT(file), "-", REQUIRED, "\"balls.txt\"",
+      "Text file, one body per line: x y z r (x y r in 2D), in m; # begins a comment." },
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+
+static int finish_table(jnode o, struct scene *s, void *out)
 {
-    const char *name = NULL;
-    if (json_node_only(o, "document frame at_rest v w kind density mass fixed name") ||
-        json_node_text(json_node_key(&o, "document"), &name) ||
-        json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
-        json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest))
-        return 1;
-    b->file = strdup(name);
-    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
+    (void)o, (void)s;
+    ((struct scene_bodies *)out)->from = SCENE_TABLE;
+    return 0;
 }
 
-/* "types": which kind each type of the file is */
-static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
+static const struct keys table_keys = { "table", table_key, .finish = finish_table };
+
+#define FRAME_ROWS                                                                                 \
+    { "frame",                                                                                     \
+      &key_integer,                                                                                \
+      AT(frame),                                                                                   \
+      "-",                                                                                         \
+      "-1",                                                                                        \
+      "10",                                                                                        \
+      "Frame, counted from 0, or from the end: -1 is the last.",                                   \
+      .least = -1000000000,                                                                        \
+      .most = 1000000000 },                                                                        \
+    {                                                                                              \
+        "at_rest", &key_bool, AT(at_rest), "-", "false", "true", "Set all velocities to 0."        \
+    }
+
+static const struct key document_key[] = {
+    { "document", &key_file, AT(file), "-", REQUIRED, "\"settled.h5\"",
+      "Document (nsd-format(5)) whose bodies are taken with their motion, radii, masses, ids and "
+      "the names of their kinds, which the scene must define, too." },
+    FRAME_ROWS,
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+
+static int finish_document(jnode o, struct scene *s, void *out)
 {
+    struct scene_bodies *b = out;
+    (void)s;
+    b->from = SCENE_DOCUMENT, b->foreign = keys_has(&o, "import");
+    return 0;
+}
+
+static const struct keys document_keys = { "document", document_key, .finish = finish_document };
+
+/* "types": which kind each type of the file is */
+static int read_types(jnode o, struct scene *s, void *out)
+{
+    struct scene_bodies *b = out;
     const char *name;
     json_t *value;
-    if (!o.json) return 0;
     if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {\"1\": NAME, ...}");
     if (!(b->type = scene_alloc(o, json_object_size(o.json), sizeof *b->type))) return 1;
     json_object_foreach(o.json, name, value)
@@ -125,279 +270,59 @@ static int read_types(jnode o, const struct scene *s, struct scene_bodies *b)
         if (!strcmp(name, "comment")) continue;
         if (!*name || strspn(name, "0123456789") != strlen(name))
             return json_node_fault(n, "types are whole numbers");
-        if (scene_read_kind(n, s, &b->type[b->types].kind)) return 1;
+        if (key_kind.read(n, NULL, s, &b->type[b->types].kind)) return 1;
         if (!(b->type[b->types++].name = strdup(name)))
             return failure_set(o.in->failure, EX_SOFTWARE, "no memory for the types of a file");
     }
     return 0;
 }
 
-static int scene_bodies_read_repeats(jnode o, int dim, struct scene_bodies *b)
+static int scene_bodies_read_repeats(jnode o, struct scene *s, void *out)
 {
-    size_t n;
-    if (!o.json) return 0;
-    if (json_node_array(o, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(o, "needs %d of true and false", dim);
+    struct scene_bodies *b = out;
     b->has_repeats = true;
-    for (size_t k = 0; k < n; k++)
-        if (json_node_bool(json_node_item(&o, k), &b->repeats[k])) return 1;
-    return 0;
+    return key_repeats.read(o, NULL, s, b->repeats);
 }
 
-static int read_import(jnode o, const struct scene *s, struct scene_bodies *b)
+static const struct key_type key_types = { "object", "{'$ref': 'types'}", NULL, NULL };
+
+static const struct key import_key[] = {
+    { "import", &key_file, AT(file), "-", REQUIRED, "\"start.data\"",
+      "File, see Files of other programs." },
+    FRAME_ROWS,
+    { "types", &key_types, 0, "-", "by name", "{\"1\": \"glass\"}",
+      "Kind for each type of the file. Default: the kind of the same name; ball where the file "
+      "has one type.",
+      .read = read_types },
+    { "repeats", &key_repeats, 0, "-", "of the file", "[true, true, false]",
+      "Periodic edges of the box of the file.", .read = scene_bodies_read_repeats },
+    { "", &key_include, 0, .object = &group_keys },
+    { 0 },
+};
+static const struct keys import_keys = { "import", import_key, .finish = finish_document };
+
+/* ---- "bodies" ---- */
+
+static const struct keys *const forms[] = {
+    &one_keys, &lattice_keys, &table_keys, &document_keys, &random_keys, &import_keys, NULL
+};
+const struct keys scene_bodies_keys = { "bodies", .forms = forms };
+
+static int read_group(jnode o, struct scene *s, void *out)
 {
-    const char *name = NULL;
-    if (json_node_only(o, "import frame at_rest types repeats v w kind density mass fixed name") ||
-        json_node_text(json_node_key(&o, "import"), &name) ||
-        json_node_integer(json_node_key(&o, "frame"), -1000000000, 1000000000, &b->frame) ||
-        json_node_bool(json_node_key(&o, "at_rest"), &b->at_rest) ||
-        read_types(json_node_key(&o, "types"), s, b) ||
-        scene_bodies_read_repeats(json_node_key(&o, "repeats"), s->dim, b))
-        return 1;
-    b->foreign = true, b->file = strdup(name);
-    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
+    int64_t *total = out;
+    struct scene_bodies *b = &s->bodies[s->groups++];
+    *b = (struct scene_bodies){ .form = { .turned = { 1, 0, 0, 0 }, .fill = 1 } };
+    if (s->boxed) b->box = s->box;
+    if (keys_read(o, &scene_bodies_keys, s, b)) return 1;
+    *total += b->count;
+    return *total <= INT32_MAX ? 0 : json_node_fault(o, "more than %d bodies", INT32_MAX);
 }
 
-static int read_one(jnode o, const struct scene *s, struct scene_bodies *b)
+int scene_read_bodies(jnode a, struct scene *s, void *out)
 {
-    b->count = 1;
-    jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
-    if (json_node_only(o, "x radius size shape orientation v w kind density mass fixed name") ||
-        json_node_vector(json_node_key(&o, "x"), s->dim, &b->x))
-        return 1;
-    if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
-    if (!b->form.shape && json_node_need(&o, "radius")) return 1;
-    b->size.min = 1;
-    if (json_node_number(radius.json ? radius : size, J_POSITIVE, &b->size.min)) return 1;
-    if (!radius.json) b->size.min *= s->solid[b->form.shape].reach;
-    b->size.max = b->size.min;
-    return 0;
-}
-
-static int scene_bodies_read_table(jnode o, struct scene_bodies *b)
-{
-    const char *name = NULL;
-    if (json_node_only(o, "file v w kind density mass fixed name") ||
-        json_node_text(json_node_key(&o, "file"), &name))
-        return 1;
-    b->file = strdup(name);
-    return b->file ? 0 : failure_set(o.in->failure, EX_SOFTWARE, "no memory for a file name");
-}
-
-int scene_read_spin(jnode n, int dim, vec3 *w)
-{
-    return dim == 2 ? json_node_number(n, J_ANY, &w->z) : json_node_vector(n, 3, w);
-}
-
-int scene_read_mass(const jnode *o, double *density, double *mass)
-{
-    jnode m = json_node_key(o, "mass"), d = json_node_key(o, "density");
-    if (m.json && d.json) return json_node_fault(m, "density is given too");
-    return json_node_number(d, J_POSITIVE, density) || json_node_number(m, J_POSITIVE, mass);
-}
-
-/* What the bodies of a group have in common */
-static int read_common(jnode o, struct scene *s, struct scene_bodies *b)
-{
-    if (scene_read_group(json_node_key(&o, "name"), s, &b->group) ||
-        json_node_vector(json_node_key(&o, "v"), s->dim, &b->v) ||
-        scene_read_spin(json_node_key(&o, "w"), s->dim, &b->w) ||
-        scene_read_kind(json_node_key(&o, "kind"), s, &b->kind))
-        return 1;
-    b->density = s->kind[b->kind].density;
-    b->has_v = json_node_key(&o, "v").json, b->has_w = json_node_key(&o, "w").json;
-    b->has_kind = json_node_key(&o, "kind").json, b->has_fixed = json_node_key(&o, "fixed").json;
-    b->has_density = json_node_key(&o, "density").json;
-    return scene_read_mass(&o, &b->density, &b->mass) ||
-           json_node_bool(json_node_key(&o, "fixed"), &b->fixed);
-}
-
-static int read_group(jnode o, struct scene *s, const struct scene_box *box, struct scene_bodies *b)
-{
-    static const enum scene_source from[] = { SCENE_ONE,      SCENE_LATTICE, SCENE_TABLE,
-                                              SCENE_DOCUMENT, SCENE_RANDOM,  SCENE_DOCUMENT };
-    *b = (struct scene_bodies){ .spacing = 1.05, .jitter = 1, .frame = -1, .form = { .fill = 1 } };
-    if (box) b->box = *box;
-    int which = json_node_choice(o, "x count file document random import");
-    if (which < 0) return 1;
-    b->from = from[which];
-    if (from[which] != SCENE_TABLE && from[which] != SCENE_DOCUMENT &&
-        scene_read_form(o, s, &b->form))
-        return 1;
-    int bad = which == 0   ? read_one(o, s, b)
-              : which == 1 ? read_lattice(o, s, box, b)
-              : which == 2 ? scene_bodies_read_table(o, b)
-              : which == 3 ? scene_bodies_read_document(o, b)
-              : which == 5 ? read_import(o, s, b)
-                           : read_random(o, s, box, b);
-    return bad || read_common(o, s, b);
-}
-
-int scene_read_bodies(jnode a, struct scene *s, const struct scene_box *box)
-{
-    size_t n;
     int64_t total = 0;
-    if (json_node_array(a, &n) || !(s->bodies = scene_alloc(a, n, sizeof *s->bodies))) return 1;
-    for (size_t i = 0; i < n; i++) {
-        jnode group = json_node_item(&a, i);
-        s->groups++;
-        if (read_group(group, s, box, &s->bodies[i])) return 1;
-        total += s->bodies[i].count;
-        if (total > INT32_MAX) return json_node_fault(group, "more than %d bodies", INT32_MAX);
-    }
-    return 0;
-}
-
-/* A SIZE from its JSON. */
-
-enum { MOST_EXPONENT = 20 };           /* of a power law */
-static const double MOST_RATIO = 1e6;  /* of radii of one law: no more is meant */
-static const double MOST_SIZE = 1e100; /* m: its volume is a number */
-
-static int read_uniform(jnode a, struct scene_size *z)
-{
-    size_t n;
-    if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "needs [min, max]");
-    if (json_node_number(json_node_item(&a, 0), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_item(&a, 1), J_POSITIVE, &z->max))
-        return 1;
-    return z->min <= z->max ? 0 : json_node_fault(a, "max is less than min");
-}
-
-/* Probability that a standard normal deviate is below z */
-static double scene_bodies_normal_below(double z)
-{
-    return 0.5 * erfc(-z * M_SQRT1_2);
-}
-
-/* A gaussian or lognormal distribution cut to [min, max], which must hold 1e-3 of it at least:
-   radii are drawn again until they lie in it. */
-static int read_bell(jnode o, struct scene_size *z)
-{
-    bool gauss = z->law == SIZE_GAUSSIAN;
-    const char *mid = gauss ? "mean" : "median", *spread = gauss ? "sd" : "sigma";
-    if (json_node_only(o, gauss ? "mean sd min max" : "median sigma min max") ||
-        json_node_need(&o, gauss ? "mean sd min max" : "median sigma min max") ||
-        json_node_number(json_node_key(&o, mid), gauss ? J_ANY : J_POSITIVE, &z->mid) ||
-        json_node_number(json_node_key(&o, spread), J_NOT_NEGATIVE, &z->spread) ||
-        json_node_number(json_node_key(&o, "min"), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_key(&o, "max"), J_POSITIVE, &z->max))
-        return 1;
-    if (z->min > z->max) return json_node_fault(json_node_key(&o, "max"), "is less than min");
-    double from = gauss ? z->min - z->mid : log(z->min / z->mid);
-    double to = gauss ? z->max - z->mid : log(z->max / z->mid);
-    bool enough = z->spread > 0 ? scene_bodies_normal_below(to / z->spread) -
-                                          scene_bodies_normal_below(from / z->spread) >
-                                      1e-3
-                                : from <= 0 && to >= 0;
-    return enough ? 0 : json_node_fault(o, "[min, max] keeps less than a thousandth of it");
-}
-
-static int read_power(jnode o, struct scene_size *z)
-{
-    if (json_node_only(o, "exponent min max") || json_node_need(&o, "exponent min max") ||
-        json_node_number(json_node_key(&o, "exponent"), J_ANY, &z->exponent) ||
-        json_node_number(json_node_key(&o, "min"), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_key(&o, "max"), J_POSITIVE, &z->max))
-        return 1;
-    if (!(fabs(z->exponent) <= MOST_EXPONENT))
-        return json_node_fault(json_node_key(&o, "exponent"), "must lie in [-%d, %d]",
-                               MOST_EXPONENT, MOST_EXPONENT);
-    if (z->min > z->max) return json_node_fault(json_node_key(&o, "max"), "is less than min");
-    return z->max <= MOST_RATIO * z->min
-               ? 0
-               : json_node_fault(o, "max is more than %g min", MOST_RATIO);
-}
-
-/* [size, passing] */
-static int read_point(jnode point, double *size, double *passing)
-{
-    size_t n;
-    if (json_node_array(point, &n)) return 1;
-    if (n != 2) return json_node_fault(point, "needs [size, passing]");
-    return json_node_number(json_node_item(&point, 0), J_POSITIVE, size) ||
-           json_node_number(json_node_item(&point, 1), J_UNIT, passing);
-}
-
-/* How many grains a share of the mass between the diameters a and b is, times a constant: its
-   integral of d^-dim over log d. In units of b^dim, so that nothing overflows. */
-static double scene_bodies_number_of(double share, double a, double b, int dim)
-{
-    double x = log(b / a) * dim;
-    return x > 0 ? share * expm1(x) / x : share;
-}
-
-static int read_sieve(jnode a, int dim, struct scene_size *z)
-{
-    size_t n;
-    double size[2] = { 0 }, passing[2] = { 0 };
-    if (json_node_array(a, &n)) return 1;
-    if (n < 2) return json_node_fault(a, "needs two points [size, passing] or more");
-    if (!(z->sieve = scene_alloc(a, n - 1, sizeof *z->sieve))) return 1;
-    z->dim = dim, z->segments = (int64_t)n - 1;
-    double sum = 0;
-    for (size_t i = 0; i < n; i++) {
-        jnode point = json_node_item(&a, i);
-        size[0] = size[1], passing[0] = passing[1];
-        if (read_point(point, &size[1], &passing[1])) return 1;
-        if (!i && passing[1] > 0)
-            return json_node_fault(point,
-                                   "the first sieve, of the smallest grains, must let nothing "
-                                   "pass: put [SIZE, 0] in front of it");
-        if (!i) z->min = 0.5 * size[1];
-        if (!i) continue;
-        if (size[1] < size[0] || passing[1] < passing[0])
-            return json_node_fault(point, "sizes and shares must not fall");
-        if (size[1] > 2 * MOST_RATIO * z->min)
-            return json_node_fault(point, "more than %g times the first", MOST_RATIO);
-        double grains = scene_bodies_number_of(passing[1] - passing[0], size[0], size[1], dim);
-        sum += grains * pow(2 * z->min / size[1], dim);
-        z->sieve[i - 1] = (struct scene_sieve){ 0.5 * size[0], 0.5 * size[1], sum };
-    }
-    z->max = 0.5 * size[1];
-    if (passing[1] != 1)
-        return json_node_fault(a,
-                               "the last sieve, of the largest grains, must let everything pass: "
-                               "put [SIZE, 1] behind it");
-    for (int64_t k = 0; k < z->segments; k++) z->sieve[k].below /= sum;
-    return 0;
-}
-
-static int scene_bodies_read_law(jnode n, int dim, struct scene_size *z)
-{
-    static const char laws[] = "uniform gaussian lognormal uniform_by_mass power sieve";
-    if (!json_is_object(n.json)) {
-        int bad = json_node_number(n, J_POSITIVE, &z->min);
-        z->max = z->min;
-        return bad;
-    }
-    int which = json_node_choice(n, laws);
-    if (which < 0 || json_node_only(n, laws)) return 1;
-    switch (which) {
-    case 0:
-        return read_uniform(json_node_key(&n, "uniform"), z);
-    case 1:
-        z->law = SIZE_GAUSSIAN;
-        return read_bell(json_node_key(&n, "gaussian"), z);
-    case 2:
-        z->law = SIZE_LOGNORMAL;
-        return read_bell(json_node_key(&n, "lognormal"), z);
-    case 3: // as much mass between r and r + dr wherever r is
-        z->law = SIZE_POWER, z->exponent = dim;
-        return read_uniform(json_node_key(&n, "uniform_by_mass"), z);
-    case 4:
-        z->law = SIZE_POWER;
-        return read_power(json_node_key(&n, "power"), z);
-    default:
-        z->law = SIZE_SIEVE;
-        return read_sieve(json_node_key(&n, "sieve"), dim, z);
-    }
-}
-
-int scene_read_size(jnode n, int dim, struct scene_size *z)
-{
-    if (!n.json) return 0;
-    if (scene_bodies_read_law(n, dim, z)) return 1;
-    return z->max <= MOST_SIZE ? 0 : json_node_fault(n, "above %g: too large", MOST_SIZE);
+    (void)out;
+    if (!(s->bodies = scene_alloc(a, json_array_size(a.json), sizeof *s->bodies))) return 1;
+    return keys_each(a, s, &total, read_group);
 }

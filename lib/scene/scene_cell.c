@@ -21,67 +21,83 @@ static int scene_cell_read_matrix(jnode n, int dim, double M[3][3], bool given[3
     return 0;
 }
 
-static int scene_cell_read_edges(jnode o, int dim, struct cell *c)
+static int read_lengths(jnode n, struct scene *s, void *member)
 {
-    jnode edges = json_node_key(&o, "edges");
-    size_t n = 0;
-    int which = json_node_choice(o, "edges lengths");
-    if (which < 0) return 1;
-    if (which == 1) {
-        vec3 length = v3(0, 0, 0);
-        jnode lengths = json_node_key(&o, "lengths");
-        if (json_node_vector(lengths, dim, &length)) return 1;
-        if (!(length.x > 0 && length.y > 0 && (dim == 2 || length.z > 0)))
-            return json_node_fault(lengths, "must be positive");
-        c->edge[0].x = length.x, c->edge[1].y = length.y;
-        if (dim == 3) c->edge[2].z = length.z;
-        return 0;
-    }
-    if (json_node_array(edges, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(edges, "needs %d vectors", dim);
-    for (size_t k = 0; k < n; k++)
-        if (json_node_vector(json_node_item(&edges, k), dim, &c->edge[k])) return 1;
+    vec3 length = v3(0, 0, 0), *edge = member;
+    if (json_node_vector(n, s->dim, &length)) return 1;
+    if (!(length.x > 0 && length.y > 0 && (s->dim == 2 || length.z > 0)))
+        return json_node_fault(n, "must be positive");
+    edge[0].x = length.x, edge[1].y = length.y;
+    if (s->dim == 3) edge[2].z = length.z;
     return 0;
 }
 
-static int scene_cell_read_repeats(jnode a, int dim, struct cell *c)
+static int read_edges(jnode a, struct scene *s, void *member)
 {
     size_t n = 0;
-    for (int k = 0; k < dim; k++) c->repeats[k] = true;
-    if (!a.json) return 0;
     if (json_node_array(a, &n)) return 1;
-    if (n != (size_t)dim) return json_node_fault(a, "needs true or false for %d edges", dim);
+    if (n != (size_t)s->dim) return json_node_fault(a, "needs %d vectors", s->dim);
     for (size_t k = 0; k < n; k++)
-        if (json_node_bool(json_node_item(&a, k), &c->repeats[k])) return 1;
-    return cell_repeats(c) ? 0 : json_node_fault(a, "no edge is periodic");
+        if (json_node_vector(json_node_item(&a, k), s->dim, (vec3 *)member + k)) return 1;
+    return 0;
 }
 
-static int read_moment(jnode o, int dim, struct cell_gradient *g)
-{
-    return json_node_only(o, "t L") || json_node_need(&o, "t L") ||
-           json_node_number(json_node_key(&o, "t"), J_ANY, &g->t) ||
-           scene_cell_read_matrix(json_node_key(&o, "L"), dim, g->L, NULL);
-}
-
-static int read_gradient(jnode a, int dim, struct cell *c)
+static int read_repeats(jnode a, const struct key *k, struct scene *s, void *member)
 {
     size_t n = 0;
-    if (!a.json) return 0;
+    (void)k;
+    if (json_node_array(a, &n)) return 1;
+    if (n != (size_t)s->dim) return json_node_fault(a, "needs true or false for %d edges", s->dim);
+    for (size_t i = 0; i < n; i++)
+        if (json_node_bool(json_node_item(&a, i), (bool *)member + i)) return 1;
+    return 0;
+}
+
+const struct key_type key_repeats = { "array", "{'$ref': 'repeats'}", read_repeats, NULL };
+
+/* ---- the gradient ---- */
+
+static int read_L(jnode n, struct scene *s, void *member)
+{
+    return scene_cell_read_matrix(n, s->dim, ((struct cell_gradient *)member)->L, NULL);
+}
+
+static const struct key_type key_matrix = { "MATRIX", "{'$ref': 'matrix'}", NULL, NULL };
+
+static const struct key moment_key[] = {
+    { "t", &key_number, offsetof(struct cell_gradient, t), "s", REQUIRED, "0", "Time." },
+    { "L", &key_matrix, 0, "1/s", REQUIRED, "[[0, 1], [0, 0]]", "Velocity gradient at this time.",
+      .read = read_L },
+    { 0 },
+};
+static const struct keys moment_keys = { "gradient", moment_key };
+
+static int read_gradient(jnode a, struct scene *s, void *out)
+{
+    struct cell *c = &((struct scene_cell *)out)->cell;
+    size_t n = 0;
     if (json_node_array(a, &n)) return 1;
     bool table = n && json_is_object(json_node_item(&a, 0).json);
     if (!table) n = 1;
     if (!(c->gradient = scene_alloc(a, n, sizeof *c->gradient))) return 1;
     c->gradients = (int32_t)n;
-    if (!table) return scene_cell_read_matrix(a, dim, c->gradient[0].L, NULL);
+    if (!table) return scene_cell_read_matrix(a, s->dim, c->gradient[0].L, NULL);
     for (size_t m = 0; m < n; m++) {
         jnode moment = json_node_item(&a, m);
-        if (read_moment(moment, dim, &c->gradient[m])) return 1;
+        if (keys_read(moment, &moment_keys, s, &c->gradient[m])) return 1;
         if (m && !(c->gradient[m].t > c->gradient[m - 1].t))
             return json_node_fault(json_node_key(&moment, "t"),
                                    "must be later than the one before");
     }
     return 0;
 }
+
+static const struct key_type key_gradient = { "MATRIX or array",
+                                              "{'anyOf': [{'$ref': 'matrix'}, {'type': 'array', "
+                                              "'items': {'$ref': 'gradient'}, 'minItems': 1}]}",
+                                              NULL, NULL, &moment_keys };
+
+/* ---- the stress ---- */
 
 /* Each entry of a symmetric matrix may be given at one of its two places, or alike at both. */
 static int set_target(jnode n, int dim, double target[3][3], bool given[3][3], struct cell *c)
@@ -121,10 +137,11 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out
 }
 
 /* [[t, x], ...]: by what the stress is multiplied */
-static int read_factor(jnode a, struct cell *c)
+static int read_factor(jnode a, struct scene *s, void *out)
 {
+    struct cell *c = &((struct scene_cell *)out)->cell;
     size_t n = 0, two = 0;
-    if (!a.json) return 0;
+    (void)s;
     if (json_node_array(a, &n)) return 1;
     if (!n || n >= 1 << 24) return json_node_fault(a, "needs [[time, factor], ...]");
     if (!(c->factor = scene_alloc(a, n, sizeof *c->factor))) return 1;
@@ -148,9 +165,7 @@ static int read_mean(jnode o, int dim, struct scene_cell *out)
     struct cell *c = &out->cell;
     jnode mass = json_node_key(&o, "mass"), mean = json_node_key(&o, "mean");
     double one = 1;
-    if (json_node_number(mean, J_ANY, &c->mean) ||
-        (mass.json && json_node_number(mass, J_POSITIVE, &one)))
-        return 1;
+    if (mass.json && json_node_number(mass, J_POSITIVE, &one)) return 1;
     for (int k = 0; k < dim; k++)
         if (!c->repeats[k])
             return json_node_fault(
@@ -170,50 +185,129 @@ static int read_mean(jnode o, int dim, struct scene_cell *out)
     return 0;
 }
 
-static int read_stress(jnode o, int dim, struct scene_cell *out)
+/* What needs several keys is read in finish_stress(). */
+static const struct key_type key_pressure = { "number", "{'type': 'number'}", scene_read_later,
+                                              NULL };
+static const struct key_type key_target = { "MATRIX", "{'$ref': 'loose_matrix'}", scene_read_later,
+                                            NULL };
+static const struct key_type key_factor = { "[[t, x], ...]", "{'$ref': 'rows'}", NULL, NULL };
+static const struct key_type key_masses = {
+    "number or MATRIX",
+    "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'loose_matrix'}]}",
+    scene_read_later, NULL
+};
+
+static const struct key stress_key[] = {
+    { "pressure", &key_pressure, 0, "Pa", "-", "1",
+      "The same stress on the diagonal, for periodic edges.", .choice = 1 },
+    { "target", &key_target, 0, "Pa", "-", "[[1, null], ...]",
+      "Stress by component: row i and column j belong to component i of edge j; null leaves it "
+      "to the gradient.",
+      .choice = 1 },
+    { "mean", &key_number, offsetof(struct scene_cell, cell.mean), "Pa", "-", "1",
+      "Mean stress under which the size of the cell changes, all edges in proportion. The "
+      "gradient, whose trace must be 0, changes the shape: a test at constant mean stress. All "
+      "edges must be periodic.",
+      .choice = 1 },
+    { "factor", &key_factor, 0, "s, 1", "1", "[[0, 0], [1, 1]]",
+      "Multiply the stress by x, linear between these times, constant before and after: a load "
+      "that increases without a shock, in stages, or in cycles.",
+      .read = read_factor },
+    { "mass", &key_masses, 0, "kg", "see below", "10",
+      "Mass with which an edge moves under the difference between the target and the mean stress "
+      "of the contacts, see nsd-methods(7), \"Loads\". With mean it is a number. Default: 3/(4 "
+      "pi^2) of the mass of the bodies in the cell, with which an edge does not oscillate faster "
+      "than a wave crosses the cell." },
+    { 0 },
+};
+
+static int finish_stress(jnode o, struct scene *s, void *out)
 {
-    struct cell *c = &out->cell;
+    struct scene_cell *to = out;
+    struct cell *c = &to->cell;
+    const int dim = s->dim;
     double target[3][3] = { { 0 } };
     bool yields[3][3] = { { false } };
-    if (!o.json) return 0;
-    int which = json_node_choice(o, "pressure target mean");
-    if (which < 0 || json_node_only(o, "pressure target mean mass factor") ||
-        read_factor(json_node_key(&o, "factor"), c))
-        return 1;
-    if (which == 2) return read_mean(o, dim, out);
+    if (keys_has(&o, "mean")) return read_mean(o, dim, to);
     jnode pressure = json_node_key(&o, "pressure"), matrix = json_node_key(&o, "target");
-    if (which == 1 && scene_cell_read_matrix(matrix, dim, target, yields)) return 1;
-    for (int k = 0; which == 0 && k < dim; k++) {
+    if (matrix.json && scene_cell_read_matrix(matrix, dim, target, yields)) return 1;
+    for (int k = 0; pressure.json && k < dim; k++) {
         yields[k][k] = c->repeats[k];
         if (json_node_number(pressure, J_ANY, &target[k][k])) return 1;
     }
-    if (set_target(which == 1 ? matrix : pressure, dim, target, yields, c)) return 1;
-    return read_mass(json_node_key(&o, "mass"), dim, yields, out);
+    if (set_target(matrix.json ? matrix : pressure, dim, target, yields, c)) return 1;
+    return read_mass(json_node_key(&o, "mass"), dim, yields, to);
 }
 
-int scene_read_cell(jnode o, int dim, double t, bool documents, struct scene_cell *out)
+static const struct keys stress_keys = { "stress", stress_key, .finish = finish_stress };
+
+/* ---- the cell ---- */
+
+#define AT(member) offsetof(struct scene_cell, member)
+
+static const struct key_type key_edges = { "array of vectors", "{'$ref': 'edges'}", NULL, NULL };
+static const struct key_type key_lengths = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
+
+static const struct key cell_key[] = {
+    { "edges", &key_edges, AT(cell.edge), "m", "of a document", "[[1, 0], [0, 1]]",
+      "Edges from the origin; they need not be perpendicular. Default: those of the first "
+      "document, and then origin and repeats, too; load-controlled edges keep their speed.",
+      .choice = -1, .read = read_edges },
+    { "lengths", &key_lengths, AT(cell.edge), "m", "-", "[1, 1, 1]",
+      "Edges along x, y and z, instead of edges.", .choice = -1, .read = read_lengths },
+    { "repeats", &key_repeats, AT(cell.repeats), "-", "all true", "[true, false]",
+      "Periodic edges; others only bound a lattice." },
+    { "origin", &key_vector, AT(cell.origin), "m", "0", "[0, 0]",
+      "Corner from which the edges start." },
+    { "gradient", &key_gradient, 0, "1/s", "0", "[[0, 1], [0, 0]]",
+      "Velocity gradient L, d edge/dt = L edge: [[0, G], [0, 0]] is simple shear, [[-A, 0], [0, "
+      "-A]] compression. As a function of time: [{\"t\": s, \"L\": MATRIX}, ...], linear between "
+      "the entries and constant before and after.",
+      .read = read_gradient },
+    { "affine", &key_bool, AT(affine), "-", "see below", "true",
+      "Give free bodies the velocity L (x - origin) at the start, in addition to their own. "
+      "Default: true if there is a gradient and no document among the bodies. Without it, bodies "
+      "at rest would slide relative to their images." },
+    { "stress", &key_object, 0, "-", "none", "{\"pressure\": 1}", "Stress control, see below.",
+      .object = &stress_keys },
+    { 0 },
+};
+const struct keys scene_cell_keys = { "cell", cell_key };
+
+const struct key_type key_cell = { "object or null",
+                                   "{'anyOf': [{'type': 'null'}, {'$ref': 'cell'}]}", NULL, NULL,
+                                   &scene_cell_keys };
+
+static bool takes_documents(jnode bodies)
 {
+    bool any = false;
+    for (size_t k = 0; k < json_array_size(bodies.json); k++)
+        any = any || json_object_get(json_array_get(bodies.json, k), "document") ||
+              json_object_get(json_array_get(bodies.json, k), "import");
+    return any;
+}
+
+int scene_read_cell(jnode o, struct scene *s, void *member)
+{
+    struct scene_cell *out = member;
     struct cell *c = &out->cell;
     struct failure failure = { 0 };
     *c = cell_none();
     if (!o.json) return 0;
     if (json_is_null(o.json)) return out->none = true, 0;
+    const bool documents = takes_documents(json_node_key(o.up, "bodies"));
+    const bool sized = keys_has(&o, "edges") || keys_has(&o, "lengths");
     out->given = true;
-    out->repeats = json_node_key(&o, "repeats").json;
-    out->origin = json_node_key(&o, "origin").json;
-    out->affine =
-        !documents && json_node_key(&o, "gradient").json; // or the border would be a slip plane
-    out->goes_on =
-        documents && !json_node_key(&o, "edges").json && !json_node_key(&o, "lengths").json;
-    if (json_node_only(o, "edges lengths repeats origin gradient affine stress") ||
-        (!out->goes_on && scene_cell_read_edges(o, dim, c)) ||
-        scene_cell_read_repeats(json_node_key(&o, "repeats"), dim, c) ||
-        json_node_vector(json_node_key(&o, "origin"), dim, &c->origin) ||
-        read_gradient(json_node_key(&o, "gradient"), dim, c) ||
-        json_node_bool(json_node_key(&o, "affine"), &out->affine) ||
-        read_stress(json_node_key(&o, "stress"), dim, out))
-        return 1;
+    out->repeats = keys_has(&o, "repeats"), out->origin = keys_has(&o, "origin");
+    out->affine = !documents && keys_has(&o, "gradient"); // or the border would be a slip plane
+    out->goes_on = documents && !sized;
+    for (int k = 0; k < s->dim; k++) c->repeats[k] = true;
+    if (json_is_object(o.json) && !out->goes_on && !sized)
+        return json_node_fault(o, "needs one of the keys edges lengths");
+    if (keys_read(o, &scene_cell_keys, s, out)) return 1;
+    if (!cell_repeats(c))
+        return json_node_fault(json_node_key(&o, "repeats"), "no edge is periodic");
     if (out->goes_on) return 0;
-    cell_set_rate(c, t);
-    return cell_check(c, dim, 0, &failure) ? json_node_fault(o, "%s", failure.text) : 0;
+    cell_set_rate(c, s->t);
+    return cell_check(c, s->dim, 0, &failure) ? json_node_fault(o, "%s", failure.text) : 0;
 }

@@ -4,78 +4,125 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int scene_flow_read_disc(jnode o, int dim, struct scene_pour *p)
-{
-    p->disc = true;
-    return json_node_only(o, "center normal radius") ||
-           json_node_need(&o, "center normal radius") ||
-           json_node_vector(json_node_key(&o, "center"), dim, &p->center) ||
-           scene_read_direction(json_node_key(&o, "normal"), dim, &p->normal) ||
-           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &p->radius);
-}
-
-static int read_opening(jnode o, int dim, struct scene_pour *p)
-{
-    int which = json_node_choice(o, "box disc");
-    if (which < 0 || json_node_only(o, "box disc")) return 1;
-    if (which == 1) return scene_flow_read_disc(json_node_key(&o, "disc"), dim, p);
-    jnode box = json_node_key(&o, "box");
-    if (scene_read_box(box, dim, &p->box)) return 1;
-    for (int i = 0; i < dim; i++)
-        if (!isfinite(p->box.hi[i] - p->box.lo[i]))
-            return json_node_fault(box, "an opening needs a closed box, %s is open", axis_name[i]);
-    return 0;
-}
-
 /* What a pour or a removal has done before the scene begins, as nsd-info --scene prints it */
-static int read_passage(jnode o, struct flow_count *p)
-{
-    if (!o.json) return 0;
-    return json_node_only(o, "bodies mass") || json_node_need(&o, "bodies mass") ||
-           json_node_integer(json_node_key(&o, "bodies"), 0, INT64_MAX, &p->bodies) ||
-           json_node_number(json_node_key(&o, "mass"), J_NOT_NEGATIVE, &p->mass);
-}
 
-static int read_pour(jnode o, struct scene *s, struct scene_pour *p)
-{
-    int64_t count = -1;
-    *p = (struct scene_pour){ .until = INFINITY, .count = INFINITY };
-    int which = json_node_choice(o, "rate mass_rate");
-    if (which < 0 ||
-        json_node_only(
-            o, "rate mass_rate opening radius size shape orientation v w name kind density mass "
-               "from until count poured") ||
-        read_passage(json_node_key(&o, "poured"), &p->poured) || json_node_need(&o, "opening") ||
-        scene_read_form(o, s, &p->form))
-        return 1;
-    p->by_mass = which == 1;
-    if (json_node_number(json_node_key(&o, which ? "mass_rate" : "rate"), J_POSITIVE, &p->rate) ||
-        read_opening(json_node_key(&o, "opening"), s->dim, p) ||
-        scene_read_sizes(o, s, &p->form, &p->size) ||
-        json_node_vector(json_node_key(&o, "v"), s->dim, &p->v) ||
-        scene_read_spin(json_node_key(&o, "w"), s->dim, &p->w) ||
-        scene_read_group(json_node_key(&o, "name"), s, &p->group) ||
-        scene_read_kind(json_node_key(&o, "kind"), s, &p->kind) ||
-        json_node_number(json_node_key(&o, "from"), J_ANY, &p->from) ||
-        json_node_number(json_node_key(&o, "until"), J_ANY, &p->until) ||
-        json_node_integer(json_node_key(&o, "count"), 0, INT32_MAX, &count))
-        return 1;
-    if (count >= 0) p->count = (double)count;
-    // nothing is due from before the scene begins, but to a pour that has begun
-    if (!json_node_key(&o, "poured").json) p->from = fmax(p->from, s->t);
-    p->density = s->kind[p->kind].density;
-    return scene_read_mass(&o, &p->density, &p->mass);
-}
+static const struct key count_key[] = {
+    { "bodies", &key_integer, offsetof(struct flow_count, bodies), "-", REQUIRED, "25",
+      "Their number.", .most = 0x1p53 },
+    { "mass", &key_not_negative, offsetof(struct flow_count, mass), "kg", REQUIRED, "0.4",
+      "Their mass." },
+    { 0 },
+};
+static const struct keys count_keys = { "count", count_key };
 
-int scene_read_pours(jnode a, struct scene *s)
+/* ---- pours ---- */
+
+#define AT(member) offsetof(struct scene_pour, member)
+
+static const struct key disc_key[] = {
+    { "center", &key_vector, AT(center), "m", REQUIRED, "[0, 0, 1]", "Centre." },
+    { "normal", &key_direction, AT(normal), "-", REQUIRED, "[0, 0, 1]", "Direction of its axis." },
+    { "radius", &key_positive, AT(radius), "m", REQUIRED, "0.1", "Radius." },
+    { 0 },
+};
+
+static int finish_disc(jnode o, struct scene *s, void *out)
 {
-    size_t n;
-    if (json_node_array(a, &n) || !(s->pour = scene_alloc(a, n, sizeof *s->pour))) return 1;
-    if (n > 1000) return json_node_fault(a, "more than 1000 pours");
-    for (size_t i = 0; i < n; i++)
-        if (read_pour(json_node_item(&a, i), s, &s->pour[s->pours++])) return 1;
+    (void)o, (void)s;
+    ((struct scene_pour *)out)->disc = true;
     return 0;
 }
+
+static const struct keys disc_keys = { "opening_disc", disc_key, .finish = finish_disc };
+
+static const struct key opening_key[] = {
+    { "box", &key_box, AT(box), "m", "-", "{\"x\": [0, 1], ...}", "A closed box.", .choice = 1 },
+    { "disc", &key_object, 0, "-", "-", "{\"center\": ...}", "A disc; in 2D a segment.",
+      .choice = 1, .object = &disc_keys },
+    { 0 },
+};
+
+static int finish_opening(jnode o, struct scene *s, void *out)
+{
+    const struct scene_pour *p = out;
+    for (int i = 0; i < s->dim && !p->disc; i++)
+        if (!isfinite(p->box.hi[i] - p->box.lo[i]))
+            return json_node_fault(json_node_key(&o, "box"),
+                                   "an opening needs a closed box, %s is open", axis_name[i]);
+    return 0;
+}
+
+static const struct keys opening_keys = { "opening", opening_key, .finish = finish_opening };
+
+static int read_count(jnode n, struct scene *s, void *member)
+{
+    int64_t count = 0;
+    (void)s;
+    if (json_node_integer(n, 0, INT32_MAX, &count)) return 1;
+    *(double *)member = (double)count;
+    return 0;
+}
+
+static const struct key pour_key[] = {
+    { "rate", &key_positive, AT(rate), "1/s", "-", "500", "Number of bodies per second.",
+      .choice = 1 },
+    { "mass_rate", &key_positive, AT(rate), "kg/s", "-", "0.1", "Mass per second, instead of rate.",
+      .choice = 1 },
+    { "opening", &key_object, 0, "m", REQUIRED, "{\"box\": BOX}", "Region in which centres appear.",
+      .object = &opening_keys },
+    GRAIN_ROWS(struct scene_pour),
+    { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
+    { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
+    { "name", &key_group, AT(group), "-", "none", "\"charge\"",
+      "Name of the group that the new bodies belong to. Several pours and groups of bodies may "
+      "have the same name." },
+    { "kind", &key_kind, AT(kind), "-", "\"ball\"", "\"steel\"", "Kind of material." },
+    { "density", &key_positive, AT(density), "kg/m^3", "of the kind", "2600",
+      "Density; in 2D in kg/m^2." },
+    { "mass", &key_positive, AT(mass), "kg", "by density", "1e-3",
+      "Mass of a body, instead of density.", .without = "density", .why = "density is given too" },
+    { "from", &key_number, AT(from), "s", "start", "0", "Start of the pour." },
+    { "until", &key_number, AT(until), "s", "never", "1", "End of the pour." },
+    { "count", &key_integer, AT(count), "-", "no limit", "1000", "Largest number of bodies.",
+      .most = INT32_MAX, .read = read_count },
+    { "poured", &key_object, AT(poured), "-", "none", "see below",
+      "Number and mass of the bodies that were added before the scene begins, as {\"bodies\": "
+      "25, \"mass\": 0.4}: the pour continues with the next one. from is then the time at which "
+      "the pour started.",
+      .object = &count_keys },
+    { 0 },
+};
+
+static int finish_pour(jnode o, struct scene *s, void *out)
+{
+    struct scene_pour *p = out;
+    p->by_mass = keys_has(&o, "mass_rate");
+    // nothing is due from before the scene begins, but to a pour that has begun
+    if (!keys_has(&o, "poured")) p->from = fmax(p->from, s->t);
+    if (!keys_has(&o, "density")) p->density = s->kind[p->kind].density;
+    return scene_finish_grain(o, s, &p->form, &p->size);
+}
+
+const struct keys scene_pour_keys = { "pour", pour_key, .finish = finish_pour };
+
+static int read_pour(jnode o, struct scene *s, void *out)
+{
+    struct scene_pour *p = &s->pour[s->pours++];
+    (void)out;
+    *p = (struct scene_pour){ .until = INFINITY,
+                              .count = INFINITY,
+                              .form = { .turned = { 1, 0, 0, 0 }, .fill = 1 } };
+    return keys_read(o, &scene_pour_keys, s, p);
+}
+
+int scene_read_pours(jnode a, struct scene *s, void *out)
+{
+    const size_t n = json_array_size(a.json);
+    if (!(s->pour = scene_alloc(a, n, sizeof *s->pour))) return 1;
+    return n > 1000 ? json_node_fault(a, "more than 1000 pours") : keys_each(a, s, out, read_pour);
+}
+
+/* ---- removals ---- */
 
 static int scene_flow_by_number(const void *a, const void *b)
 {
@@ -84,13 +131,13 @@ static int scene_flow_by_number(const void *a, const void *b)
 }
 
 /* One number of a body, or several */
-static int read_ids(jnode a, struct scene_removal *r)
+static int read_ids(jnode a, struct scene *s, void *out)
 {
+    struct scene_removal *r = out;
     bool many = json_is_array(a.json);
-    size_t n = 1;
+    size_t n = many ? json_array_size(a.json) : 1;
     int64_t id = 0;
-    if (!a.json) return 0;
-    if (many && json_node_array(a, &n)) return 1;
+    (void)s;
     if (!n || n > INT32_MAX) return json_node_fault(a, "needs the numbers of bodies");
     if (!(r->id = scene_alloc(a, n, sizeof *r->id))) return 1;
     for (size_t k = 0; k < n; k++) {
@@ -101,49 +148,68 @@ static int read_ids(jnode a, struct scene_removal *r)
     return 0;
 }
 
-/* Which bodies go, wherever they are */
-static int read_which(jnode o, struct scene *s, struct scene_removal *r)
+#undef AT
+#define AT(member) offsetof(struct scene_removal, member)
+
+static const struct key below_key[] = {
+    { "point", &key_vector, AT(point), "m", REQUIRED, "[0, 0, 0]", "Point of the plane." },
+    { "normal", &key_direction, AT(normal), "-", REQUIRED, "[0, 0, 1]", "Its normal." },
+    { 0 },
+};
+static const struct keys below_keys = { "below", below_key };
+
+static const struct key_type key_ids = { "integer or array", "{'$ref': 'ids'}", NULL, NULL };
+
+static const struct key removal_key[] = {
+    { "outside", &key_box, AT(box), "m", "-", "{\"x\": [-1, 1]}",
+      "Remove bodies whose centre is outside this box.", .choice = -1, .some = true },
+    { "inside", &key_box, AT(box), "m", "-", "{\"z\": [null, 0]}",
+      "Remove bodies whose centre is inside this box.", .choice = -1, .some = true },
+    { "below", &key_object, 0, "m", "-", "{\"point\": [0, 0, 0], ...}",
+      "Remove bodies whose centre is below this plane, on the side away from its normal.",
+      .choice = -1, .some = true, .object = &below_keys },
+    { "kind", &key_kind, AT(kind), "-", "all", "\"steel\"", "Remove bodies of this kind only.",
+      .some = true },
+    { "id", &key_ids, 0, "-", "all", "[3, 17]", "Remove bodies with these ids only.", .some = true,
+      .read = read_ids },
+    { "name", &key_group, AT(group), "-", "all", "\"charge\"",
+      "Remove bodies of this group only. It is the name of a group of bodies or of a pour; "
+      "another name is an error.",
+      .some = true },
+    FROM_AND_UNTIL("Time of the first removals: steps that begin earlier remove nothing.",
+                   "Time of the last removals."),
+    { "removed", &key_object, AT(removed), "-", "none", "see below",
+      "Number and mass of the bodies that were removed before the scene begins, as {\"bodies\": "
+      "3, \"mass\": 0.1}.",
+      .object = &count_keys },
+    { 0 },
+};
+
+static int finish_removal(jnode o, struct scene *s, void *out)
 {
-    return scene_read_kind(json_node_key(&o, "kind"), s, &r->kind) ||
-           scene_read_group(json_node_key(&o, "name"), s, &r->group) ||
-           read_ids(json_node_key(&o, "id"), r);
+    struct scene_removal *r = out;
+    (void)s;
+    r->region = keys_has(&o, "outside")  ? REGION_OUTSIDE
+                : keys_has(&o, "inside") ? REGION_INSIDE
+                : keys_has(&o, "below")  ? REGION_BELOW
+                                         : REGION_ALL;
+    return scene_check_span(o, r->from, r->until);
 }
 
-static int read_removal(jnode o, struct scene *s, struct scene_removal *r)
+const struct keys scene_removal_keys = { "remove", removal_key, .finish = finish_removal };
+
+static int read_removal(jnode o, struct scene *s, void *out)
 {
-    static const char *const key[] = { "outside", "inside", "below" };
-    bool anywhere = true, any = !json_node_key(&o, "kind").json && !json_node_key(&o, "id").json &&
-                                !json_node_key(&o, "name").json;
+    struct scene_removal *r = &s->removal[s->removals++];
+    (void)out;
     *r = (struct scene_removal){ .kind = -1, .from = -INFINITY, .until = INFINITY };
-    for (int k = 0; k < 3; k++) anywhere = anywhere && !json_node_key(&o, key[k]).json;
-    if (json_node_only(o, "outside inside below kind id name from until removed") ||
-        read_passage(json_node_key(&o, "removed"), &r->removed))
-        return 1;
-    if (anywhere && any)
-        return json_node_fault(o, "needs one of outside, inside, below, kind, id or name: which "
-                                  "bodies go");
-    int which = anywhere ? REGION_ALL : json_node_choice(o, "outside inside below");
-    if (which < 0 || read_which(o, s, r) ||
-        json_node_number(json_node_key(&o, "from"), J_ANY, &r->from) ||
-        json_node_number(json_node_key(&o, "until"), J_ANY, &r->until))
-        return 1;
-    if (!(r->from <= r->until))
-        return json_node_fault(json_node_key(&o, "until"), "must not lie before its beginning");
-    r->region = (enum scene_region)which;
-    if (anywhere) return 0;
-    jnode where = json_node_key(&o, key[which]);
-    if (r->region != REGION_BELOW) return scene_read_box(where, s->dim, &r->box);
-    return json_node_only(where, "point normal") || json_node_need(&where, "point normal") ||
-           json_node_vector(json_node_key(&where, "point"), s->dim, &r->point) ||
-           scene_read_direction(json_node_key(&where, "normal"), s->dim, &r->normal);
+    return keys_read(o, &scene_removal_keys, s, r);
 }
 
-int scene_read_removals(jnode a, struct scene *s)
+int scene_read_removals(jnode a, struct scene *s, void *out)
 {
-    size_t n;
-    if (json_node_array(a, &n) || !(s->removal = scene_alloc(a, n, sizeof *s->removal))) return 1;
-    if (n > 1000) return json_node_fault(a, "more than 1000 removals");
-    for (size_t i = 0; i < n; i++)
-        if (read_removal(json_node_item(&a, i), s, &s->removal[s->removals++])) return 1;
-    return 0;
+    const size_t n = json_array_size(a.json);
+    if (!(s->removal = scene_alloc(a, n, sizeof *s->removal))) return 1;
+    return n > 1000 ? json_node_fault(a, "more than 1000 removals")
+                    : keys_each(a, s, out, read_removal);
 }

@@ -5,23 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-int scene_read_law(const jnode *o, struct scene_law *l)
-{
-#define READ(member, name, unit, key, most, range)                                                 \
-    if (json_node_number(json_node_key(o, key), (most) == 1 ? J_UNIT : J_NOT_NEGATIVE,             \
-                         &l->member))                                                              \
-        return 1;
-    EACH_PAIR_NUMBER(READ)
-#undef READ
-    if ((l->mu_s > 0) != (l->v_s > 0))
-        return json_node_fault(
-            *o, "mu_s, static friction, and v_s, the sliding speed up to which it holds (m/s), "
-                "are given together");
-    if (l->mu_s > 0 && l->mu_s < l->mu)
-        return json_node_fault(*o, "mu_s, static friction, must not be below mu");
-    return 0;
-}
-
 static int32_t find_kind(const struct scene *s, const char *name)
 {
     for (int32_t k = 0; k < s->kinds; k++)
@@ -29,14 +12,26 @@ static int32_t find_kind(const struct scene *s, const char *name)
     return -1;
 }
 
-int scene_read_kind(jnode n, const struct scene *s, int32_t *kind)
+static int read_kind(jnode n, const struct key *k, struct scene *s, void *member)
 {
     const char *name = NULL;
+    int32_t *kind = member;
+    (void)k;
     if (json_node_text(n, &name)) return 1;
-    if (!name) return 0;
     *kind = find_kind(s, name);
     return *kind < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
 }
+
+const struct key_type key_kind = { "string", "{'type': 'string'}", read_kind, NULL };
+
+/* "kinds" */
+
+static const struct key kind_key[] = {
+    { "density", &key_positive, 0, "kg/m^3", "of the scene", "7800",
+      "Density of the kind; in 2D in kg/m^2." },
+    { 0 },
+};
+const struct keys scene_kind_keys = { "kind", kind_key };
 
 static int add_kind(jnode n, struct scene *s, const char *name, double density)
 {
@@ -49,211 +44,335 @@ static int add_kind(jnode n, struct scene *s, const char *name, double density)
     return 0;
 }
 
-int scene_read_kinds(jnode o, struct scene *s, double density)
+int scene_read_kinds(jnode o, struct scene *s, void *out)
 {
     const char *name;
     json_t *value;
     size_t most = 1000, count = json_object_size(o.json);
+    (void)out;
     if (o.json && !json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     if (count > most) return json_node_fault(o, "more than %zu kinds", most);
     if (!(s->kind = scene_alloc(o, count + 2, sizeof *s->kind))) return 1;
-    if (add_kind(o, s, "ball", density) || add_kind(o, s, "wall", density)) return 1;
+    if (add_kind(o, s, "ball", s->density) || add_kind(o, s, "wall", s->density)) return 1;
     json_object_foreach(o.json, name, value)
     {
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
-        if (json_node_only(n, "density")) return 1;
-        if (find_kind(s, name) < 0 && add_kind(o, s, name, density)) return 1;
-        double *d = &s->kind[find_kind(s, name)].density;
-        if (json_node_number(json_node_key(&n, "density"), J_POSITIVE, d)) return 1;
+        if (find_kind(s, name) < 0 && add_kind(n, s, name, s->density)) return 1;
+        if (keys_read(n, &scene_kind_keys, s, &s->kind[find_kind(s, name)].density)) return 1;
     }
     return 0;
 }
 
-/* A pair that does not act has no law. */
-static int read_acts(jnode o, struct scene_law *l)
-{
-    bool acts = true;
-    jnode key = json_node_key(&o, "acts");
-    if (json_node_bool(key, &acts)) return 1;
-    if (acts) return 0;
-    if (json_object_size(o.json) > 2 + (json_node_key(&o, "comment").json != NULL))
-        return json_node_fault(o, "a pair with \"acts\": false has no contacts, and no other key");
-    *l = (struct scene_law){ .inert = 1 };
-    return 0;
-}
+/*
+ * What a pair of kinds does beyond friction and restitution: each law is an object of its own, which takes the place
+ * of the one for all pairs.
+ */
+#define AT(member) offsetof(struct pair_law, member)
 
-static int read_pair(jnode o, struct scene *s, bool *given)
-{
-    size_t n;
-    int32_t k[2] = { 0 };
-    if (json_node_only(o, "pair acts" EACH_PAIR_NUMBER(
-                              PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
-        json_node_need(&o, "pair"))
-        return 1;
-    jnode pair = json_node_key(&o, "pair");
-    if (json_node_array(pair, &n)) return 1;
-    if (n != 2) return json_node_fault(pair, "needs two kinds");
-    for (size_t i = 0; i < 2; i++) {
-        jnode name = json_node_item(&pair, i);
-        if (scene_read_kind(name, s, &k[i])) return 1;
-    }
-    int32_t ab = k[0] * s->kinds + k[1], ba = k[1] * s->kinds + k[0];
-    if (given[ab]) return json_node_fault(pair, "this pair was given before");
-    given[ab] = given[ba] = true;
-    if (scene_read_law(&o, &s->law[ab]) || scene_read_laws(&o, s->t, &s->law[ab].pair_law) ||
-        read_acts(o, &s->law[ab]))
-        return 1;
-    s->law[ba] = s->law[ab];
-    return 0;
-}
+static const struct key cohesion_key[] = {
+    { "force", &key_not_negative, AT(cohesion), "N", REQUIRED, "1e-3",
+      "Constant attractive force between two bodies that touch or whose gap is less than the "
+      "range." },
+    { "range", &key_not_negative, AT(range), "m", "0", "1e-5", "Gap up to which the force acts." },
+    { 0 },
+};
+static const struct keys cohesion_keys = { "cohesion", cohesion_key };
 
-int scene_read_pairs(jnode a, struct scene *s, struct scene_law law)
-{
-    size_t n, k2 = (size_t)s->kinds * (size_t)s->kinds;
-    if (json_node_array(a, &n) || !(s->law = scene_alloc(a, k2, sizeof *s->law))) return 1;
-    for (size_t i = 0; i < k2; i++) s->law[i] = law;
-    bool *given = scene_alloc(a, k2, sizeof *given);
-    int bad = !given;
-    for (size_t i = 0; i < n && !bad; i++) bad = read_pair(json_node_item(&a, i), s, given);
-    free(given);
-    return bad;
-}
+static const struct key capillary_key[] = {
+    { "volume", &key_not_negative, AT(volume), "m^3", REQUIRED, "1e-10",
+      "Volume of the liquid bridge that forms when bodies touch; it ruptures at a distance that "
+      "follows from the volume, see nsd-methods(7). Discs have the bridges of balls." },
+    { "tension", &key_not_negative, AT(tension), "N/m", REQUIRED, "0.072", "Surface tension." },
+    { "wetting", &key_not_negative, AT(wetting), "rad", "0", "0.2",
+      "Wetting angle, less than pi/2.", .most = 1.5707963267948963, /* the last double below pi/2 */
+      .limit = "must be less than pi/2: a liquid that does not wet has no bridge" },
+    { 0 },
+};
+static const struct keys capillary_keys = { "capillary", capillary_key };
 
-/* What a pair of kinds does beyond friction and restitution, from its JSON: each
-   law is an object of its own, which takes the place of the one for all pairs. */
+static const struct key rolling_key[] = {
+    { "mu_r", &key_not_negative, AT(mu_r), "m", "0", "1e-4",
+      "Rolling friction: the moment against rolling is at most mu_r times the normal force." },
+    { "mu_p", &key_not_negative, AT(mu_p), "m", "0", "1e-5",
+      "Pivoting friction: the moment about the normal is at most mu_p times the normal force." },
+    { 0 },
+};
+static const struct keys rolling_keys = { "rolling", rolling_key };
 
-static int read_cohesion(jnode o, struct pair_law *l)
-{
-    if (!o.json) return 0;
-    l->cohesion = l->range = 0;
-    return json_node_only(o, "force range") || json_node_need(&o, "force") ||
-           json_node_number(json_node_key(&o, "force"), J_NOT_NEGATIVE, &l->cohesion) ||
-           json_node_number(json_node_key(&o, "range"), J_NOT_NEGATIVE, &l->range);
-}
-
-static int read_capillary(jnode o, struct pair_law *l)
-{
-    if (!o.json) return 0;
-    l->volume = l->tension = l->wetting = 0;
-    jnode angle = json_node_key(&o, "wetting");
-    if (json_node_only(o, "volume tension wetting") || json_node_need(&o, "volume tension") ||
-        json_node_number(json_node_key(&o, "volume"), J_NOT_NEGATIVE, &l->volume) ||
-        json_node_number(json_node_key(&o, "tension"), J_NOT_NEGATIVE, &l->tension) ||
-        json_node_number(angle, J_NOT_NEGATIVE, &l->wetting))
-        return 1;
-    if (l->wetting < M_PI / 2) return 0;
-    return json_node_fault(angle,
-                           "must be less than pi/2: a liquid that does not wet has no bridge");
-}
-
-static int read_rolling(jnode o, struct pair_law *l)
-{
-    if (!o.json) return 0;
-    l->mu_r = l->mu_p = 0;
-    return json_node_only(o, "mu_r mu_p") ||
-           json_node_number(json_node_key(&o, "mu_r"), J_NOT_NEGATIVE, &l->mu_r) ||
-           json_node_number(json_node_key(&o, "mu_p"), J_NOT_NEGATIVE, &l->mu_p);
-}
-
-/* t: of the scene, s */
-static int read_adhesion(jnode o, double t, struct pair_law *l)
+static int read_forever(jnode n, const struct key *k, struct scene *s, void *member)
 {
     bool forever = false;
-    if (!o.json) return 0;
-    l->eta = l->area = 0, l->beta = 1, l->made = t;
-    if (json_node_only(o, "c_n c_t w eta area beta made forever") || json_node_need(&o, "c_n w") ||
-        json_node_number(json_node_key(&o, "c_n"), J_POSITIVE, &l->cn))
-        return 1;
-    l->ct = l->cn;
-    if (json_node_number(json_node_key(&o, "c_t"), J_NOT_NEGATIVE, &l->ct) ||
-        json_node_number(json_node_key(&o, "w"), J_NOT_NEGATIVE, &l->w) ||
-        json_node_number(json_node_key(&o, "eta"), J_NOT_NEGATIVE, &l->eta) ||
-        json_node_number(json_node_key(&o, "area"), J_NOT_NEGATIVE, &l->area) ||
-        json_node_number(json_node_key(&o, "beta"), J_UNIT, &l->beta) ||
-        json_node_number(json_node_key(&o, "made"), J_ANY, &l->made) ||
-        json_node_bool(json_node_key(&o, "forever"), &forever))
-        return 1;
-    l->forever = forever;
-    if (forever && json_node_key(&o, "made").json)
+    (void)k, (void)s;
+    if (json_node_bool(n, &forever)) return 1;
+    *(double *)member = forever;
+    return 0;
+}
+
+static const struct key_type key_forever = { "true or false", "{'type': 'boolean'}", read_forever,
+                                             NULL };
+
+static const struct key adhesion_key[] = {
+    { "c_n", &key_positive, AT(cn), "N/m^3", REQUIRED, "2e9",
+      "Normal stiffness of a bond per area." },
+    { "c_t", &key_not_negative, AT(ct), "N/m^3", "c_n", "1e9", "Tangential stiffness per area." },
+    { "w", &key_not_negative, AT(w), "J/m^2", REQUIRED, "0.2", "Energy of adhesion per area." },
+    { "eta", &key_not_negative, AT(eta), "N s/m", "0", "1e-4",
+      "Viscosity, which slows the damage of a bond." },
+    { "area", &key_not_negative, AT(area), "m^2", "by size", "1e-6",
+      "Bonded area. Default: the cross section of the smaller body, for shapes that of the "
+      "circumscribed ball; discs count as 1 m deep. The points of a pair that bond in one step "
+      "share it." },
+    { "beta", &key_share, AT(beta), "-", "1", "1", "Intensity of a new bond." },
+    { "made", &key_number, AT(made), "s", "time", "0",
+      "Time at which the pairs that touch are bonded: at the beginning of the step that contains "
+      "it, or in this step." },
+    { "forever", &key_forever, AT(forever), "-", "false", "true",
+      "Instead of made: bond all pairs whenever they touch. A pair that is bonded as soon as it "
+      "touches does not rebound; e_n holds for pairs whose bond has broken." },
+    { 0 },
+};
+
+static int finish_adhesion(jnode o, struct scene *s, void *out)
+{
+    struct pair_law *l = out;
+    const bool made = keys_has(&o, "made");
+    if (!keys_has(&o, "c_t")) l->ct = l->cn;
+    if (!keys_has(&o, "area")) l->area = 0;
+    if (!keys_has(&o, "forever")) l->forever = 0;
+    if (!made) l->made = s->t;
+    if (l->forever > 0 && made)
         return json_node_fault(o, "bonds are made at a time or for ever: not both");
     return 0;
 }
 
-static int read_impact(jnode o, struct pair_law *l)
+static const struct keys adhesion_keys = { "adhesion", adhesion_key, .finish = finish_adhesion };
+
+static int read_impact(jnode n, struct scene *s, void *member)
 {
     const char *name = NULL;
-    if (!o.json) return 0;
-    if (json_node_text(o, &name)) return 1;
-    l->impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
-    if (l->impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
-    return json_node_fault(o, "needs \"newton\" or \"bounded\"");
+    double *impact = member;
+    (void)s;
+    if (json_node_text(n, &name)) return 1;
+    *impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
+    if (*impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
+    return json_node_fault(n, "needs \"newton\" or \"bounded\"");
 }
 
-int scene_read_laws(const jnode *o, double t, struct pair_law *l)
+static const struct key_type key_impact = { "string", "{'enum': ['newton', 'bounded']}", NULL,
+                                            NULL };
+
+/* ---- the law of all pairs, or of one ---- */
+
+#undef AT
+#define AT(member) offsetof(struct scene_law, member)
+
+/* Unit, default, example and help of the numbers of state/pair_columns.h */
+#define TEXT_mu "-", "0", "0.4", "Coulomb friction coefficient of every pair of kinds."
+#define TEXT_en "-", "0", "0.3", "Normal restitution coefficient of every pair."
+#define TEXT_et "-", "0", "0", "Tangential restitution coefficient of every pair."
+#define TEXT_mu_s                                                                                  \
+    "-", "mu", "0.6", "Static friction coefficient of every pair, at least mu; it requires v_s."
+#define TEXT_v_s                                                                                   \
+    "m/s", "none", "1e-3",                                                                         \
+        "Sliding speed up to which a contact has the friction mu_s; a faster contact has mu, see " \
+        "nsd-methods(7), \"Static and kinetic friction\"."
+#define ROW(member, document, unit, key, most, range)                                              \
+    { key, (most) == 1 ? &key_share : &key_not_negative, AT(member), TEXT_##member },
+
+static const struct key law_key[] = {
+    EACH_PAIR_NUMBER(ROW){ "impact", &key_impact, AT(pair_law.impact), "-", "by shape",
+                           "\"bounded\"",
+                           "\"bounded\" reduces restitution where an impact with friction would "
+                           "gain energy; \"newton\" does not, see nsd-methods(7), \"Impact\". "
+                           "Default: newton for balls and discs, bounded for other shapes.",
+                           .read = read_impact },
+    { "cohesion", &key_object, AT(pair_law), "-", "none", "{\"force\": 1e-3}",
+      "Constant attraction.", .object = &cohesion_keys },
+    { "capillary", &key_object, AT(pair_law), "-", "none", "see below", "Liquid bridges.",
+      .object = &capillary_keys },
+    { "rolling", &key_object, AT(pair_law), "-", "none", "{\"mu_r\": 1e-4}",
+      "Rolling and pivoting friction.", .object = &rolling_keys },
+    { "adhesion", &key_object, AT(pair_law), "-", "none", "see below", "Bonds with damage.",
+      .object = &adhesion_keys },
+    { 0 },
+};
+#undef ROW
+
+static int finish_law(jnode o, struct scene *s, void *out)
 {
-    return read_cohesion(json_node_key(o, "cohesion"), l) ||
-           read_capillary(json_node_key(o, "capillary"), l) ||
-           read_rolling(json_node_key(o, "rolling"), l) ||
-           read_adhesion(json_node_key(o, "adhesion"), t, l) ||
-           read_impact(json_node_key(o, "impact"), l);
+    const struct scene_law *l = out;
+    (void)s;
+    if ((l->mu_s > 0) != (l->v_s > 0))
+        return json_node_fault(
+            o, "mu_s, static friction, and v_s, the sliding speed up to which it holds (m/s), "
+               "are given together");
+    if (l->mu_s > 0 && l->mu_s < l->mu)
+        return json_node_fault(o, "mu_s, static friction, must not be below mu");
+    return 0;
+}
+
+const struct keys scene_law_keys = { "law", law_key, .finish = finish_law };
+
+/* ---- "pairs" ---- */
+
+struct pair {
+    int32_t kind[2];
+    bool acts;
+    struct scene_law law;
+};
+
+#undef AT
+#define AT(member) offsetof(struct pair, member)
+
+static int read_two_kinds(jnode n, const struct key *k, struct scene *s, void *member)
+{
+    size_t count;
+    if (json_node_array(n, &count)) return 1;
+    if (count != 2) return json_node_fault(n, "needs two kinds");
+    for (size_t i = 0; i < 2; i++)
+        if (read_kind(json_node_item(&n, i), k, s, (int32_t *)member + i)) return 1;
+    return 0;
+}
+
+static const struct key_type key_two_kinds = { "two strings", "{'$ref': 'two_names'}",
+                                               read_two_kinds, NULL };
+
+static const struct key pair_key[] = {
+    { "pair", &key_two_kinds, AT(kind), "-", REQUIRED, "[\"steel\", \"ball\"]", "The two kinds." },
+    { "acts", &key_bool, AT(acts), "-", "true", "false",
+      "false: the pair has no contacts, and no other key." },
+    { "", &key_include, AT(law), .object = &scene_law_keys },
+    { 0 },
+};
+
+/* A pair that does not act has no law. */
+static int finish_pair(jnode o, struct scene *s, void *out)
+{
+    struct pair *p = out;
+    (void)s;
+    if (p->acts) return 0;
+    if (json_object_size(o.json) > 2 + (size_t)keys_has(&o, "comment"))
+        return json_node_fault(o, "a pair with \"acts\": false has no contacts, and no other key");
+    p->law = (struct scene_law){ .inert = 1 };
+    return 0;
+}
+
+const struct keys scene_pair_keys = { "pair", pair_key, .keeps = true, .finish = finish_pair };
+
+static int read_pair(jnode o, struct scene *s, void *out)
+{
+    bool *given = out;
+    struct pair p = { .acts = true, .law = s->common };
+    if (keys_read(o, &scene_pair_keys, s, &p)) return 1;
+    const int32_t ab = p.kind[0] * s->kinds + p.kind[1], ba = p.kind[1] * s->kinds + p.kind[0];
+    if (given[ab]) return json_node_fault(json_node_key(&o, "pair"), "this pair was given before");
+    given[ab] = given[ba] = true;
+    s->law[ab] = s->law[ba] = p.law;
+    return 0;
+}
+
+int scene_read_pairs(jnode a, struct scene *s, void *out)
+{
+    const size_t k2 = (size_t)s->kinds * (size_t)s->kinds;
+    bool *given = scene_alloc(a, k2, sizeof *given);
+    (void)out;
+    if (!given || !(s->law = scene_alloc(a, k2, sizeof *s->law))) return free(given), 1;
+    for (size_t i = 0; i < k2; i++) s->law[i] = s->common;
+    int bad = keys_each(a, s, given, read_pair);
+    free(given);
+    return bad;
 }
 
 /* Names of walls, of parts of their surfaces and of groups of bodies, from their JSON. */
 
-int scene_read_name(jnode n, const struct scene *s, const char **out)
+static int read_name(jnode n, const struct key *k, struct scene *s, void *member)
 {
-    *out = NULL;
-    if (!n.json) return 0;
+    const char **out = member;
+    (void)k;
     if (json_node_text(n, out)) return 1;
     const char *trouble = name_trouble(*out, strlen(*out));
     if (trouble) return json_node_fault(n, "a name %s", trouble);
-    for (int32_t k = 0; k < s->kinds; k++)
-        if (!strcmp(s->kind[k].name, *out))
+    for (int32_t i = 0; i < s->kinds; i++)
+        if (!strcmp(s->kind[i].name, *out))
             return json_node_fault(n, "\"%s\" is a kind: walls and groups have other names", *out);
     return 0;
 }
 
-int scene_read_group(jnode n, struct scene *s, int32_t *group)
+const struct key_type key_name = { "string", "{'type': 'string'}", read_name, NULL };
+
+/* That of a group, added to the scene's */
+static int read_group(jnode n, const struct key *k, struct scene *s, void *member)
 {
-    const char *name;
+    const char *name = NULL;
     int32_t which = -1;
-    if (scene_read_name(n, s, &name)) return 1;
-    if (name && names_add(&s->names, name, &which, n.in->failure)) return 1;
-    *group = which + 1;
+    if (read_name(n, k, s, &name) || names_add(&s->names, name, &which, n.in->failure)) return 1;
+    *(int32_t *)member = which + 1;
     return 0;
 }
 
-static int scene_material_read_part(jnode o, struct scene *s)
+const struct key_type key_group = { "string", "{'type': 'string'}", read_group, NULL };
+
+static int read_faces(jnode n, const struct key *k, struct scene *s, void *member)
 {
-    const char *name;
-    int64_t first = 0, last = 0;
-    size_t n;
-    jnode faces = json_node_key(&o, "faces"), text = json_node_key(&o, "name");
-    if (json_node_only(o, "name faces") || json_node_need(&o, "name faces") ||
-        scene_read_name(text, s, &name) || json_node_array(faces, &n))
-        return 1;
-    if (n != 2) return json_node_fault(faces, "needs [first, last]");
-    if (json_node_integer(json_node_item(&faces, 0), 0, INT32_MAX - 1, &first) ||
-        json_node_integer(json_node_item(&faces, 1), 0, INT32_MAX - 1, &last))
-        return 1;
-    if (first > last) return json_node_fault(faces, "its first face is behind its last");
-    struct failure *failure = o.in->failure;
-    return names_give(&s->names, name, s->walls, (int32_t)first, (int32_t)(last - first + 1),
-                      failure);
+    size_t count;
+    int64_t *face = member;
+    (void)k, (void)s;
+    if (json_node_array(n, &count)) return 1;
+    if (count != 2) return json_node_fault(n, "needs [first, last], from 0");
+    for (size_t i = 0; i < 2; i++)
+        if (json_node_integer(json_node_item(&n, i), 0, INT32_MAX - 1, &face[i])) return 1;
+    return face[0] <= face[1] ? 0 : json_node_fault(n, "its first face is behind its last");
 }
 
-int scene_read_parts(jnode a, struct scene *s, bool *groups)
+const struct key_type key_faces = { "[first, last]", "{'$ref': 'faces'}", read_faces, NULL };
+
+/* ---- "parts" of a surface ---- */
+
+struct part {
+    const char *name;
+    int64_t face[2];
+};
+
+#undef AT
+#define AT(member) offsetof(struct part, member)
+
+static const struct key part_key[] = {
+    { "name", &key_name, AT(name), "-", REQUIRED, "\"blade\"",
+      "Name of the part; several ranges may have the same name." },
+    { "faces", &key_faces, AT(face), "-", REQUIRED, "[0, 11]",
+      "Range of triangles or segments, counted from 0 in the order of the file, without those of "
+      "zero area." },
+    { 0 },
+};
+const struct keys scene_part_keys = { "part", part_key };
+
+static int read_part(jnode o, struct scene *s, void *out)
 {
-    size_t n;
-    if (groups && json_is_string(a.json) && !strcmp(json_string_value(a.json), "groups")) {
-        *groups = true;
+    struct part p = { 0 };
+    (void)out;
+    return keys_read(o, &scene_part_keys, s, &p) ||
+           names_give(&s->names, p.name, s->walls, (int32_t)p.face[0],
+                      (int32_t)(p.face[1] - p.face[0] + 1), o.in->failure);
+}
+
+int scene_read_parts(jnode a, struct scene *s, void *out)
+{
+    return keys_each(a, s, out, read_part);
+}
+
+int scene_read_mesh_parts(jnode a, struct scene *s, void *groups)
+{
+    if (json_is_string(a.json) && !strcmp(json_string_value(a.json), "groups")) {
+        *(bool *)groups = true;
         return 0;
     }
-    if (groups && a.json && !json_is_array(a.json))
+    if (!json_is_array(a.json))
         return json_node_fault(a, "needs \"groups\" or a list [{name, faces}, ...]");
-    if (json_node_array(a, &n)) return 1;
-    for (size_t i = 0; i < n; i++)
-        if (scene_material_read_part(json_node_item(&a, i), s)) return 1;
-    return 0;
+    return keys_each(a, s, NULL, read_part);
 }
+
+const struct key_type key_mesh_parts = { "array or \"groups\"",
+                                         "{'anyOf': [{'const': 'groups'}, {'type': 'array', "
+                                         "'items': {'$ref': 'part'}}]}",
+                                         NULL, NULL, &scene_part_keys };

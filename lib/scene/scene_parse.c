@@ -14,6 +14,12 @@ void *scene_alloc(jnode n, size_t count, size_t size)
     return p;
 }
 
+int scene_read_later(jnode n, const struct key *k, struct scene *s, void *member)
+{
+    (void)n, (void)k, (void)s, (void)member;
+    return 0;
+}
+
 /* The text without the blanks outside its strings. */
 static char *compact(const char *text)
 {
@@ -31,75 +37,100 @@ static char *compact(const char *text)
     return out;
 }
 
-static bool takes_documents(jnode bodies)
-{
-    bool any = false;
-    for (size_t k = 0; k < json_array_size(bodies.json); k++)
-        any = any || json_object_get(json_array_get(bodies.json, k), "document") ||
-              json_object_get(json_array_get(bodies.json, k), "import");
-    return any;
-}
-
 /* A number, or "auto" */
-static int read_dt(jnode n, double *dt)
+static int read_dt(jnode n, struct scene *s, void *dt)
 {
+    (void)s;
     if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, dt);
-    *dt = 0;
+    *(double *)dt = 0;
     return strcmp(json_string_value(n.json), "auto")
                ? json_node_fault(n, "needs a number of seconds, or \"auto\"")
                : 0;
 }
 
-static int scene_parse_read_scene(jnode o, struct scene *s)
+static int read_dim(jnode n, struct scene *s, void *out)
 {
-    int64_t dim = 3, seed = 1;
-    double density = 2500;
-    bool boxed = false;
-    const char *title;
-    struct scene_law law = { 0 };
-    struct scene_box box = { 0 };
-    if (json_node_only(o, "title dim dt theta gravity seed density" EACH_PAIR_NUMBER(
-                              PAIR_KEY) " kinds pairs time "
-                                        "overlap bodies walls room forces pour remove cell shapes "
-                                        "cohesion capillary rolling "
-                                        "adhesion impact") ||
-        json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
-        json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
-        json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||
-        read_dt(json_node_key(&o, "dt"), &s->dt) ||
-        json_node_number(json_node_key(&o, "theta"), J_UNIT, &s->theta) ||
-        json_node_number(json_node_key(&o, "density"), J_POSITIVE, &density) ||
-        json_node_number(json_node_key(&o, "time"), J_ANY, &s->t) || scene_read_law(&o, &law) ||
-        scene_read_laws(&o, s->t, &law.pair_law) ||
-        json_node_bool(json_node_key(&o, "overlap"), &s->overlap))
-        return 1;
-    s->has_walls = json_node_key(&o, "walls").json;
-    s->dim = (int)dim, s->seed = (uint64_t)seed;
+    int64_t dim = 3;
+    (void)out;
+    if (json_node_integer(n, 2, 3, &dim)) return 1;
+    s->dim = (int)dim;
     s->g = dim == 2 ? v3(0, -9.81, 0) : v3(0, 0, -9.81);
-    if (json_node_vector(json_node_key(&o, "gravity"), s->dim, &s->g) ||
-        scene_read_kinds(json_node_key(&o, "kinds"), s, density) ||
-        scene_read_pairs(json_node_key(&o, "pairs"), s, law) ||
-        scene_read_shapes(json_node_key(&o, "shapes"), s) ||
-        scene_read_cell(json_node_key(&o, "cell"), s->dim, s->t,
-                        takes_documents(json_node_key(&o, "bodies")), &s->cell) ||
-        scene_read_walls(json_node_key(&o, "walls"), s, &box, &boxed) ||
-        scene_read_room(json_node_key(&o, "room"), s) ||
-        scene_read_bodies(json_node_key(&o, "bodies"), s, boxed ? &box : NULL) ||
-        scene_read_pours(json_node_key(&o, "pour"), s) ||
-        scene_read_removals(json_node_key(&o, "remove"), s) ||
-        scene_read_forces(json_node_key(&o, "forces"), s))
-        return 1;
     return 0;
 }
+
+#define AT(member) offsetof(struct scene, member)
+#define LIST(name, keys, help)                                                                     \
+    {                                                                                              \
+#name, &key_list, 0, "-", "none", "see below", help,                                       \
+            .object = &scene_##keys##_keys, .always = true, .read = scene_read_##name              \
+    }
+
+static const struct key_type key_dim = { "2 or 3", "{'enum': [2, 3]}", NULL, NULL };
+static const struct key_type key_dt = {
+    "number or \"auto\"",
+    "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'const': 'auto'}]}", NULL, NULL
+};
+
+/* In the order in which they are read: bodies refer to kinds, names, shapes, the cell and the walls. */
+static const struct key scene_key[] = {
+    { "title", &key_text, AT(title), "-", "none", "\"A drum\"",
+      "Title, shown in pictures and pages." },
+    { "dim", &key_dim, 0, "-", "3", "2",
+      "3: balls and solids in space. 2: discs and polygons in the plane z = 0, which rotate "
+      "about z.",
+      .always = true, .read = read_dim },
+    { "dt", &key_dt, AT(dt), "s", REQUIRED, "5e-4",
+      "Time step. \"auto\": the one that nsd-gen --check suggests, adapted in the run.",
+      .read = read_dt },
+    { "theta", &key_share, AT(theta), "-", "0.5", "0.5",
+      "Parameter of the theta-method, see nsd-methods(7)." },
+    { "gravity", &key_vector, AT(g), "m/s^2", "9.81 down", "[0, 0, -9.81]",
+      "Acceleration of gravity; the default acts along the last axis." },
+    { "time", &key_number, AT(t), "s", "0", "0",
+      "Time at which the scene begins. Drives and pours have the state of that time." },
+    { "seed", &key_integer, AT(seed), "-", "1", "7", "Seed of the random numbers.",
+      .most = UINT32_MAX },
+    { "density", &key_positive, AT(density), "kg/m^3", "2500", "2600",
+      "Density of every kind without its own; in 2D in kg/m^2." },
+    { "", &key_include, AT(common), .object = &scene_law_keys },
+    { "kinds", &key_map, 0, "-", "none", "{\"steel\": {}}",
+      "Kinds of material by name. The kinds ball and wall always exist.",
+      .object = &scene_kind_keys, .always = true, .read = scene_read_kinds },
+    LIST(pairs, pair, "Exceptions for pairs of kinds."),
+    { "overlap", &key_bool, AT(overlap), "-", "false", "true",
+      "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "
+      "the smaller radius is an error; of a tenth for bodies that come from a document or a "
+      "table." },
+    { "shapes", &key_forms, 0, "-", "none", "see below",
+      "Shapes of grains by name, see Shapes of grains.", .read = scene_read_shapes },
+    { "cell", &key_cell, AT(cell), "-", "none", "{\"lengths\": [1, 1]}",
+      "Periodic cell, see Periodic cells. Default: the cell of the first document among the "
+      "bodies, in its last state; null: none.",
+      .always = true, .read = scene_read_cell },
+    LIST(walls, wall,
+         "Walls, see Walls. Default: the walls of the first document among the bodies, in their "
+         "last position."),
+    { "room", &key_object, 0, "-", "none", "{\"walls\": \"box\"}",
+      "Walls that move in proportion under one mean pressure, see Rooms.",
+      .object = &scene_room_keys, .read = scene_read_room },
+    LIST(bodies, bodies, "Groups of bodies, see Groups of bodies."),
+    { "pour", &key_list, 0, "-", "none", "see below", "Inlets, see Inlets and outlets.",
+      .object = &scene_pour_keys, .always = true, .read = scene_read_pours },
+    { "remove", &key_list, 0, "-", "none", "see below", "Outlets.", .object = &scene_removal_keys,
+      .always = true, .read = scene_read_removals },
+    LIST(forces, force, "Forces and torques on single bodies, see Forces on single bodies."),
+    { 0 },
+};
+const struct keys scene_keys = { "scene", scene_key };
 
 int scene_parse(struct scene *s, const char *text, size_t length, struct scene_files *files,
                 struct failure *failure)
 {
     struct json_doc t;
-    *s = (struct scene){ .theta = 0.5, .files = files };
+    *s = (struct scene){ .dim = 3, .files = files };
     if (json_doc_parse(&t, text, length, failure)) return failure->status;
-    int bad = scene_parse_read_scene(json_doc_root(&t), s);
-    s->files = NULL;
+    int bad = keys_read(json_doc_root(&t), &scene_keys, s, s);
+    s->files = NULL, s->title = NULL;
     if (!bad && !(s->text = s->rewritten ? json_dumps(t.root, JSON_COMPACT) : compact(t.text)))
         bad = failure_set(failure, EX_SOFTWARE, "no memory for the scene's text");
     json_doc_free(&t);

@@ -1,75 +1,122 @@
 /*
- * scene/scene_read.h: reads the parts of a scene [scene/scene.h] from its JSON [scene/json_node.h]
- * for scene_parse.c, a file for each. Each returns 0, or not 0 after a fault has been reported.
+ * scene/scene_read.h: the tables of keys of a scene's objects [scene/keys.h], a file for each part of it, and what reads
+ * the values that need more than a table. Each returns 0, or not 0 after a fault has been reported.
  */
 #ifndef NSD_SCENE_READ_H
 #define NSD_SCENE_READ_H
 
-#include "scene/json_node.h"
-#include "scene/scene.h"
+#include "scene/keys.h"
 
 static const char axis_name[3][2] = { "x", "y", "z" };
 
 /* Zeroed memory; NULL, and the fault reported, when it is short. */
 void *scene_alloc(jnode node, size_t count, size_t size);
 
-/* scene/scene_material.c: mu, e_n, e_t; "kinds" and "pairs", with density and law for those that
-   give none; the NAME of a kind */
-int scene_read_law(const jnode *object, struct scene_law *law);
-/* scene/scene_material.c: the laws beyond these; t: the time of the scene, s */
-int scene_read_laws(const jnode *object, double t, struct pair_law *law);
-int scene_read_kinds(jnode kinds, struct scene *s, double density);
-int scene_read_pairs(jnode pairs, struct scene *s, struct scene_law law);
-int scene_read_kind(jnode name, const struct scene *s, int32_t *kind);
-/* scene/scene_material.c: a "name", *name = NULL where there is none; "parts" of the wall that comes next, and of a mesh
-   whether they are the groups of its file (groups NULL: there is no file) */
-int scene_read_name(jnode name, const struct scene *s, const char **out);
-/* The "name" of a group, added to the scene's: 1 + its row; 0: there is none */
-int scene_read_group(jnode name, struct scene *s, int32_t *group);
-int scene_read_parts(jnode parts, struct scene *s, bool *groups);
+/* scene/scene_parse.c: the scene itself */
+extern const struct keys scene_keys;
 
-/* scene/scene_walls.c: "walls", where *box = that of the first wall that is a box, the default of a
-   lattice, and *boxed whether there is one; a BOX */
-int scene_read_walls(jnode walls, struct scene *s, struct scene_box *box, bool *boxed);
-/* a vector that is not zero, made of length 1; nothing when it is not there */
-int scene_read_direction(jnode vector, int dim, vec3 *out);
-/* scene/scene_shapes.c: the shape of a boundary, one of those of space or of the plane; common: the
-   keys that it may have besides */
-int scene_read_shape_2d(jnode object, const char *common, struct scene *s, struct wall *w);
-int scene_read_shape_3d(jnode object, const char *common, struct scene *s, struct wall *w);
-/* scene/scene_drives.c: "drives" of a boundary, behind those that are there */
-int scene_read_drives(jnode array, struct scene *s, int32_t wall);
-/* "forces" on bodies, in time */
-int scene_read_forces(jnode a, struct scene *s);
-/* a "force" or "torque", a number or a signal: the constant part of l, and pushes behind those that are
+/* scene/scene_material.c: mu, e_n, e_t and the laws beyond; kinds and pairs of them; names of walls, of parts of their
+   surfaces and of groups of bodies */
+extern const struct keys scene_law_keys, scene_kind_keys, scene_pair_keys, scene_part_keys;
+extern const struct key_type key_kind;  /* int32_t, a row of the kinds */
+extern const struct key_type key_name;  /* const char *, borrowed */
+extern const struct key_type key_group; /* int32_t: 1 + the row of the scene's names */
+extern const struct key_type key_faces; /* int64_t[2] */
+extern const struct key_type key_parts, key_mesh_parts;
+int scene_read_kinds(jnode n, struct scene *s, void *out);
+int scene_read_pairs(jnode n, struct scene *s, void *out);
+/* Of the wall that comes next; of a mesh: or *groups = whether they are the groups of its file */
+int scene_read_parts(jnode n, struct scene *s, void *out);
+int scene_read_mesh_parts(jnode n, struct scene *s, void *groups);
+
+/* scene/scene_shapes.c: the shapes of walls, into a struct wall */
+extern const struct keys scene_rectangle_keys, scene_disc_keys, scene_cylinder_keys,
+    scene_cone_keys, scene_sphere_keys, scene_mesh_keys, scene_circle_keys, scene_arc_keys,
+    scene_polygon_keys;
+int scene_read_segment(jnode n, struct scene *s, void *wall);
+int scene_read_polygon(jnode n, struct scene *s, void *wall);
+int scene_read_mesh(jnode n, struct scene *s, void *wall);
+
+/* scene/scene_walls.c: "walls" and the "room" between them; a BOX */
+extern const struct keys scene_wall_keys, scene_room_keys;
+extern const struct key_type key_box; /* struct scene_box */
+int scene_read_walls(jnode n, struct scene *s, void *out);
+int scene_read_room(jnode n, struct scene *s, void *out);
+
+/* scene/scene_drives.c: "drives" of the wall that comes next, behind those that are there; "forces" on bodies */
+extern const struct keys scene_drive_keys, scene_force_keys;
+int scene_read_drives(jnode n, struct scene *s);
+int scene_read_forces(jnode n, struct scene *s, void *out);
+/* A "force" or "torque", a number or a signal: the constant part of l, and pushes behind those that are
    there. Of l, way and axis are known. */
+extern const struct key_type key_signal; /* which scene_read_push() reads */
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
-int scene_read_box(jnode object, int dim, struct scene_box *box);
-/* scene/scene_walls.c: "room", the load of walls that have been read */
-int scene_read_room(jnode room, struct scene *s);
+/* "from" and "until", of a struct whose members AT() finds */
+#define FROM_AND_UNTIL(from_help, until_help)                                                      \
+    { "from", &key_number, AT(from), "s", "-infinity", "0.3", from_help },                         \
+    {                                                                                              \
+        "until", &key_number, AT(until), "s", "infinity", "2", until_help                          \
+    }
+int scene_check_span(jnode object, double from, double until);
 
-/* scene/scene_solids.c: "shapes"; the shape of a group of bodies and their orientation; how large they
-   are, by their radius or their size */
-int scene_read_shapes(jnode shapes, struct scene *s);
-int scene_read_form(jnode object, const struct scene *s, struct scene_form *form);
-int scene_read_sizes(jnode object, const struct scene *s, const struct scene_form *form,
-                     struct scene_size *z);
+/* scene/scene_solids.c: "shapes" of grains */
+extern const struct key_type key_forms;
+int scene_read_shapes(jnode n, struct scene *s, void *out);
 
-/* scene/scene_bodies.c: a SIZE; one that is not there leaves *z as it is */
-int scene_read_size(jnode size, int dim, struct scene_size *z);
+/* The shape of the bodies of a group or of a pour, whose struct T has a form and a size; and how large they are.
+   scene_finish_grain() scales what is given as the size of a shape. */
+extern const struct key_type key_shape, key_orientation, key_size;
+#define SHAPE_ROWS(T)                                                                              \
+    { "shape",                                                                                     \
+      &key_shape,                                                                                  \
+      offsetof(T, form),                                                                           \
+      "-",                                                                                         \
+      "a ball",                                                                                    \
+      "\"stone\"",                                                                                 \
+      "Name of the shape; without it, a ball, in 2D a disc." },                                    \
+    {                                                                                              \
+        "orientation", &key_orientation, offsetof(T, form), "rad", "0", "\"random\"",              \
+            "Uniformly random orientation, or a rotation vector (2D: an angle) for all bodies.",   \
+            .with = "shape"                                                                        \
+    }
+#define GRAIN_ROWS(T)                                                                              \
+    { "radius",                                                                                    \
+      &key_size,                                                                                   \
+      offsetof(T, size),                                                                           \
+      "m",                                                                                         \
+      REQUIRED,                                                                                    \
+      "1e-3",                                                                                      \
+      "Radii; with a shape, of the circumscribed balls, and not required.",                        \
+      .unless = "shape" },                                                                         \
+        { "size",                                                                                  \
+          &key_size,                                                                               \
+          offsetof(T, size),                                                                       \
+          "-",                                                                                     \
+          "1",                                                                                     \
+          "2",                                                                                     \
+          "Scale factor of the shape; of a sieve curve it is half the aperture.",                  \
+          .with = "shape",                                                                         \
+          .without = "radius",                                                                     \
+          .why = "a radius is given too" },                                                        \
+        SHAPE_ROWS(T)
+int scene_finish_grain(jnode object, const struct scene *s, const struct scene_form *form,
+                       struct scene_size *z);
 
 /* scene/scene_flow.c: "pour" and "remove" */
-int scene_read_pours(jnode pours, struct scene *s);
-int scene_read_removals(jnode removals, struct scene *s);
-/* scene/scene_cell.c: "cell", at time t (s); edges may be left out where there are documents among the
-   bodies */
-int scene_read_cell(jnode cell, int dim, double t, bool documents, struct scene_cell *out);
+extern const struct keys scene_pour_keys, scene_removal_keys;
+int scene_read_pours(jnode n, struct scene *s, void *out);
+int scene_read_removals(jnode n, struct scene *s, void *out);
 
-/* scene/scene_bodies.c: "bodies"; a lattice without a box fills this one (NULL: must have its
-   own). */
-int scene_read_bodies(jnode bodies, struct scene *s, const struct scene_box *box);
-int scene_read_spin(jnode spin, int dim, vec3 *w);
-/* density or mass, not both; *density holds the default */
-int scene_read_mass(const jnode *object, double *density, double *mass);
+/* scene/scene_cell.c: "cell"; edges may be left out where there are documents among the bodies */
+extern const struct keys scene_cell_keys;
+extern const struct key_type key_cell, key_repeats; /* bool[3] */
+int scene_read_cell(jnode n, struct scene *s, void *cell);
+
+/* scene/scene_bodies.c: "bodies" */
+extern const struct keys scene_bodies_keys;
+int scene_read_bodies(jnode n, struct scene *s, void *out);
+
+/* Of a type whose values are read when the other keys of the object are known */
+int scene_read_later(jnode n, const struct key *k, struct scene *s, void *member);
 
 #endif

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define AT(member) offsetof(struct wall, member)
+
 /* A unit vector across n, next to the one given, or to an axis of space */
 static vec3 scene_shapes_across(vec3 n, vec3 wish)
 {
@@ -12,163 +14,191 @@ static vec3 scene_shapes_across(vec3 n, vec3 wish)
     return length > 1e-9 ? v3_scale(1 / length, e) : v3_across(n);
 }
 
-static int read_along(jnode o, int dim, struct wall *w)
-{
-    vec3 wish = v3(0, 0, 0);
-    jnode along = json_node_key(&o, "along");
-    if (scene_read_direction(along, dim, &wish)) return 1;
-    w->along = scene_shapes_across(w->n, wish);
-    return 0;
-}
+static int read_two(jnode a, const struct key *k, struct scene *s, void *member);
 
-static int read_two(jnode a, enum json_range range, double out[2])
+static const struct key_type key_two_positive = { "two numbers > 0", "{'$ref': 'two_positive'}",
+                                                  read_two, NULL };
+static const struct key_type key_two = { "two numbers >= 0", "{'$ref': 'two_not_negative'}",
+                                         read_two, NULL };
+
+static int read_two(jnode a, const struct key *k, struct scene *s, void *member)
 {
+    const enum json_range range = k->type == &key_two_positive ? J_POSITIVE : J_NOT_NEGATIVE;
+    double *out = member;
     size_t n = 0;
+    (void)s;
     if (json_node_array(a, &n)) return 1;
     if (n != 2) return json_node_fault(a, "needs two numbers");
     return json_node_number(json_node_item(&a, 0), range, &out[0]) ||
            json_node_number(json_node_item(&a, 1), range, &out[1]);
 }
 
-static int scene_shapes_read_side(jnode o, struct wall *w)
+static const struct key_type key_side = { "string", "{'enum': ['inside', 'outside', 'both']}", NULL,
+                                          NULL };
+
+static int scene_shapes_read_side(jnode n, struct scene *s, void *member)
 {
-    int side = w->side;
-    if (json_node_word(json_node_key(&o, "side"), boundary_side_name, &side)) return 1;
-    w->side = side;
+    int side = 0;
+    (void)s;
+    if (json_node_word(n, boundary_side_name, &side)) return 1;
+    *(int32_t *)member = side;
     return 0;
 }
 
-static int read_arc(jnode o, int dim, struct wall *w)
-{
-    jnode arc = json_node_key(&o, "arc");
-    if (json_node_number(arc, J_POSITIVE, &w->arc)) return 1;
-    if (w->arc >= 2 * M_PI) return json_node_fault(arc, "must be below 2 pi; leave it out for all");
-    return read_along(o, dim, w);
-}
+/* Rows that several shapes have */
+#define CENTER                                                                                     \
+    {                                                                                              \
+        "center", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]", "Centre."                        \
+    }
+#define POINT                                                                                      \
+    {                                                                                              \
+        "point", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]",                                   \
+            "Point on the axis, where it begins."                                                  \
+    }
+#define AXIS                                                                                       \
+    {                                                                                              \
+        "axis", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Direction of the axis."        \
+    }
+#define NORMAL                                                                                     \
+    {                                                                                              \
+        "normal", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Normal."                     \
+    }
+#define RADIUS(at)                                                                                 \
+    {                                                                                              \
+        "radius", &key_positive, AT(at), "m", REQUIRED, "0.1", "Radius."                           \
+    }
+#define SIDE                                                                                       \
+    {                                                                                              \
+        "side", &key_side, AT(side), "-", "\"inside\"", "\"both\"",                                \
+            "Side on which bodies stay: \"inside\", \"outside\" or \"both\", a surface without "   \
+            "thickness.",                                                                          \
+            .read = scene_shapes_read_side                                                         \
+    }
+#define ALONG(need, text)                                                                          \
+    {                                                                                              \
+        "along", &key_direction, AT(along), "-", need, "[1, 0, 0]", text                           \
+    }
+#define ARC(need)                                                                                  \
+    {                                                                                              \
+        "arc", &key_positive, AT(arc), "rad", need, "3.14",                                        \
+            "Sector of that angle, counterclockwise about the axis from along; below 2 pi.",       \
+            .most = 6.283185307179585 /* the last double below 2 pi */,                            \
+            .limit = "must be below 2 pi; leave it out for all"                                    \
+    }
+#define ALL   "all around"
+#define FIRST "Direction in which the sector begins."
 
 /* ---- in space ---- */
 
-static int read_rectangle(jnode o, struct scene *s, struct wall *w)
+static int settle(struct wall *w, enum boundary_shape shape)
 {
-    (void)s;
-    return json_node_only(o, "center normal along sides") ||
-           json_node_need(&o, "center normal sides") ||
-           json_node_vector(json_node_key(&o, "center"), 3, &w->x) ||
-           scene_read_direction(json_node_key(&o, "normal"), 3, &w->n) || read_along(o, 3, w) ||
-           read_two(json_node_key(&o, "sides"), J_POSITIVE, w->size);
+    w->shape = shape;
+    w->along = scene_shapes_across(w->n, w->along);
+    return 0;
 }
 
-static int scene_shapes_read_disc(jnode o, struct scene *s, struct wall *w)
+#define FINISH(name, shape)                                                                        \
+    static int finish_##name(jnode o, struct scene *s, void *out)                                  \
+    {                                                                                              \
+        (void)o, (void)s;                                                                          \
+        return settle(out, shape);                                                                 \
+    }
+
+static const struct key rectangle_key[] = {
+    CENTER,
+    NORMAL,
+    ALONG("an axis", "Direction of side a."),
+    { "sides", &key_two_positive, AT(size), "m", REQUIRED, "[0.2, 0.1]", "Sides [a, b]." },
+    { 0 },
+};
+FINISH(rectangle, BOUNDARY_RECTANGLE)
+const struct keys scene_rectangle_keys = { "rectangle", rectangle_key, .finish = finish_rectangle };
+
+static const struct key disc_key[] = {
+    CENTER,
+    NORMAL,
+    RADIUS(size[1]),
+    { "hole", &key_not_negative, AT(size[0]), "m", "0", "0.02", "Radius of an orifice." },
+    { 0 },
+};
+
+static int scene_shapes_finish_disc(jnode o, struct scene *s, void *out)
 {
+    struct wall *w = out;
     (void)s;
-    if (json_node_only(o, "center normal radius hole") ||
-        json_node_need(&o, "center normal radius") ||
-        json_node_vector(json_node_key(&o, "center"), 3, &w->x) ||
-        scene_read_direction(json_node_key(&o, "normal"), 3, &w->n) ||
-        json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[1]) ||
-        json_node_number(json_node_key(&o, "hole"), J_NOT_NEGATIVE, &w->size[0]))
-        return 1;
+    w->shape = BOUNDARY_DISC;
     if (w->size[0] < w->size[1]) return 0;
     return json_node_fault(json_node_key(&o, "hole"), "must be smaller than the radius");
 }
 
-static int read_cylinder(jnode o, struct scene *s, struct wall *w)
+const struct keys scene_disc_keys = { "disc", disc_key, .finish = scene_shapes_finish_disc };
+
+static const struct key cylinder_key[] = {
+    POINT,
+    AXIS,
+    RADIUS(size[0]),
+    { "length", &key_positive, AT(size[2]), "m", "infinite", "0.3",
+      "Length of the lateral surface, from the point along the axis. Default: infinite in both "
+      "directions." },
+    SIDE,
+    ALONG("an axis", FIRST),
+    ARC(ALL),
+    { 0 },
+};
+FINISH(cylinder, BOUNDARY_CYLINDER)
+const struct keys scene_cylinder_keys = { "cylinder", cylinder_key, .finish = finish_cylinder };
+
+static const struct key cone_key[] = {
+    POINT,
+    AXIS,
+    { "radii", &key_two, AT(size), "m", REQUIRED, "[0.1, 0.02]",
+      "Radius r of [r, s] at the point, s at the other end." },
+    { "length", &key_positive, AT(size[2]), "m", REQUIRED, "0.3", "Length along the axis." },
+    SIDE,
+    ALONG("an axis", FIRST),
+    ARC(ALL),
+    { 0 },
+};
+
+static int finish_cone(jnode o, struct scene *s, void *out)
 {
+    struct wall *w = out;
     (void)s;
-    return json_node_only(o, "point axis radius length side along arc") ||
-           json_node_need(&o, "point axis radius") ||
-           json_node_vector(json_node_key(&o, "point"), 3, &w->x) ||
-           scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
-           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) ||
-           scene_shapes_read_side(o, w) || read_arc(o, 3, w);
+    if (!(w->size[0] + w->size[1] > 0))
+        return json_node_fault(json_node_key(&o, "radii"), "must not both be 0");
+    return settle(w, BOUNDARY_CONE);
 }
 
-static int read_cone(jnode o, struct scene *s, struct wall *w)
-{
-    jnode radii = json_node_key(&o, "radii");
-    (void)s;
-    if (json_node_only(o, "point axis radii length side along arc") ||
-        json_node_need(&o, "point axis radii length") ||
-        json_node_vector(json_node_key(&o, "point"), 3, &w->x) ||
-        scene_read_direction(json_node_key(&o, "axis"), 3, &w->n) ||
-        read_two(radii, J_NOT_NEGATIVE, w->size) ||
-        json_node_number(json_node_key(&o, "length"), J_POSITIVE, &w->size[2]) ||
-        scene_shapes_read_side(o, w) || read_arc(o, 3, w))
-        return 1;
-    return w->size[0] + w->size[1] > 0 ? 0 : json_node_fault(radii, "must not both be 0");
-}
+const struct keys scene_cone_keys = { "cone", cone_key, .finish = finish_cone };
 
-static int read_sphere(jnode o, struct scene *s, struct wall *w)
-{
-    (void)s;
-    return json_node_only(o, "center radius side") || json_node_need(&o, "center radius") ||
-           json_node_vector(json_node_key(&o, "center"), 3, &w->x) ||
-           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           scene_shapes_read_side(o, w);
-}
+static const struct key sphere_key[] = { CENTER, RADIUS(size[0]), SIDE, { 0 } };
 
-/* The file is read by whoever can, before the scene is built. */
-static int scene_shapes_read_mesh(jnode o, struct scene *s, struct wall *w)
+static int finish_round(jnode o, struct scene *s, void *out)
 {
-    const char *name = NULL;
-    struct scene_mesh m = { .wall = s->walls, .scale = 1 };
-    if (json_node_only(o, "file scale at parts") || json_node_need(&o, "file") ||
-        json_node_text(json_node_key(&o, "file"), &name) ||
-        scene_read_parts(json_node_key(&o, "parts"), s, &m.groups) ||
-        json_node_number(json_node_key(&o, "scale"), J_POSITIVE, &m.scale) ||
-        json_node_vector(json_node_key(&o, "at"), 3, &w->x))
-        return 1;
-    struct scene_mesh *more = realloc(s->mesh_file, ((size_t)s->meshes + 1) * sizeof *more);
-    if (more) s->mesh_file = more, m.file = strdup(name);
-    if (!m.file) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for a mesh");
-    s->mesh_file[s->meshes++] = m;
+    (void)o;
+    ((struct wall *)out)->shape = s->dim == 2 ? BOUNDARY_CYLINDER : BOUNDARY_SPHERE;
     return 0;
 }
 
-/* A shape of space, or of the plane: its key, and who reads what is there */
-struct reader_of_shape {
-    const char *key;
-    enum boundary_shape shape;
-    int (*read)(jnode o, struct scene *s, struct wall *w);
-};
-
-static int scene_shapes_read_shape(jnode o, const char *common, struct scene *s, struct wall *w,
-                                   const struct reader_of_shape *r)
-{
-    char names[100];
-    for (; r->key; r++) {
-        jnode shape = json_node_key(&o, r->key);
-        if (!shape.json) continue;
-        snprintf(names, sizeof names, "%s %s", r->key, common);
-        w->shape = r->shape;
-        return json_node_only(o, names) || r->read(shape, s, w);
-    }
-    return json_node_fault(o, "no shape");
-}
-
-int scene_read_shape_3d(jnode o, const char *common, struct scene *s, struct wall *w)
-{
-    static const struct reader_of_shape in_space[] = {
-        { "rectangle", BOUNDARY_RECTANGLE, read_rectangle },
-        { "disc", BOUNDARY_DISC, scene_shapes_read_disc },
-        { "cylinder", BOUNDARY_CYLINDER, read_cylinder },
-        { "cone", BOUNDARY_CONE, read_cone },
-        { "sphere", BOUNDARY_SPHERE, read_sphere },
-        { "mesh", BOUNDARY_MESH, scene_shapes_read_mesh },
-        { 0 },
-    };
-    return scene_shapes_read_shape(o, common, s, w, in_space);
-}
+const struct keys scene_sphere_keys = { "sphere", sphere_key, .finish = finish_round };
 
 /* ---- in the plane ---- */
 
+const struct keys scene_circle_keys = { "circle", sphere_key, .finish = finish_round };
+
+static const struct key arc_key[] = {
+    CENTER, RADIUS(size[0]), ALONG(REQUIRED, FIRST), ARC(REQUIRED), SIDE, { 0 }
+};
+const struct keys scene_arc_keys = { "arc", arc_key, .finish = finish_cylinder };
+
 /* [[x, y], [x, y]] */
-static int read_segment(jnode a, struct scene *s, struct wall *w)
+int scene_read_segment(jnode a, struct scene *s, void *out)
 {
+    struct wall *w = out;
     size_t n = 0;
     vec3 end[2] = { 0 };
     (void)s;
+    w->shape = BOUNDARY_RECTANGLE;
     if (json_node_array(a, &n)) return 1;
     if (n != 2) return json_node_fault(a, "needs two points");
     for (size_t i = 0; i < 2; i++)
@@ -181,62 +211,94 @@ static int read_segment(jnode a, struct scene *s, struct wall *w)
     return 0;
 }
 
-static int read_circle(jnode o, struct scene *s, struct wall *w)
-{
-    (void)s;
-    return json_node_only(o, "center radius side") || json_node_need(&o, "center radius") ||
-           json_node_vector(json_node_key(&o, "center"), 2, &w->x) ||
-           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           scene_shapes_read_side(o, w);
-}
+/* ---- meshes ---- */
 
-static int read_arc_2d(jnode o, struct scene *s, struct wall *w)
-{
-    (void)s;
-    return json_node_only(o, "center radius along arc side") ||
-           json_node_need(&o, "center radius along arc") ||
-           json_node_vector(json_node_key(&o, "center"), 2, &w->x) ||
-           json_node_number(json_node_key(&o, "radius"), J_POSITIVE, &w->size[0]) ||
-           scene_shapes_read_side(o, w) || read_arc(o, 2, w);
-}
+#undef AT
+#define AT(member) offsetof(struct scene_mesh, member)
 
-/* A chain of segments; closed: from the last point to the first, too */
-static int scene_shapes_read_polygon(jnode o, struct scene *s, struct wall *w)
+static const struct key mesh_key[] = {
+    { "file", &key_file, AT(file), "-", REQUIRED, "\"drum.stl\"",
+      "Triangles, see Files of surfaces." },
+    { "scale", &key_positive, AT(scale), "m", "1", "0.001", "Length of a unit of the file." },
+    { "at", &key_vector, AT(at), "m", "0", "[0, 0, 0.1]", "Position of its origin." },
+    { "parts", &key_mesh_parts, AT(groups), "-", "none", "\"groups\"",
+      "Names of parts of it, see Names.", .read = scene_read_mesh_parts },
+    { 0 },
+};
+const struct keys scene_mesh_keys = { "mesh", mesh_key };
+
+/* The file is read by whoever can, before the scene is built. */
+int scene_read_mesh(jnode o, struct scene *s, void *out)
 {
-    size_t n = 0;
-    bool closed = true;
-    jnode a = json_node_key(&o, "points");
-    if (json_node_only(o, "points closed parts") || json_node_need(&o, "points") ||
-        scene_read_parts(json_node_key(&o, "parts"), s, NULL) ||
-        json_node_bool(json_node_key(&o, "closed"), &closed) || json_node_array(a, &n))
-        return 1;
-    if (n < 2 || n > 1 << 24) return json_node_fault(a, "needs two points or more");
-    int32_t segments = (int32_t)n - !(closed && n > 2);
-    vec3 *vertex;
-    int32_t(*element)[3];
-    w->first_element = s->mesh.elements, w->elements = segments;
-    int32_t first = s->mesh.vertices;
-    if (mesh_grow(&s->mesh, (int32_t)n, segments, &vertex, &element, a.in->failure)) return 1;
-    for (size_t i = 0; i < n; i++)
-        if (json_node_vector(json_node_item(&a, i), 2, &vertex[i])) return 1;
-    for (int32_t k = 0; k < segments; k++) {
-        int32_t next = (k + 1) % (int32_t)n;
-        element[k][0] = first + k, element[k][1] = element[k][2] = first + next;
-        if (!(v3_norm(v3_sub(vertex[next], vertex[k])) > 0))
-            return json_node_fault(json_node_item(&a, (size_t)next),
-                                   "lies where the last one does");
-    }
+    struct wall *w = out;
+    struct scene_mesh *more = realloc(s->mesh_file, ((size_t)s->meshes + 1) * sizeof *more);
+    if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for a mesh");
+    s->mesh_file = more;
+    struct scene_mesh *m = &more[s->meshes++];
+    *m = (struct scene_mesh){ .wall = s->walls };
+    w->shape = BOUNDARY_MESH;
+    if (keys_read(o, &scene_mesh_keys, s, m)) return 1;
+    w->x = m->at;
     return 0;
 }
 
-int scene_read_shape_2d(jnode o, const char *common, struct scene *s, struct wall *w)
+/* A chain of segments */
+struct polygon {
+    int32_t first, points; /* of the scene's mesh */
+    bool closed;           /* from the last point to the first, too */
+};
+
+static int scene_shapes_read_points(jnode a, struct scene *s, void *out)
 {
-    static const struct reader_of_shape in_plane[] = {
-        { "segment", BOUNDARY_RECTANGLE, read_segment },
-        { "circle", BOUNDARY_CYLINDER, read_circle },
-        { "arc", BOUNDARY_CYLINDER, read_arc_2d },
-        { "polygon", BOUNDARY_MESH, scene_shapes_read_polygon },
-        { 0 },
-    };
-    return scene_shapes_read_shape(o, common, s, w, in_plane);
+    struct polygon *p = out;
+    size_t n = 0;
+    vec3 *vertex;
+    int32_t(*element)[3];
+    if (json_node_array(a, &n)) return 1;
+    if (n < 2 || n > 1 << 24) return json_node_fault(a, "needs two points or more");
+    p->first = s->mesh.vertices, p->points = (int32_t)n;
+    if (mesh_grow(&s->mesh, (int32_t)n, 0, &vertex, &element, a.in->failure)) return 1;
+    for (size_t i = 0; i < n; i++)
+        if (json_node_vector(json_node_item(&a, i), 2, &vertex[i])) return 1;
+    return 0;
+}
+
+#undef AT
+#define AT(member) offsetof(struct polygon, member)
+
+static const struct key_type key_points = { "array of vectors", "{'$ref': 'points'}", NULL, NULL };
+const struct key_type key_parts = { "array", "{'type': 'array', 'items': {'$ref': 'part'}}", NULL,
+                                    NULL, &scene_part_keys };
+
+static const struct key polygon_key[] = {
+    { "points", &key_points, 0, "m", REQUIRED, "[[0, 0], [1, 0]]",
+      "Corners of a chain of segments.", .read = scene_shapes_read_points },
+    { "closed", &key_bool, AT(closed), "-", "true", "false",
+      "A segment goes from the last point to the first." },
+    { "parts", &key_parts, 0, "-", "none", "see above", "As for a mesh.",
+      .read = scene_read_parts },
+    { 0 },
+};
+const struct keys scene_polygon_keys = { "polygon", polygon_key };
+
+int scene_read_polygon(jnode o, struct scene *s, void *out)
+{
+    struct wall *w = out;
+    struct polygon p = { 0 };
+    vec3 *vertex;
+    int32_t(*element)[3];
+    if (keys_read(o, &scene_polygon_keys, s, &p)) return 1;
+    const int32_t segments = p.points - !(p.closed && p.points > 2);
+    w->shape = BOUNDARY_MESH, w->first_element = s->mesh.elements, w->elements = segments;
+    if (mesh_grow(&s->mesh, 0, segments, &vertex, &element, o.in->failure)) return 1;
+    vertex = s->mesh.vertex + p.first;
+    for (int32_t k = 0; k < segments; k++) {
+        int32_t next = (k + 1) % p.points;
+        element[k][0] = p.first + k, element[k][1] = element[k][2] = p.first + next;
+        jnode points = json_node_key(&o, "points");
+        if (!(v3_norm(v3_sub(vertex[next], vertex[k])) > 0))
+            return json_node_fault(json_node_item(&points, (size_t)next),
+                                   "lies where the last one does");
+    }
+    return 0;
 }

@@ -30,28 +30,42 @@ static int make_box(struct shape *s, int dim, vec3 sides, struct failure *failur
     return 0;
 }
 
-static int scene_solids_read_box(jnode o, struct shape *s, int dim)
+/* A shape that is read, and what it stands for; without a volume: itself */
+struct form {
+    struct shape shape;
+    struct solid as;
+};
+
+static int scene_solids_read_box(jnode box, struct scene *scene, void *out)
 {
-    jnode box = json_node_key(&o, "box");
+    const int dim = scene->dim;
+    struct shape *s = &((struct form *)out)->shape;
     vec3 a = v3(1, 1, 1);
     if (json_node_vector(box, dim, &a)) return 1;
     if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
         return json_node_fault(box, "its sides must be positive");
-    return make_box(s, dim, a, o.in->failure);
+    return make_box(s, dim, a, box.in->failure);
 }
 
-static int read_capsule(jnode o, struct shape *s)
+struct capsule {
+    double length, radius; /* m */
+};
+
+static const struct key capsule_key[] = {
+    { "length", &key_positive, offsetof(struct capsule, length), "m", REQUIRED, "0.02",
+      "Length of the segment between the centres of the ends, along x." },
+    { "radius", &key_positive, offsetof(struct capsule, radius), "m", REQUIRED, "0.01", "Radius." },
+    { 0 },
+};
+static const struct keys capsule_keys = { "capsule", capsule_key };
+
+static int read_capsule(jnode o, struct scene *scene, void *out)
 {
-    double length = 0;
-    jnode c = json_node_key(&o, "capsule");
-    if (json_node_only(c, "length radius") || json_node_need(&c, "length radius") ||
-        json_node_number(json_node_key(&c, "length"), J_POSITIVE, &length) ||
-        json_node_number(json_node_key(&c, "radius"), J_POSITIVE, &s->round))
-        return 1;
-    double round = s->round;
-    if (shape_alloc(s, 2, 0, 0, o.in->failure)) return 1;
-    s->form = SHAPE_CAPSULE, s->round = round;
-    s->vertex[0] = v3(-length / 2, 0, 0), s->vertex[1] = v3(length / 2, 0, 0);
+    struct shape *s = &((struct form *)out)->shape;
+    struct capsule c = { 0 };
+    if (keys_read(o, &capsule_keys, scene, &c) || shape_alloc(s, 2, 0, 0, o.in->failure)) return 1;
+    s->form = SHAPE_CAPSULE, s->round = c.radius;
+    s->vertex[0] = v3(-c.length / 2, 0, 0), s->vertex[1] = v3(c.length / 2, 0, 0);
     return 0;
 }
 
@@ -71,17 +85,17 @@ static int read_ball(jnode n, int dim, vec3 *x, double *r)
     return 0;
 }
 
-static int read_balls(jnode o, struct shape *s, int dim)
+static int read_balls(jnode balls, struct scene *scene, void *out)
 {
+    struct shape *s = &((struct form *)out)->shape;
     size_t n;
-    jnode balls = json_node_key(&o, "balls");
     if (json_node_array(balls, &n)) return 1;
     if (n < 1 || n > SHAPE_VERTICES_MOST)
         return json_node_fault(balls, "needs 1 to %d balls", SHAPE_VERTICES_MOST);
-    if (shape_alloc(s, (int32_t)n, 0, 0, o.in->failure)) return 1;
+    if (shape_alloc(s, (int32_t)n, 0, 0, balls.in->failure)) return 1;
     s->form = SHAPE_CLUMP;
     for (size_t i = 0; i < n; i++)
-        if (read_ball(json_node_item(&balls, i), dim, &s->vertex[i], &s->ball[i])) return 1;
+        if (read_ball(json_node_item(&balls, i), scene->dim, &s->vertex[i], &s->ball[i])) return 1;
     return 0;
 }
 
@@ -102,24 +116,27 @@ static vec3 *read_points(jnode list, int dim, size_t least, size_t most, size_t 
     return x;
 }
 
-static int read_hull(jnode o, struct shape *s, int dim)
+static int read_hull(jnode points, struct scene *scene, void *out)
 {
+    const int dim = scene->dim;
+    struct shape *s = &((struct form *)out)->shape;
     size_t n;
-    jnode points = json_node_key(&o, "points");
     vec3 *x = read_points(points, dim, (size_t)dim + 1, POINTS_MOST, &n);
     struct failure failure = { 0 };
     if (!x) return 1;
     hull_of_points(s, dim, (int64_t)n, x, &failure);
     free(x);
     if (failure.status == EX_DATAERR) return json_node_fault(points, "%s", failure.text);
-    return failure.status ? failure_set(o.in->failure, failure.status, "%s", failure.text) : 0;
+    return failure.status ? failure_set(points.in->failure, failure.status, "%s", failure.text) : 0;
 }
 
-static int scene_solids_read_polygon(jnode o, struct shape *s)
+static int scene_solids_read_polygon(jnode list, struct scene *scene, void *out)
 {
+    struct shape *s = &((struct form *)out)->shape;
     size_t n;
-    vec3 *x = read_points(json_node_key(&o, "polygon"), 2, 3, SHAPE_VERTICES_MOST, &n);
-    int bad = !x || shape_alloc(s, (int32_t)n, 1, (int32_t)n, o.in->failure);
+    (void)scene;
+    vec3 *x = read_points(list, 2, 3, SHAPE_VERTICES_MOST, &n);
+    int bad = !x || shape_alloc(s, (int32_t)n, 1, (int32_t)n, list.in->failure);
     for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i], s->corner[i] = (int32_t)i;
     if (!bad) s->first[1] = (int32_t)n;
     free(x);
@@ -143,15 +160,17 @@ static int scene_solids_read_face(jnode face, struct shape *s, size_t room)
 }
 
 /* A polyhedron as it is given: nothing is mended. */
-static int read_polyhedron(jnode o, struct shape *s)
+static int read_polyhedron(jnode vertices, struct scene *scene, void *out)
 {
+    struct shape *s = &((struct form *)out)->shape;
     size_t n, faces;
-    jnode list = json_node_key(&o, "faces");
-    if (json_node_need(&o, "faces") || json_node_array(list, &faces)) return 1;
-    vec3 *x = read_points(json_node_key(&o, "vertices"), 3, 4, SHAPE_VERTICES_MOST, &n);
+    const jnode list = json_node_key(vertices.up, "faces");
+    (void)scene;
+    if (json_node_array(list, &faces)) return 1;
+    vec3 *x = read_points(vertices, 3, 4, SHAPE_VERTICES_MOST, &n);
     if (!x) return 1;
     size_t room = 6 * n; // a closed surface has no more
-    int bad = shape_alloc(s, (int32_t)n, 2 * (int32_t)n, (int32_t)room, o.in->failure);
+    int bad = shape_alloc(s, (int32_t)n, 2 * (int32_t)n, (int32_t)room, list.in->failure);
     for (size_t i = 0; !bad && i < n; i++) s->vertex[i] = x[i];
     free(x);
     s->faces = s->corners = 0;
@@ -163,18 +182,30 @@ static int read_polyhedron(jnode o, struct shape *s)
 }
 
 /* A regular polygon in the plane; in space a prism of them along z */
-static int read_regular(jnode o, struct shape *s, int dim)
+struct regular {
+    int64_t sides;
+    double radius, height; /* m */
+};
+
+static const struct key regular_key[] = {
+    { "sides", &key_integer, offsetof(struct regular, sides), "-", REQUIRED, "6",
+      "Number of sides.", .least = 3, .most = SIDES_MOST },
+    { "radius", &key_positive, offsetof(struct regular, radius), "m", REQUIRED, "0.01",
+      "Radius of the corners." },
+    { "height", &key_positive, offsetof(struct regular, height), "m", REQUIRED, "0.02",
+      "Height; not in 2D.", .dim = 3 },
+    { 0 },
+};
+static const struct keys regular_keys = { "regular", regular_key };
+
+static int read_regular(jnode o, struct scene *scene, void *out)
 {
-    int64_t sides = 0;
-    double radius = 0, height = 0;
-    jnode r = json_node_key(&o, "regular");
-    const char *keys = dim == 2 ? "sides radius" : "sides radius height";
-    if (json_node_only(r, keys) || json_node_need(&r, keys) ||
-        json_node_integer(json_node_key(&r, "sides"), 3, SIDES_MOST, &sides) ||
-        json_node_number(json_node_key(&r, "radius"), J_POSITIVE, &radius) ||
-        json_node_number(json_node_key(&r, "height"), J_POSITIVE, &height))
-        return 1;
-    int32_t n = (int32_t)sides, levels = dim == 2 ? 1 : 2;
+    const int dim = scene->dim;
+    struct shape *s = &((struct form *)out)->shape;
+    struct regular r = { 0 };
+    if (keys_read(o, &regular_keys, scene, &r)) return 1;
+    const double radius = r.radius, height = r.height;
+    int32_t n = (int32_t)r.sides, levels = dim == 2 ? 1 : 2;
     if (shape_alloc(s, n * levels, dim == 2 ? 1 : n + 2, dim == 2 ? n : 6 * n, o.in->failure))
         return 1;
     for (int32_t i = 0; i < n * levels; i++) {
@@ -224,22 +255,18 @@ static void turn_moments(double to[3][3], double of[3][3], double share)
         for (int j = 0; j < 3; j++) to[i][j] = (i == j ? share * trace : 0) - of[i][j];
 }
 
-/* "solid": what the balls of a clump stand for: its volume, m^3, its centre, m, and its inertia about that, m^5 */
-static int scene_solids_read_solid(jnode o, struct solid *as)
+/* "inertia" of what a clump stands for, about its centre, m^5 */
+static int read_inertia(jnode n, struct scene *scene, void *out)
 {
-    jnode n = json_node_key(&o, "solid"), rows = json_node_key(&n, "inertia");
+    struct solid *as = out;
     double inertia[3][3];
     size_t length;
-    if (!n.json) return 0;
-    if (json_node_only(n, "volume centre inertia") || json_node_need(&n, "volume centre inertia") ||
-        json_node_number(json_node_key(&n, "volume"), J_POSITIVE, &as->volume) ||
-        json_node_vector(json_node_key(&n, "centre"), 3, &as->centre) ||
-        json_node_array(rows, &length))
-        return 1;
-    if (length != 3) return json_node_fault(rows, "needs three rows of three numbers");
+    (void)scene;
+    if (json_node_array(n, &length)) return 1;
+    if (length != 3) return json_node_fault(n, "needs three n of three numbers");
     for (size_t i = 0; i < 3; i++) {
         vec3 row = v3(0, 0, 0);
-        if (json_node_vector(json_node_item(&rows, i), 3, &row)) return 1;
+        if (json_node_vector(json_node_item(&n, i), 3, &row)) return 1;
         inertia[i][0] = row.x, inertia[i][1] = row.y, inertia[i][2] = row.z;
     }
     turn_moments(as->second, inertia, 0.5);
@@ -250,13 +277,24 @@ static int scene_solids_read_solid(jnode o, struct solid *as)
                        S[0][2] * (S[1][0] * S[2][1] - S[1][1] * S[2][0]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < i; j++)
-            if (S[i][j] != S[j][i]) return json_node_fault(rows, "must be symmetric");
+            if (S[i][j] != S[j][i]) return json_node_fault(n, "must be symmetric");
     return S[0][0] > 0 && minor > 0 && det > 0
                ? 0
-               : json_node_fault(rows,
-                                 "is the inertia of no body: each principal moment must be less "
-                                 "than the sum of the others");
+               : json_node_fault(n, "is the inertia of no body: each principal moment must be less "
+                                    "than the sum of the others");
 }
+
+static const struct key_type key_inertia = { "MATRIX", "{'$ref': 'matrix'}", NULL, NULL };
+
+static const struct key solid_key[] = {
+    { "volume", &key_positive, offsetof(struct solid, volume), "m^3", REQUIRED, "1e-6", "Volume." },
+    { "centre", &key_vector, offsetof(struct solid, centre), "m", REQUIRED, "[0, 0, 0]",
+      "Centre of mass." },
+    { "inertia", &key_inertia, 0, "m^5", REQUIRED, "[[1, 0, 0], ...]",
+      "Inertia about the centre at density 1.", .read = read_inertia },
+    { 0 },
+};
+static const struct keys solid_keys = { "solid", solid_key };
 
 /* The balls in place of the keys "mesh" and "clump", and how well they fit as a comment */
 static int rewrite_clump(jnode o, const struct shape *s, const struct solid *of,
@@ -304,42 +342,71 @@ static int note_fit(jnode o, struct scene *scene, const struct clump_errors *e)
     return 0;
 }
 
+struct clump {
+    int64_t balls;
+    double error;
+};
+
+static const struct key clump_key[] = {
+    { "balls", &key_integer, offsetof(struct clump, balls), "-", REQUIRED, "20",
+      "Largest number of balls.", .least = 1, .most = CLUMP_BALLS_MOST },
+    { "error", &key_share, offsetof(struct clump, error), "-", "0", "0.1",
+      "Fewer balls are used if no point of the surface is farther from them than this, times the "
+      "radius of its circumscribed ball." },
+    { 0 },
+};
+static const struct keys clump_keys = { "clump", clump_key };
+
 /* "clump": balls in the surface of a mesh */
 static int read_clump(jnode o, struct shape *s, const struct mesh *mesh, const char *file,
                       struct solid *as, struct scene *scene)
 {
     jnode c = json_node_key(&o, "clump");
-    int64_t balls = 0;
-    struct clump_limits limits = { 0 };
+    struct clump wish = { 0 };
     struct clump_errors errors = { 0 };
     struct failure failure = { 0 };
-    if (json_node_only(c, "balls error") || json_node_need(&c, "balls") ||
-        json_node_integer(json_node_key(&c, "balls"), 1, CLUMP_BALLS_MOST, &balls) ||
-        json_node_number(json_node_key(&c, "error"), J_UNIT, &limits.error))
-        return 1;
-    limits.balls = (int32_t)balls;
+    if (keys_read(c, &clump_keys, scene, &wish)) return 1;
+    const struct clump_limits limits = { (int32_t)wish.balls, wish.error };
     clump_fit(s, as, mesh, &limits, &errors, &failure);
     if (failure.status == EX_DATAERR) return json_node_fault(c, "%s: %s", file, failure.text);
     if (failure.status) return failure_set(o.in->failure, failure.status, "%s", failure.text);
     if (rewrite_clump(o, s, as, &errors, scene) || note_fit(o, scene, &errors)) return 1;
-    return scene_solids_read_solid(o, as); // as who reads the rewritten scene gets it
+    // as who reads the rewritten scene gets it
+    return keys_read(json_node_key(&o, "solid"), &solid_keys, scene, as);
 }
 
+struct mesh_file {
+    const char *file;
+    double scale; /* m a unit of it */
+    bool hull;
+};
+
+static const struct key mesh_key[] = {
+    { "file", &key_text, offsetof(struct mesh_file, file), "-", REQUIRED, "\"stone.stl\"",
+      "Triangles, see Files of surfaces." },
+    { "scale", &key_positive, offsetof(struct mesh_file, scale), "m", "1", "0.001",
+      "Length of a unit of the file; 0.001 is for millimetres." },
+    { "hull", &key_bool, offsetof(struct mesh_file, hull), "-", "false", "true",
+      "Take the convex hull of the corners, regardless of the triangles." },
+    { 0 },
+};
+static const struct keys grain_mesh_keys = { "grain_mesh", mesh_key };
+
 /* A polyhedron, or a clump, from the triangles of a file */
-static int scene_solids_read_mesh(jnode o, struct shape *s, struct solid *as, struct scene *scene)
+static int scene_solids_read_mesh(jnode m, struct scene *scene, void *out)
 {
-    const char *name = NULL;
-    double scale = 1;
-    bool hull = false, by_hull = false;
+    struct shape *s = &((struct form *)out)->shape;
+    struct solid *as = &((struct form *)out)->as;
+    const jnode o = *m.up;
+    struct mesh_file of = { 0 };
+    bool by_hull = false;
     int32_t left_out = 0;
     struct mesh mesh = { 0 };
     struct failure failure = { 0 };
-    jnode m = json_node_key(&o, "mesh");
-    if (json_node_only(m, "file scale hull") || json_node_need(&m, "file") ||
-        json_node_text(json_node_key(&m, "file"), &name) ||
-        json_node_number(json_node_key(&m, "scale"), J_POSITIVE, &scale) ||
-        json_node_bool(json_node_key(&m, "hull"), &hull))
-        return 1;
+    if (keys_read(m, &grain_mesh_keys, scene, &of)) return 1;
+    const char *name = of.file;
+    const double scale = of.scale;
+    const bool hull = of.hull;
     if (!scene->files) return json_node_fault(m, "no files are read for what is in a document");
     const bool clump = json_node_key(&o, "clump").json;
     if (clump && hull) return json_node_fault(m, "hull: a clump has none");
@@ -371,28 +438,60 @@ static double scene_solids_power(double x, double p)
  * R = (1 - d_z^2)^(1/m) [Barr 1981], one for each direction d of a grid on the octahedron. So corners are
  * close where the surface is bent most.
  */
-static int read_superquadric(jnode o, struct shape *s, int dim)
+struct superquadric {
+    vec3 radii;         /* m */
+    double exponent[2]; /* n, m */
+    int64_t segments;   /* 0: the default */
+};
+
+static int read_exponents(jnode e, struct scene *s, void *out)
 {
-    vec3 a = v3(1, 1, 1);
-    double n = 2, m = 2;
-    int64_t segments = dim == 2 ? 16 : 5, count = 0;
-    jnode q = json_node_key(&o, "superquadric"), e = json_node_key(&q, "exponents");
-    if (json_node_only(q, "radii exponents segments") || json_node_need(&q, "radii exponents") ||
-        json_node_vector(json_node_key(&q, "radii"), dim, &a) ||
-        json_node_integer(json_node_key(&q, "segments"), 2, SEGMENTS_MOST, &segments))
-        return 1;
-    if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
-        return json_node_fault(json_node_key(&q, "radii"), "must be positive");
+    double *n = out;
     size_t exponents;
     if (json_node_array(e, &exponents)) return 1;
-    if (exponents != (size_t)dim - 1)
-        return json_node_fault(e, dim == 2 ? "needs one number" : "needs two numbers");
-    if (json_node_number(json_node_item(&e, 0), J_POSITIVE, &n) ||
-        (dim == 3 && json_node_number(json_node_item(&e, 1), J_POSITIVE, &m)))
-        return 1;
-    if (!(n >= 1 && m >= 1 && n <= 100 && m <= 100))
+    if (exponents != (size_t)s->dim - 1)
+        return json_node_fault(e, s->dim == 2 ? "needs one number" : "needs two numbers");
+    for (size_t i = 0; i < exponents; i++)
+        if (json_node_number(json_node_item(&e, i), J_POSITIVE, &n[i])) return 1;
+    if (!(n[0] >= 1 && n[1] >= 1 && n[0] <= 100 && n[1] <= 100))
         return json_node_fault(e, "must lie in [1, 100]: below 1 it is not convex");
-    int N = (int)segments;
+    return 0;
+}
+
+static int read_radii(jnode n, struct scene *s, void *out)
+{
+    vec3 *a = out;
+    if (json_node_vector(n, s->dim, a)) return 1;
+    return a->x > 0 && a->y > 0 && (s->dim == 2 || a->z > 0)
+               ? 0
+               : json_node_fault(n, "must be positive");
+}
+
+static const struct key_type key_radii = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
+static const struct key_type key_exponents = { "two numbers; 2D: one", "{'$ref': 'exponents'}",
+                                               NULL, NULL };
+
+static const struct key superquadric_key[] = {
+    { "radii", &key_radii, offsetof(struct superquadric, radii), "m", REQUIRED,
+      "[0.02, 0.01, 0.01]", "Half axes [a, b, c].", .read = read_radii },
+    { "exponents", &key_exponents, offsetof(struct superquadric, exponent), "-", REQUIRED, "[2, 2]",
+      "Exponents [n, m], 1 to 100.", .read = read_exponents },
+    { "segments", &key_integer, offsetof(struct superquadric, segments), "-", "5; 2D: 16", "10",
+      "Number of sides between two axes.", .least = 2, .most = SEGMENTS_MOST },
+    { 0 },
+};
+static const struct keys superquadric_keys = { "superquadric", superquadric_key };
+
+static int read_superquadric(jnode q, struct scene *scene, void *out)
+{
+    const int dim = scene->dim;
+    struct shape *s = &((struct form *)out)->shape;
+    struct superquadric of = { v3(1, 1, 1), { 2, 2 }, dim == 2 ? 16 : 5 };
+    int64_t count = 0;
+    if (keys_read(q, &superquadric_keys, scene, &of)) return 1;
+    const vec3 a = of.radii;
+    const double n = of.exponent[0], m = of.exponent[1];
+    int N = (int)of.segments;
     vec3 *x = scene_alloc(q, (size_t)(4 * N * N + 2), sizeof *x);
     if (!x) return 1;
     for (int i = -N; i <= N; i++)
@@ -412,40 +511,63 @@ static int read_superquadric(jnode o, struct shape *s, int dim)
     hull_of_points(s, dim, count, x, &failure);
     free(x);
     if (failure.status == EX_DATAERR) return json_node_fault(q, "%s", failure.text);
-    return failure.status ? failure_set(o.in->failure, failure.status, "%s", failure.text) : 0;
+    return failure.status ? failure_set(q.in->failure, failure.status, "%s", failure.text) : 0;
 }
 
-static int read_form(jnode o, struct shape *s, struct solid *as, struct scene *scene)
-{
-    int dim = scene->dim;
-    static const char plane[] = "box capsule balls points regular superquadric polygon",
-                      space[] = "box capsule balls points regular superquadric vertices mesh";
-    int which = json_node_choice(o, dim == 2 ? plane : space);
-    if (which < 0) return 1;
-    bool rounded = which != 1 && which != 2;
-    bool clump = which == 7 && json_node_key(&o, "clump").json;
-    char keys[140];
-    snprintf(keys, sizeof keys, "%s%s%s", dim == 2 ? plane : space,
-             dim == 3 ? " faces clump solid" : "", rounded && !clump ? " round" : "");
-    s->form = SHAPE_HULL;
-    if (json_node_only(o, keys)) return 1;
-    if ((dim == 2 || which != 6) && json_node_key(&o, "faces").json)
-        return json_node_fault(json_node_key(&o, "faces"), "goes with vertices");
-    for (int k = 0; k < 2 && dim == 3; k++) {
-        jnode extra = json_node_key(&o, k ? "solid" : "clump");
-        if (extra.json && which != (k ? 2 : 7))
-            return json_node_fault(extra, "goes with %s", k ? "balls" : "mesh");
-    }
-    return which == 0   ? scene_solids_read_box(o, s, dim)
-           : which == 1 ? read_capsule(o, s)
-           : which == 2 ? read_balls(o, s, dim) || (dim == 3 && scene_solids_read_solid(o, as))
-           : which == 3 ? read_hull(o, s, dim)
-           : which == 4 ? read_regular(o, s, dim)
-           : which == 5 ? read_superquadric(o, s, dim)
-           : which == 7 ? scene_solids_read_mesh(o, s, as, scene)
-           : dim == 2   ? scene_solids_read_polygon(o, s)
-                        : read_polyhedron(o, s);
-}
+#define AT(member) offsetof(struct form, member)
+
+static const struct key_type key_clump = { "object", "{'$ref': 'clump'}", scene_read_later, NULL,
+                                           &clump_keys };
+static const struct key_type key_brick = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
+static const struct key_type key_corners = { "array of vectors", "{'$ref': 'points'}", NULL, NULL };
+static const struct key_type key_balls = { "array of vectors", "{'$ref': 'balls'}", NULL, NULL };
+static const struct key_type key_polygons = { "array of arrays", "{'$ref': 'polygons'}",
+                                              scene_read_later, NULL };
+
+/* What a mesh is replaced by stands before it: that is not read. */
+static const struct key form_key[] = {
+    { "box", &key_brick, 0, "m", "-", "[0.02, 0.01, 0.01]",
+      "A brick with these edge lengths along x, y and z; in 2D a rectangle.", .choice = 1,
+      .read = scene_solids_read_box },
+    { "capsule", &key_object, 0, "-", "-", "{\"length\": 2, ...}",
+      "All points within a radius of a segment.", .choice = 1, .object = &capsule_keys,
+      .read = read_capsule },
+    { "balls", &key_balls, 0, "m", "-", "[[0, 0, 0, 1], ...]",
+      "A clump of balls [x, y, z, r], which may overlap; in 2D of discs [x, y, r].", .choice = 1,
+      .read = read_balls },
+    { "solid", &key_object, AT(as), "-", "balls", "{\"volume\": 1, ...}",
+      "The body that the balls of a clump represent. Default: their union.", .with = "balls",
+      .dim = 3, .object = &solid_keys },
+    { "points", &key_corners, 0, "m", "-", "[[1, 0, 0], ...]", "The convex hull of points.",
+      .choice = 1, .read = read_hull },
+    { "regular", &key_object, 0, "-", "-", "{\"sides\": 6, ...}",
+      "A prism along z over a regular polygon; in 2D the polygon.", .choice = 1,
+      .object = &regular_keys, .read = read_regular },
+    { "superquadric", &key_object, 0, "-", "-", "{\"radii\": ...}",
+      "The polyhedron whose corners lie on (|x/a|^n + |y/b|^n)^(m/n) + |z/c|^m = 1, in 2D the "
+      "polygon of |x/a|^n + |y/b|^n = 1.",
+      .choice = 1, .object = &superquadric_keys, .read = read_superquadric },
+    { "polygon", &key_corners, 0, "m", "-", "[[0, 0], [1, 0], ...]",
+      "A convex polygon, counterclockwise.", .choice = 1, .dim = 2,
+      .read = scene_solids_read_polygon },
+    { "vertices", &key_corners, 0, "m", "-", "[[1, 0, 0], ...]", "Corners of a convex polyhedron.",
+      .choice = 1, .dim = 3, .read = read_polyhedron },
+    { "faces", &key_polygons, 0, "-", REQUIRED, "[[0, 1, 2], ...]",
+      "Its faces; the corners of a face run counterclockwise seen from outside.",
+      .with = "vertices", .dim = 3 },
+    { "mesh", &key_object, 0, "-", "-", "{\"file\": \"a.stl\"}",
+      "A convex polyhedron from the triangles of a file.", .choice = 1, .dim = 3,
+      .object = &grain_mesh_keys, .read = scene_solids_read_mesh },
+    { "clump", &key_clump, 0, "-", "-", "{\"balls\": 20}",
+      "A clump of balls that fill the surface of the mesh, which may be concave.", .with = "mesh",
+      .dim = 3 },
+    { "round", &key_positive, AT(shape.round), "m", "0", "0.001",
+      "Radius of rounding: the shape becomes all points within this distance of it. Not for "
+      "capsules and clumps.",
+      .without = "capsule balls clump" },
+    { 0 },
+};
+static const struct keys form_keys = { "shape", form_key };
 
 /* What was read, in its own axes and unit; a fault of the shape is reported at its place. */
 static int scene_solids_settle(jnode o, struct shape *s, const struct solid *as, int dim,
@@ -463,15 +585,13 @@ static int scene_solids_settle(jnode o, struct shape *s, const struct solid *as,
 
 static int scene_solids_read_shape(jnode o, struct scene *s, const char *name)
 {
-    struct shape shape = { 0 };
+    struct form form = { .shape.form = SHAPE_HULL };
     struct solid_frame solid = { 0 };
-    struct solid as = { 0 }; // without a volume: the shape's own
-    int bad = read_form(o, &shape, &as, s);
-    bool hull = shape.form == SHAPE_HULL;
-    bad = bad || (hull && json_node_number(json_node_key(&o, "round"), J_POSITIVE, &shape.round));
+    int bad = keys_read(o, &form_keys, s, &form);
+    struct shape shape = form.shape;
     for (int32_t i = 0; !bad && shape.form != SHAPE_CLUMP && i < shape.vertices; i++)
         shape.ball[i] = shape.round;
-    bad = bad || scene_solids_settle(o, &shape, &as, s->dim, &solid);
+    bad = bad || scene_solids_settle(o, &shape, &form.as, s->dim, &solid);
     if (!bad && !(shape.name = strdup(name)))
         bad = failure_set(o.in->failure, EX_SOFTWARE, "no memory for a shape");
     if (bad) return shape_free(&shape), 1;
@@ -480,12 +600,14 @@ static int scene_solids_read_shape(jnode o, struct scene *s, const char *name)
     return 0;
 }
 
-int scene_read_shapes(jnode o, struct scene *s)
+const struct key_type key_forms = { "object", "{'$ref': 'shapes'}", NULL, NULL, &form_keys };
+
+int scene_read_shapes(jnode o, struct scene *s, void *out)
 {
     const char *name;
     json_t *value;
     size_t count = json_object_size(o.json);
-    if (!o.json) return 0;
+    (void)out;
     if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     if (count >= SHAPES_MOST) return json_node_fault(o, "more than %d shapes", SHAPES_MOST - 1);
     if (!(s->solid = scene_alloc(o, count + 1, sizeof *s->solid))) return 1;
@@ -504,8 +626,9 @@ int scene_read_shapes(jnode o, struct scene *s)
 
 /* ---- the shape of a group ---- */
 
-static int read_orientation(jnode n, int dim, struct scene_form *form)
+static int read_orientation(jnode n, const struct key *k, struct scene *s, void *member)
 {
+    struct scene_form *form = member;
     vec3 turn = v3(0, 0, 0);
     if (json_is_string(n.json)) {
         static const char *const words[] = { "random", NULL };
@@ -514,38 +637,35 @@ static int read_orientation(jnode n, int dim, struct scene_form *form)
         form->tumbled = true;
         return 0;
     }
-    if (scene_read_spin(n, dim, &turn)) return 1;
+    if (key_spin.read(n, k, s, &turn)) return 1;
     form->turned = quat_rotation(turn);
     return 0;
 }
 
-int scene_read_form(jnode o, const struct scene *s, struct scene_form *form)
+const struct key_type key_orientation = { "\"random\", vector",
+                                          "{'anyOf': [{'const': 'random'}, {'$ref': 'spin'}]}",
+                                          read_orientation, NULL };
+
+static int read_shape_name(jnode n, const struct key *k, struct scene *s, void *member)
 {
+    struct scene_form *form = member;
     const char *name = NULL;
-    jnode n = json_node_key(&o, "shape");
-    form->turned = (quat){ 1, 0, 0, 0 }, form->fill = 1;
+    (void)k;
     if (json_node_text(n, &name)) return 1;
-    if (!name) {
-        jnode size = json_node_key(&o, "size"), turn = json_node_key(&o, "orientation");
-        if (size.json) return json_node_fault(size, "is that of a shape; a ball has a radius");
-        return turn.json ? json_node_fault(turn, "is that of a shape") : 0;
-    }
     form->shape = shapes_find(&s->shapes, name);
     if (form->shape < 1)
         return json_node_fault(n, "no shape \"%s\"; name it under \"shapes\"", name);
     form->fill = s->shapes.s[form->shape].volume / s->shapes.s[0].volume;
-    return read_orientation(json_node_key(&o, "orientation"), s->dim, form);
+    return 0;
 }
 
-int scene_read_sizes(jnode o, const struct scene *s, const struct scene_form *form,
-                     struct scene_size *z)
+const struct key_type key_shape = { "string", "{'type': 'string'}", read_shape_name, NULL };
+
+int scene_finish_grain(jnode o, const struct scene *s, const struct scene_form *form,
+                       struct scene_size *z)
 {
-    jnode radius = json_node_key(&o, "radius"), size = json_node_key(&o, "size");
-    if (radius.json && size.json) return json_node_fault(size, "a radius is given too");
-    if (!form->shape && !radius.json) return json_node_need(&o, "radius");
-    if (radius.json) return scene_read_size(radius, s->dim, z);
-    z->min = z->max = 1;
-    if (scene_read_size(size, s->dim, z)) return 1;
+    if (keys_has(&o, "radius")) return 0;
+    if (!keys_has(&o, "size")) z->min = z->max = 1;
     scene_size_scale(z, s->solid[form->shape].reach);
     return 0;
 }

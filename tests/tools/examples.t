@@ -107,6 +107,8 @@ claim()
     'nsd-gen 500 > balls.h5') bodies balls.h5 500 ;;
     'nsd-gen -d 2 2000 > discs.h5') bodies discs.h5 '2000 and .dim == 2' ;;
     'nsd-gen --check scenes/'*' | jq .dt') output 'length == 1 and .[0] > 0' ;;
+    'nsd-gen --keys | grep -i friction') awk -F '\t' 'NF != 7 { bad = 1 } $2 == "mu" { has = 1 } END { exit bad || !has }' stdout ;;
+    'nsd-gen --schema > scene.schema.json') jq -e '."$defs"."wall-3d".properties.until' scene.schema.json ;;
     'nsd-gen --check scenes/press.json | '*) grep -qE '^pressure\s[0-9.e-]+$' stdout ;;
     'nsd-gen scenes/column.json > column.h5') bodies column.h5 '.bodies and .bodies > 100' ;;
     *'.mu = 0.5'*'{"file": "balls.txt"}'*'> rough.h5')

@@ -70,7 +70,7 @@ bad() # "what is true" FILE FILTER REGEX
     refuses 65 "$1" nsd-gen "$tmp/bad.json"
     like "and where, and the cure" "$(cat "$tmp/err")" "$4"
 }
-bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: needs one of outside, inside, below, kind, id or name'
+bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: needs at least one of the keys outside inside below kind id name'
 bad "an id that is a word is refused" six '.remove = [{id: "x"}]' 'remove\[0\].id: '
 bad "no ids are refused" six '.remove = [{id: []}]' 'remove\[0\].id: needs the numbers'
 bad "an end before the beginning is refused" six '.remove = [{id: 1, from: 2, until: 1}]' 'remove\[0\].until: must not lie before'

@@ -503,8 +503,8 @@ static void test_bad_scenes(void)
         { BODY("7"), "2:13: bodies[0]: needs an object with one of the keys x count file document "
                      "random import" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
-          "2:30: bodies[0].raduis: unknown key; known here: x radius size shape orientation v w "
-          "kind density mass fixed name" },
+          "2:30: bodies[0].raduis: unknown key; did you mean \"radius\"? known here: x radius size "
+          "shape orientation v w kind density mass fixed name" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
           "2:43: bodies[0].mass: density is given too" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"glass\"}"),

@@ -170,7 +170,7 @@ wrong "an unknown wall" '.room.walls = "boxes"' "room.walls: no wall 'boxes', bu
 wrong "walls without names" 'del(.walls[0].name)' 'none has a name: give them a "name"'
 wrong "a wall that is named twice" '.room.walls = ["box", "box"]' 'names walls.0. twice'
 wrong "an unknown key" '.room.presure = 1' 'room.presure: '
-wrong "nothing to do" '.room = { walls: "box" }' 'neither a "pressure" nor a "strain_rate"'
+wrong "nothing to do" '.room = { walls: "box" }' 'needs at least one of the keys pressure strain_rate'
 wrong "rates that change the volume" '.room.strain_rate = [1, 0, 0]' 'changes the volume at 1 per s'
 wrong "a mass without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], mass: 1 }' 'only a room with a "pressure" has a mass'
 wrong "growth without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], growth: 1 }' 'only a room with a "pressure" grows'

@@ -1,0 +1,83 @@
+/*
+ * scene/keys.h: the objects of a scene as tables of keys. A row has all that there is to know of a key: the type of
+ * its value, the member that gets it, its range, unit and default, when it may and when it must be given, and a line of
+ * help. The reading, its messages, the JSON Schema [scene/schema.h] and the tables of nsd-scene(5) come of the same rows.
+ */
+#ifndef NSD_KEYS_H
+#define NSD_KEYS_H
+
+#include "scene/json_node.h"
+#include "scene/scene.h"
+
+/* Rows leave out what they do not have. */
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+
+struct key;
+
+/* A type of values. Its JSON Schema is written with ' for ", DIM for the dimension, and names of tables and of
+   scene/schema.c's own types in $ref. */
+struct key_type {
+    const char *words; /* in the manual */
+    const char *schema;
+    int (*read)(jnode n, const struct key *k, struct scene *s, void *member);
+    void (*preset)(const struct key *k, void *member); /* to the default; NULL: it stays as it is */
+    const struct keys *object; /* the table that its schema refers to; NULL: none */
+};
+
+#define REQUIRED "required" /* the default of a key that is needed, where it is allowed */
+
+struct key {
+    const char *name;
+    const struct key_type *type;
+    size_t at; /* offset of the member in what the object becomes */
+    const char *unit, *otherwise /* the default */, *example, *help;
+
+    int dim;             /* only in scenes of that many dimensions; 0: in all */
+    int choice;          /* exactly one of the keys of that number is given; below 0: at most one */
+    bool some;           /* at least one of the keys with this mark is given */
+    const char *with;    /* only beside one of these keys */
+    const char *without; /* only beside none of these */
+    const char *
+        why; /* what it is reported with where it is not allowed; NULL: what it goes with, or does not */
+    const char *needed;        /* needed beside one of these keys */
+    const char *unless;        /* REQUIRED: not beside one of these */
+    double least, most;        /* of a number or an integer; both 0: as its type has it */
+    const char *limit;         /* what a number beyond these is reported with; NULL: the range */
+    const char *const *words;  /* of a key_word, NULL ends them */
+    const struct keys *object; /* of an object, or of the items of a list or of a map */
+    int (*read)(jnode n, struct scene *s, void *member); /* in place of the type's */
+    bool always;                                         /* read although it is not given */
+};
+
+struct keys {
+    const char *name;      /* in the schema and in the manual */
+    const struct key *key; /* rows; one without a name ends them */
+    const struct keys *const
+        *forms; /* instead of rows: one of these, by the first key of each; NULL ends them */
+    bool keeps; /* a key that is not given leaves what its member has, not the default */
+    int (*finish)(jnode o, struct scene *s,
+                  void *out); /* checks of several keys, and what follows from them; or NULL */
+};
+
+/* Reads an object. Returns 0, or not 0 after a fault has been reported. */
+int keys_read(jnode o, const struct keys *t, struct scene *s, void *out);
+/* Reads each item of a list. */
+int keys_each(jnode a, struct scene *s, void *out,
+              int (*read)(jnode n, struct scene *s, void *out));
+bool keys_has(const jnode *o, const char *key);
+/* Among names with blanks between? */
+bool keys_among(const char *names, const char *name);
+
+/* The row of another table's rows, whose members lie behind `at` */
+extern const struct key_type key_include;
+
+extern const struct key_type key_number, key_positive, key_not_negative, key_share; /* double */
+extern const struct key_type key_integer;                                           /* int64_t */
+extern const struct key_type key_bool;
+extern const struct key_type key_text; /* const char *, borrowed from the scene's text */
+extern const struct key_type key_file; /* char *, to be freed */
+extern const struct key_type key_word; /* int */
+extern const struct key_type key_vector, key_direction /* of length 1 */, key_spin; /* vec3 */
+extern const struct key_type key_object, key_list, key_map; /* a list or a map has its own read */
+
+#endif

@@ -1,0 +1,389 @@
+#include "scene/schema.h"
+
+#include "scene/scene_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { TABLES_MOST = 100 };
+
+/* A schema that is made, of scenes of one dimension */
+struct schema {
+    int dim;
+    json_t *defs; /* all that a $ref names */
+    bool bad;     /* there was no memory */
+};
+
+/* Types that are not objects, with ' for ". DIM is the dimension, MORE and LESS are one more and one less. */
+static const struct plain {
+    const char *name, *text, *plane; /* in the plane; NULL: the same */
+} plain[] = {
+    { "vector", "{'type': 'array', 'items': {'type': 'number'}, 'minItems': DIM, 'maxItems': DIM}",
+      NULL },
+    { "direction",
+      "{'type': 'array', 'items': {'type': 'number'}, 'minItems': DIM, 'maxItems': DIM, "
+      "'not': {'items': {'const': 0}}}",
+      NULL },
+    { "lengths",
+      "{'type': 'array', 'items': {'type': 'number', 'exclusiveMinimum': 0}, 'minItems': DIM, "
+      "'maxItems': DIM}",
+      NULL },
+    { "spin", "{'$ref': 'vector'}", "{'type': 'number'}" },
+    { "matrix", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': DIM, 'maxItems': DIM}",
+      NULL },
+    { "edges", "{'$ref': 'matrix'}", NULL },
+    { "loose_matrix",
+      "{'type': 'array', 'items': {'type': 'array', 'items': {'type': ['number', 'null']}, "
+      "'minItems': DIM, 'maxItems': DIM}, 'minItems': DIM, 'maxItems': DIM}",
+      NULL },
+    { "repeats",
+      "{'type': 'array', 'items': {'type': 'boolean'}, 'minItems': DIM, 'maxItems': DIM}", NULL },
+    { "exponents",
+      "{'type': 'array', 'items': {'type': 'number', 'minimum': 1, 'maximum': 100}, "
+      "'minItems': LESS, 'maxItems': LESS}",
+      NULL },
+    { "points", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': 2}", NULL },
+    { "segment", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': 2, 'maxItems': 2}",
+      NULL },
+    { "balls",
+      "{'type': 'array', 'minItems': 1, 'maxItems': 4096, 'items': {'type': 'array', "
+      "'prefixItems': "
+      "[{'type': 'number'}, {'type': 'number'}, {'type': 'number'}, {'$ref': 'positive'}], "
+      "'minItems': 4, 'maxItems': 4}}",
+      "{'type': 'array', 'minItems': 1, 'maxItems': 4096, 'items': {'type': 'array', "
+      "'prefixItems': "
+      "[{'type': 'number'}, {'type': 'number'}, {'$ref': 'positive'}], 'minItems': 3, 'maxItems': "
+      "3}}" },
+    { "positive", "{'type': 'number', 'exclusiveMinimum': 0}", NULL },
+    { "polygons",
+      "{'type': 'array', 'items': {'type': 'array', 'items': {'type': 'integer', 'minimum': 0}, "
+      "'minItems': 3}, 'minItems': 4}",
+      NULL },
+    { "interval",
+      "{'type': 'array', 'items': {'type': ['number', 'null']}, 'minItems': 2, 'maxItems': 2}",
+      NULL },
+    { "two_positive",
+      "{'type': 'array', 'items': {'type': 'number', 'exclusiveMinimum': 0}, 'minItems': 2, "
+      "'maxItems': 2}",
+      NULL },
+    { "two_not_negative",
+      "{'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 2, 'maxItems': 2}",
+      NULL },
+    { "min_max", "{'$ref': 'two_positive'}", NULL },
+    { "sieve",
+      "{'type': 'array', 'items': {'type': 'array', 'prefixItems': [{'type': 'number', "
+      "'exclusiveMinimum': 0}, {'type': 'number', 'minimum': 0, 'maximum': 1}], 'minItems': 2, "
+      "'maxItems': 2}, 'minItems': 2}",
+      NULL },
+    { "rows",
+      "{'type': 'array', 'items': {'type': 'array', 'items': {'type': 'number'}, 'minItems': 2, "
+      "'maxItems': 2}, 'minItems': 1}",
+      NULL },
+    { "numbers", "{'type': 'array', 'items': {'type': 'number'}}", NULL },
+    { "body_ids",
+      "{'type': 'array', 'items': {'type': 'integer', 'minimum': 0, 'maximum': 2147483646}}",
+      NULL },
+    { "id", "{'type': 'integer', 'minimum': 0, 'maximum': 2147483647}", NULL },
+    { "ids",
+      "{'anyOf': [{'$ref': 'id'}, {'type': 'array', 'items': {'$ref': 'id'}, 'minItems': 1}]}",
+      NULL },
+    { "names",
+      "{'anyOf': [{'type': 'string'}, {'type': 'array', 'items': {'type': 'string'}, 'minItems': "
+      "1}]}",
+      NULL },
+    { "two_names", "{'type': 'array', 'items': {'type': 'string'}, 'minItems': 2, 'maxItems': 2}",
+      NULL },
+    { "faces",
+      "{'type': 'array', 'items': {'type': 'integer', 'minimum': 0}, 'minItems': 2, 'maxItems': 2}",
+      NULL },
+    { "types",
+      "{'type': 'object', 'patternProperties': {'^[0-9]+$': {'type': 'string'}, '^comment$': "
+      "true}, "
+      "'additionalProperties': false}",
+      NULL },
+    { "shapes",
+      "{'type': 'object', 'properties': {'comment': true}, 'additionalProperties': {'$ref': "
+      "'shape'}}",
+      NULL },
+};
+
+static void put(struct schema *to, json_t *object, const char *key, json_t *value)
+{
+    if (!value || json_object_set_new(object, key, value)) to->bad = true;
+}
+
+static void append(struct schema *to, json_t *list, json_t *value)
+{
+    if (!value || json_array_append_new(list, value)) to->bad = true;
+}
+
+/* The member of an object, made where it is not there yet */
+static json_t *member(struct schema *to, json_t *object, const char *key, json_t *(*make)(void))
+{
+    if (!json_object_get(object, key)) put(to, object, key, make());
+    return json_object_get(object, key);
+}
+
+/* ---- names and texts ---- */
+
+static void define(struct schema *to, const char *name, const struct keys *table);
+
+/* In place of each name after $ref where it is defined */
+static void resolve(struct schema *to, json_t *j, const struct keys *table)
+{
+    const char *key;
+    json_t *value;
+    size_t i;
+    json_array_foreach(j, i, value) resolve(to, value, table);
+    json_object_foreach(j, key, value)
+    {
+        resolve(to, value, table);
+        if (strcmp(key, "$ref") != 0) continue;
+        define(to, json_string_value(value), table);
+        json_t *at = json_sprintf("#/$defs/%s-%dd", json_string_value(value), to->dim);
+        if (!at || json_object_set_new(j, key, at)) to->bad = true;
+    }
+}
+
+static json_t *parse(struct schema *to, const char *text, const struct keys *table)
+{
+    static const char *const token[] = { "DIM", "MORE", "LESS" };
+    const int number[] = { to->dim, to->dim + 1, to->dim - 1 };
+    char *copy = malloc(strlen(text) + 1), *o = copy;
+    for (const char *s = text; copy && *s;) {
+        int t = 0;
+        while (t < 3 && strncmp(s, token[t], strlen(token[t])) != 0) t++;
+        *o++ = t < 3 ? (char)('0' + number[t]) : *s == '\'' ? '"' : *s;
+        s += t < 3 ? strlen(token[t]) : 1;
+    }
+    if (copy) *o = 0;
+    json_t *j = copy ? json_loads(copy, 0, NULL) : NULL;
+    free(copy);
+    if (j) resolve(to, j, table);
+    return j;
+}
+
+/* ---- a key ---- */
+
+static json_t *ref(struct schema *to, const struct keys *t)
+{
+    json_t *j = json_pack("{s:s}", "$ref", t->name);
+    if (j) resolve(to, j, t);
+    return j;
+}
+
+static json_t *bare_value(struct schema *to, const struct key *k)
+{
+    if (k->type->schema) return parse(to, k->type->schema, k->type->object);
+    if (k->type == &key_list)
+        return json_pack("{s:s, s:o}", "type", "array", "items", ref(to, k->object));
+    if (k->type == &key_map)
+        return json_pack("{s:s, s:{s:b}, s:o}", "type", "object", "properties", "comment", 1,
+                         "additionalProperties", ref(to, k->object));
+    return ref(to, k->object);
+}
+
+/* What stands in the table, where it is JSON */
+static json_t *literal(const char *text)
+{
+    return text ? json_loads(text, JSON_DECODE_ANY, NULL) : NULL;
+}
+
+static json_t *value_of(struct schema *to, const struct key *k)
+{
+    json_t *j = bare_value(to, k), *standard = literal(k->otherwise),
+           *example = literal(k->example);
+    const bool unit = k->unit && *k->unit && strcmp(k->unit, "-") != 0;
+    if (k->least != 0 || k->most != 0 || k->type == &key_integer) {
+        put(to, j, "minimum",
+            k->type == &key_integer ? json_integer((json_int_t)k->least) : json_real(k->least));
+        if (isfinite(k->most))
+            put(to, j, "maximum",
+                k->type == &key_integer ? json_integer((json_int_t)k->most) : json_real(k->most));
+    }
+    put(to, j, "description",
+        unit ? json_sprintf("%s [%s]", k->help, k->unit) : json_string(k->help));
+    if (standard) put(to, j, "default", standard);
+    if (example) put(to, j, "examples", json_pack("[o]", example));
+    return j;
+}
+
+/* ---- which keys go together ---- */
+
+/* [{"required": [name]}, ...] of names with blanks between, or of the rows with a choice or a mark */
+static void append_required(struct schema *to, json_t *list, const char *name, size_t n)
+{
+    append(to, list, json_pack("{s:[o]}", "required", json_stringn(name, n)));
+}
+
+static json_t *any_of(struct schema *to, const char *names)
+{
+    json_t *list = json_array();
+    for (const char *s = names; *s; s += strcspn(s, " ")) {
+        s += strspn(s, " ");
+        append_required(to, list, s, strcspn(s, " "));
+    }
+    return json_pack("{s:o}", "anyOf", list);
+}
+
+/* k is needed beside each of the names */
+static void require_beside(struct schema *to, json_t *object, const char *names,
+                           const struct key *k)
+{
+    json_t *all = member(to, object, "dependentRequired", json_object);
+    for (const char *s = names; *s; s += strcspn(s, " ")) {
+        char name[40];
+        s += strspn(s, " ");
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(s, " "), s);
+        append(to, member(to, all, name, json_array), json_string(k->name));
+    }
+}
+
+static void add_conditions(struct schema *to, json_t *object, const struct key *k)
+{
+    const bool required = k->otherwise && !strcmp(k->otherwise, REQUIRED) && !k->choice;
+    if (k->needed) require_beside(to, object, k->needed, k);
+    if (required && k->with) require_beside(to, object, k->with, k);
+    if (required && !k->with && !k->unless)
+        append(to, member(to, object, "required", json_array), json_string(k->name));
+    if (required && k->unless) {
+        json_t *either = any_of(to, k->unless);
+        append_required(to, json_object_get(either, "anyOf"), k->name, strlen(k->name));
+        append(to, member(to, object, "allOf", json_array), either);
+    }
+    if (!k->with && !k->without) return;
+    json_t *beside = k->with ? any_of(to, k->with) : json_object();
+    if (k->without) put(to, beside, "not", any_of(to, k->without));
+    put(to, member(to, object, "dependentSchemas", json_object), k->name, beside);
+}
+
+/* Rows of one choice, exactly one of which is given, or at most one; of choice 0, at least one of those that are
+   marked so */
+static void add_choice(struct schema *to, json_t *object, const struct key *const *row, int n,
+                       int choice)
+{
+    json_t *list = json_array();
+    bool maybe = false;
+    for (int i = 0; i < n; i++) {
+        if (choice ? abs(row[i]->choice) != choice : !row[i]->some) continue;
+        append_required(to, list, row[i]->name, strlen(row[i]->name));
+        maybe = maybe || (choice && row[i]->choice < 0);
+    }
+    if (!json_array_size(list)) {
+        json_decref(list);
+        return;
+    }
+    if (maybe) append(to, list, json_pack("{s:{s:o}}", "not", "anyOf", json_deep_copy(list)));
+    append(to, member(to, object, "allOf", json_array),
+           json_pack("{s:o}", choice ? "oneOf" : "anyOf", list));
+}
+
+/* ---- a table ---- */
+
+static int rows_of(const struct keys *t, int dim, const struct key **row, int n)
+{
+    for (const struct key *k = t->key; k->name; k++)
+        if (k->type == &key_include)
+            n = rows_of(k->object, dim, row, n);
+        else if ((!k->dim || !dim || k->dim == dim) && n < TABLES_MOST)
+            row[n++] = k;
+    return n;
+}
+
+static void describe(struct schema *to, json_t *object, const struct keys *t)
+{
+    const struct key *row[TABLES_MOST];
+    const int n = rows_of(t, to->dim, row, 0);
+    json_t *properties = member(to, object, "properties", json_object);
+    put(to, properties, "comment", json_true());
+    for (int i = 0; i < n; i++) put(to, properties, row[i]->name, value_of(to, row[i]));
+    put(to, object, "additionalProperties", json_false());
+    for (int i = 0; i < n; i++) add_conditions(to, object, row[i]);
+    for (int choice = 0; choice < 3; choice++) add_choice(to, object, row, n, choice);
+}
+
+/* One of several tables, by the first key of each */
+static void describe_forms(struct schema *to, json_t *object, const struct keys *t)
+{
+    json_t *one = member(to, object, "oneOf", json_array),
+           *all = member(to, object, "allOf", json_array);
+    for (int i = 0; t->forms[i]; i++) {
+        const char *first = t->forms[i]->key->name;
+        append_required(to, one, first, strlen(first));
+        append(
+            to, all,
+            json_pack("{s:{s:[s]}, s:o}", "if", "required", first, "then", ref(to, t->forms[i])));
+    }
+}
+
+static void define(struct schema *to, const char *name, const struct keys *table)
+{
+    char full[60];
+    snprintf(full, sizeof full, "%s-%dd", name, to->dim);
+    if (json_object_get(to->defs, full)) return;
+    for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) {
+        if (strcmp(plain[i].name, name) != 0) continue;
+        const char *text = to->dim == 2 && plain[i].plane ? plain[i].plane : plain[i].text;
+        put(to, to->defs, full, parse(to, text, table));
+        return;
+    }
+    json_t *object = json_pack("{s:s}", "type", "object");
+    put(to, to->defs, full, object);
+    if (!object || !table) return;
+    if (table->forms)
+        describe_forms(to, object, table);
+    else
+        describe(to, object, table);
+}
+
+json_t *schema_of_scenes(struct failure *failure)
+{
+    struct schema to = { .defs = json_object() };
+    for (to.dim = 3; to.dim >= 2; to.dim--) define(&to, scene_keys.name, &scene_keys);
+    json_t *j =
+        json_pack("{s:s, s:s, s:s, s:{s:{s:{s:i}}, s:[s]}, s:{s:s}, s:{s:s}, s:O}", "$schema",
+                  "https://json-schema.org/draft/2020-12/schema", "title", "A scene of nsd", "type",
+                  "object", "if", "properties", "dim", "const", 2, "required", "dim", "then",
+                  "$ref", "#/$defs/scene-2d", "else", "$ref", "#/$defs/scene-3d", "$defs", to.defs);
+    json_decref(to.defs);
+    if (j && !to.bad) return j;
+    json_decref(j);
+    failure_set(failure, EX_SOFTWARE, "no memory for the schema");
+    return NULL;
+}
+
+/* ---- lines ---- */
+
+struct seen {
+    const struct keys *table[TABLES_MOST];
+    int n;
+};
+
+static bool is_new(struct seen *seen, const struct keys *t)
+{
+    for (int i = 0; i < seen->n; i++)
+        if (seen->table[i] == t) return false;
+    if (seen->n == TABLES_MOST) return false;
+    seen->table[seen->n++] = t;
+    return true;
+}
+
+static void table_lines(struct seen *seen, const struct keys *t,
+                        void (*line)(const char *const field[7]))
+{
+    if (!t || !is_new(seen, t)) return;
+    for (int i = 0; t->forms && t->forms[i]; i++) table_lines(seen, t->forms[i], line);
+    for (const struct key *k = t->key; k && k->name; k++) {
+        const char *const field[7] = { t->name,      k->name,    k->type->words, k->unit,
+                                       k->otherwise, k->example, k->help };
+        if (k->type != &key_include) line(field);
+    }
+    for (const struct key *k = t->key; k && k->name; k++)
+        table_lines(seen, k->object ? k->object : k->type->object, line);
+}
+
+void schema_lines(void (*line)(const char *const field[7]))
+{
+    struct seen seen = { 0 };
+    table_lines(&seen, &scene_keys, line);
+}
