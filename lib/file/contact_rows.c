@@ -111,6 +111,9 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct failure *f
                             failure)) ||
         (s->law && table_read_columns(r->source, "/contacts", "", first,
                                       RECORDS(layout_contact_laws, s->n, s->law), failure)) ||
+        (s->law && packing_has_springs(&f->packing) &&
+         table_read_columns(r->source, "/contacts", "", first,
+                            RECORDS(layout_contact_springs, s->n, s->law), failure)) ||
         (solved && table_read_columns(r->source, "/contacts", "", first,
                                       RECORDS(layout_found, s->n, s->found), failure)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, failure)))
@@ -200,6 +203,9 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
                              CHUNK_CONTACTS, failure)) ||
         (f->packing.law &&
          table_write_columns(s, "/contacts", "", RECORDS(layout_contact_laws, t->n, t->law),
+                             CHUNK_CONTACTS, failure)) ||
+        (packing_has_springs(&f->packing) &&
+         table_write_columns(s, "/contacts", "", RECORDS(layout_contact_springs, t->n, t->law),
                              CHUNK_CONTACTS, failure)) ||
         (t->found && table_write_columns(s, "/contacts", "", RECORDS(layout_found, t->n, t->found),
                                          CHUNK_CONTACTS, failure)) ||

@@ -197,6 +197,13 @@ static const struct column layout_impact[] = {
     { 0 },
 };
 
+/* The same where contacts of some pair have a stiffness */
+static const struct column layout_springs[] = {
+    { "k_n", "N m-1", COLUMN_F64, 1, offsetof(struct pair_law, kn) },
+    { "k_t", "N m-1", COLUMN_F64, 1, offsetof(struct pair_law, kt) },
+    { 0 },
+};
+
 /* /nsd/bonds/NAME [B][width], of frame k rows start[k] .. start[k] + count[k] - 1: members of struct
    bond */
 static const struct column layout_bonds[] = {
@@ -228,6 +235,13 @@ static const struct column layout_memory_shifts[] = {
 };
 static const struct column layout_memory_moments[] = {
     { "moment", "N m s", COLUMN_F64, 3, offsetof(struct recall, m) },
+    { 0 },
+};
+
+/* Of bonds where contacts have a stiffness */
+static const struct column layout_pressed[] = {
+    { "pressed", "1", COLUMN_I8, 1, offsetof(struct bond, pressed) },
+    { "rest", "m", COLUMN_F64, 1, offsetof(struct bond, rest) },
     { 0 },
 };
 
@@ -275,6 +289,13 @@ static const struct column layout_contact_laws[] = {
     { "mu_r", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_r) },
     { "mu_p", "m", COLUMN_F64, 1, offsetof(struct contact_law, mu_p) },
     { "tie", "1", COLUMN_I8, 1, offsetof(struct contact_law, state) },
+    { 0 },
+};
+
+/* The same where contacts have a stiffness */
+static const struct column layout_contact_springs[] = {
+    { "spring", "N m-1", COLUMN_F64, 2, offsetof(struct contact_law, spring) },
+    { "hit", "N s", COLUMN_F64, 3, offsetof(struct contact_law, hit) },
     { 0 },
 };
 
@@ -380,6 +401,12 @@ static const struct column layout_bond_balance[] = {
     { "bond_change", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_change) },
     { "bond_energy", "J", COLUMN_F64, 1, offsetof(struct report, balance.bond_energy) },
     { "broken", "J", COLUMN_F64, 1, offsetof(struct report, balance.broken) },
+    { 0 },
+};
+
+/* The same where contacts have a stiffness */
+static const struct column layout_spring_balance[] = {
+    { "implicit", "J", COLUMN_F64, 1, offsetof(struct report, balance.implicit) },
     { 0 },
 };
 

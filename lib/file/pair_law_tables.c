@@ -44,8 +44,11 @@ static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct
 {
     if (packing_alloc_laws(p, failure) || pair_law_tables_read_columns(s, layout_law, p, failure))
         return failure->status;
-    return source_has(s, "/nsd/law/impact")
-               ? pair_law_tables_read_columns(s, layout_impact, p, failure)
+    if (source_has(s, "/nsd/law/impact") &&
+        pair_law_tables_read_columns(s, layout_impact, p, failure))
+        return failure->status;
+    return source_has(s, "/nsd/law/k_n")
+               ? pair_law_tables_read_columns(s, layout_springs, p, failure)
                : 0;
 }
 
@@ -60,6 +63,9 @@ static int read_bonds(struct source *s, int64_t k, struct packing *p, struct fai
     p->bonds.n = count, p->bonds.room = count + 1;
     if (table_read_columns(s, bonds, "", start, RECORDS(layout_bonds, count, p->bonds.bond),
                            failure) ||
+        (packing_has_springs(p) &&
+         table_read_columns(s, bonds, "", start, RECORDS(layout_pressed, count, p->bonds.bond),
+                            failure)) ||
         !source_has(s, "/nsd/bonds/area"))
         return failure->status;
     return table_read_columns(s, bonds, "", start, RECORDS(layout_anchors, count, p->bonds.bond),
@@ -98,7 +104,8 @@ int pair_law_tables_write_static(hid_t file, const struct packing *p, struct fai
     if (!p->law) return 0;
     for (int32_t k = 0; k < p->kinds * p->kinds; k++) impact = impact || p->law[k].impact > 0;
     if (write_columns(file, layout_law, p, failure)) return failure->status;
-    return impact ? write_columns(file, layout_impact, p, failure) : 0;
+    if (impact && write_columns(file, layout_impact, p, failure)) return failure->status;
+    return packing_has_springs(p) ? write_columns(file, layout_springs, p, failure) : 0;
 }
 
 int pair_law_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -107,6 +114,9 @@ int pair_law_tables_write(struct table_write *s, const struct packing *p, struct
     if (table_write_span(s, "/nsd/bonds", s->bonds, p->bonds.n, failure) ||
         table_write_columns(s, bonds, "", RECORDS(layout_bonds, p->bonds.n, p->bonds.bond),
                             CHUNK_CONTACTS, failure) ||
+        (packing_has_springs(p) &&
+         table_write_columns(s, bonds, "", RECORDS(layout_pressed, p->bonds.n, p->bonds.bond),
+                             CHUNK_CONTACTS, failure)) ||
         (p->shape &&
          table_write_columns(s, bonds, "", RECORDS(layout_anchors, p->bonds.n, p->bonds.bond),
                              CHUNK_CONTACTS, failure)))

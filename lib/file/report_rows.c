@@ -15,6 +15,7 @@ static const struct {
     size_t flag; /* of a bool in struct report */
 } parts[] = {
     { layout_bond_balance, offsetof(struct report, tied) },
+    { layout_spring_balance, offsetof(struct report, soft) },
     { layout_gain_balance, offsetof(struct report, may_gain) },
     { layout_projection_balance, offsetof(struct report, projected) },
     { layout_peculiar_balance, offsetof(struct report, sheared) },

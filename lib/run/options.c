@@ -1,6 +1,8 @@
 #include "run/options.h"
 
+#include "base/number.h"
 #include "base/team.h"
+#include "contact/stiffness.h"
 #include "file/reader.h"
 #include "file/report_json.h"
 #include "solve/device.h"
@@ -22,6 +24,14 @@ const struct cli_option options_run[] = {
       .help = "write one JSON line per solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
       .help = "exit with 1 if a solve or a step fails; nsd-step ends with it" },
+    { 0 },
+};
+
+static const char *stiffness; /* --stiffness */
+
+const struct cli_option options_contacts[] = {
+    { CLI_TEXT, 0, "stiffness", &stiffness, "K|rigid|auto",
+      .help = "set the stiffness of all contacts, N/m; auto: of loads and speeds [document]" },
     { 0 },
 };
 
@@ -124,6 +134,39 @@ void options_overlap(struct packing *p, bool detected)
         die_usage("--overlap %s: the contacts were detected with %s: nsd-detect --overlap %s",
                   overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
     p->overlap = now;
+}
+
+/* *k = what --stiffness asks for, N/m */
+static void stiffness_asked(const struct packing *p, double *k)
+{
+    struct failure failure = { 0 };
+    char *end;
+    *k = 0;
+    if (!strcmp(stiffness, "rigid")) return;
+    if (!strcmp(stiffness, "auto")) {
+        if (stiffness_needed(k, p, &failure))
+            die(failure.status, "--stiffness auto: %s", failure.text);
+        return;
+    }
+    *k = number_read(stiffness, &end);
+    if (end == stiffness || *end || !(*k > 0 && isfinite(*k)))
+        die_usage("--stiffness: '%.60s' is neither a number above 0 (N/m) nor rigid nor auto",
+                  stiffness);
+}
+
+void options_stiffness(struct packing *p, const char *fixed)
+{
+    struct failure failure = { 0 };
+    double k, was[2];
+    if (!stiffness) return;
+    if (options.paper && strcmp(stiffness, "rigid"))
+        die_usage("--stiffness: contacts of the paper are rigid, and --paper is given");
+    stiffness_asked(p, &k);
+    stiffness_range(p, was);
+    if (fixed && (was[0] != k || was[1] != k))
+        die_usage("--stiffness: %s has %g N/m, and a trajectory has one", fixed, was[1]);
+    if (!fixed && stiffness_set(p, k, &failure))
+        die(failure.status, "--stiffness: %s", failure.text);
 }
 
 static FILE *log_file;

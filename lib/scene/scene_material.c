@@ -1,5 +1,6 @@
 /* scene/scene_material.c: materials: kinds, and the law of each pair of them, from their JSON. */
 
+#include "contact/spring.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -88,7 +89,7 @@ static int read_pair(jnode o, struct scene *s, bool *given)
     size_t n;
     int32_t k[2] = { 0 };
     if (json_node_only(o, "pair acts" EACH_PAIR_NUMBER(
-                              PAIR_KEY) " impact cohesion capillary rolling adhesion") ||
+                              PAIR_KEY) " impact stiffness cohesion capillary rolling adhesion") ||
         json_node_need(&o, "pair"))
         return 1;
     jnode pair = json_node_key(&o, "pair");
@@ -190,13 +191,30 @@ static int read_impact(jnode o, struct pair_law *l)
     return json_node_fault(o, "needs \"newton\" or \"bounded\"");
 }
 
+/* K, or {"normal": K, "tangential": K} */
+static int read_stiffness(jnode o, struct pair_law *l)
+{
+    if (!o.json) return 0;
+    if (!json_is_object(o.json)) {
+        if (json_node_number(o, J_POSITIVE, &l->kn)) return 1;
+        l->kt = SPRING_ACROSS * l->kn;
+        return 0;
+    }
+    if (json_node_only(o, "normal tangential") || json_node_need(&o, "normal") ||
+        json_node_number(json_node_key(&o, "normal"), J_POSITIVE, &l->kn))
+        return 1;
+    l->kt = SPRING_ACROSS * l->kn;
+    return json_node_number(json_node_key(&o, "tangential"), J_POSITIVE, &l->kt);
+}
+
 int scene_read_laws(const jnode *o, double t, struct pair_law *l)
 {
     return read_cohesion(json_node_key(o, "cohesion"), l) ||
            read_capillary(json_node_key(o, "capillary"), l) ||
            read_rolling(json_node_key(o, "rolling"), l) ||
            read_adhesion(json_node_key(o, "adhesion"), t, l) ||
-           read_impact(json_node_key(o, "impact"), l);
+           read_impact(json_node_key(o, "impact"), l) ||
+           read_stiffness(json_node_key(o, "stiffness"), l);
 }
 
 /* Names of walls, of parts of their surfaces and of groups of bodies, from their JSON. */

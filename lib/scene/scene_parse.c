@@ -62,7 +62,7 @@ static int scene_parse_read_scene(jnode o, struct scene *s)
                               PAIR_KEY) " kinds pairs time "
                                         "overlap bodies walls room forces pour remove cell shapes "
                                         "cohesion capillary rolling "
-                                        "adhesion impact") ||
+                                        "adhesion impact stiffness") ||
         json_node_need(&o, "dt") || json_node_text(json_node_key(&o, "title"), &title) ||
         json_node_integer(json_node_key(&o, "dim"), 2, 3, &dim) ||
         json_node_integer(json_node_key(&o, "seed"), 0, UINT32_MAX, &seed) ||

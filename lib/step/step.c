@@ -104,6 +104,7 @@ static int step_begin(struct step_makers *m,
 static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
 {
     rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    rep->soft = packing_has_springs(p);
     rep->projected = rep->sheared = false;
     return rep->balanced;
 }
@@ -131,7 +132,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                                       .rho_factor = o->solve.method->rho,
                                       .order = o->order };
     if (problem_prepare_delassus(&p, W, &form, failure)) return failure->status;
-    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = false;
+    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = rep->soft = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];
