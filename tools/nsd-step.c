@@ -1,5 +1,5 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
-#include "contact/stiffness.h"
+#include "scene/stiffness.h"
 #include "file/background_writer.h"
 #include "file/reader.h"
 #include "file/writer.h"

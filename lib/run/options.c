@@ -2,7 +2,7 @@
 
 #include "base/number.h"
 #include "base/team.h"
-#include "contact/stiffness.h"
+#include "scene/stiffness.h"
 #include "file/reader.h"
 #include "file/report_json.h"
 #include "solve/device.h"

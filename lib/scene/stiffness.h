@@ -1,16 +1,16 @@
 /*
- * contact/stiffness.h: the stiffness that contacts of a packing need [contact/spring.h].
+ * scene/stiffness.h: the stiffness that contacts of a packing need [contact/spring.h].
  *
  * The least stiffness with which the heaviest load that stands in the packing overlaps a contact by at most STATIC of
  * the smallest radius, and its fastest impact by at most IMPACT of it:
  *
  *     k >= F / (STATIC r),   k >= m v^2 / (IMPACT r)^2.
  *
- * F is the largest of the weight of the heaviest body; of the weight of the column above a cross-section (2 R)^2 of the
- * largest body, in the plane 2 R, with the bodies' mean density, a share DENSE of space and the height that they take;
- * and of what loads and stresses push on such a cross-section, spread over that of all bodies. v is the fastest speed
- * of a body or wall, or that of a fall from the highest body to the lowest body or wall, less the height that all bodies
- * take as a loose packing, and m the heaviest body.
+ * F is the largest of the weight of the heaviest body; and, on a cross-section (2 R)^2 of the largest body, in the plane
+ * 2 R, of the weight of a column as high as the bodies are and may fall, at their mean density and a share DENSE of space,
+ * and of the pressure of loads and of the cell, at the time at which it is largest. v is the fastest speed of a body or
+ * wall and of what falls or is driven by a load, as the time step has it [scene/time_step.h], m the heaviest body. Bodies
+ * that inlets bring count.
  */
 #ifndef NSD_STIFFNESS_H
 #define NSD_STIFFNESS_H
