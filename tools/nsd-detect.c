@@ -68,7 +68,7 @@ static void detect(struct frame *f, const char *where)
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
     options_overlap(&f->packing, false);
-    options_stiffness(&f->packing, NULL);
+    options_stiffness(f, NULL);
     flow(&f->packing);
     struct packing *p = &f->packing;
     if (external_force_begin(&p->outside, p->mass, p->n, p->walls, &failure)) die_why(&failure);

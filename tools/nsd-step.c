@@ -704,7 +704,7 @@ static void start_in_place(struct run *r, struct reader *in, const char *path, d
     set_dt(&r->f.packing, asked, path);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
-    options_stiffness(&r->f.packing, path);
+    options_stiffness(&r->f, path);
     if (theta != r->f.packing.theta)
         die_usage("--theta: %s has %g, and a trajectory has one", path, theta);
     if (writer_take_place(r->out, &failure)) die_why(&failure);
@@ -720,7 +720,7 @@ static void start(struct run *r, struct reader *in, double asked)
     set_dt(&r->f.packing, asked, NULL);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
-    options_stiffness(&r->f.packing, NULL);
+    options_stiffness(&r->f, NULL);
     if (writer_open(&r->out, output, WRITER_TRAJECTORY, &failure)) die_why(&failure);
     if (frame_note(&r->f, cli_history(), &failure)) die_why(&failure);
 }

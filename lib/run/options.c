@@ -1,10 +1,9 @@
 #include "run/options.h"
 
-#include "base/number.h"
 #include "base/team.h"
-#include "scene/stiffness.h"
 #include "file/reader.h"
 #include "file/report_json.h"
+#include "scene/stiffness.h"
 #include "solve/device.h"
 
 #include <errno.h>
@@ -136,37 +135,26 @@ void options_overlap(struct packing *p, bool detected)
     p->overlap = now;
 }
 
-/* *k = what --stiffness asks for, N/m */
-static void stiffness_asked(const struct packing *p, double *k)
+void options_stiffness(struct frame *f, const char *fixed)
 {
-    struct failure failure = { 0 };
-    char *end;
-    *k = 0;
-    if (!strcmp(stiffness, "rigid")) return;
-    if (!strcmp(stiffness, "auto")) {
-        if (stiffness_needed(k, p, &failure))
-            die(failure.status, "--stiffness auto: %s", failure.text);
-        return;
-    }
-    *k = number_read(stiffness, &end);
-    if (end == stiffness || *end || !(*k > 0 && isfinite(*k)))
-        die_usage("--stiffness: '%.60s' is neither a number above 0 (N/m) nor rigid nor auto",
-                  stiffness);
-}
-
-void options_stiffness(struct packing *p, const char *fixed)
-{
+    struct packing *p = &f->packing;
     struct failure failure = { 0 };
     double k, was[2];
     if (!stiffness) return;
     if (options.paper && strcmp(stiffness, "rigid"))
         die_usage("--stiffness: contacts of the paper are rigid, and --paper is given");
-    stiffness_asked(p, &k);
+    if (stiffness_read(&k, stiffness, p, &failure)) {
+        if (failure.status == EX_USAGE) die_usage("--stiffness: %s", failure.text);
+        die(failure.status, "--stiffness: %s", failure.text);
+    }
     stiffness_range(p, was);
     if (fixed && (was[0] != k || was[1] != k))
         die_usage("--stiffness: %s has %g N/m, and a trajectory has one", fixed, was[1]);
     if (!fixed && stiffness_set(p, k, &failure))
         die(failure.status, "--stiffness: %s", failure.text);
+    if (p->law && !f->contacts.law &&
+        contacts_alloc_laws(&f->contacts)) // those of the last step were rigid
+        die(EX_SOFTWARE, "no memory for the laws");
 }
 
 static FILE *log_file;

@@ -5,6 +5,7 @@
 #ifndef NSD_OPTIONS_H
 #define NSD_OPTIONS_H
 
+#include "file/frame.h"
 #include "run/cli.h"
 #include "state/account.h"
 #include "step/step_options.h"
@@ -34,9 +35,9 @@ void options_theta(struct packing *packing, bool detected);
  */
 void options_overlap(struct packing *packing, bool detected);
 
-/* Sets the stiffness of contacts: --stiffness, else the packing's own. fixed: a file that has one, which another may not
+/* Sets the stiffness of contacts: --stiffness, else the frame's own. fixed: a file that has one, which another may not
    follow; or NULL */
-void options_stiffness(struct packing *packing, const char *fixed);
+void options_stiffness(struct frame *frame, const char *fixed);
 
 /*
  * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,

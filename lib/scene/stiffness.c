@@ -1,9 +1,12 @@
 /* scene/stiffness.c: a stiffness out of the loads and speeds of a packing [scene/stiffness.h]. */
 #include "scene/stiffness.h"
 
+#include "base/number.h"
 #include "contact/spring.h"
 #include "scene/inlet.h"
 #include "scene/time_step.h"
+
+#include <string.h>
 
 #define DENSE 0.64
 
@@ -66,6 +69,18 @@ int stiffness_needed(double *k, const struct packing *p, struct failure *failure
     return failure_set(
         failure, EX_DATAERR,
         "nothing moves or is loaded, by which a stiffness could be chosen: give it in N/m");
+}
+
+int stiffness_read(double *k, const char *text, const struct packing *p, struct failure *failure)
+{
+    char *end;
+    *k = 0;
+    if (!strcmp(text, "rigid")) return 0;
+    if (!strcmp(text, "auto")) return stiffness_needed(k, p, failure);
+    *k = number_read(text, &end);
+    if (end != text && !*end && *k > 0 && isfinite(*k)) return 0;
+    return failure_set(failure, EX_USAGE,
+                       "'%.60s' is neither a number above 0 (N/m) nor rigid nor auto", text);
 }
 
 int stiffness_set(struct packing *p, double k, struct failure *failure)
