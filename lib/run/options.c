@@ -30,7 +30,7 @@ static const char *stiffness; /* --stiffness */
 
 const struct cli_option options_contacts[] = {
     { CLI_TEXT, 0, "stiffness", &stiffness, "K|rigid|auto",
-      .help = "set the stiffness of all contacts, N/m; auto: of loads and speeds [document]" },
+      .help = "set the stiffness of contacts, N/m [document, else rigid]" },
     { 0 },
 };
 
