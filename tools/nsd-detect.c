@@ -25,7 +25,7 @@ static const struct cli_option own[] = {
       .help = "also write the contact problem in the FCLIB format" },
     { 0 },
 };
-static const struct cli_option *const tables[] = { options_detect, own, NULL };
+static const struct cli_option *const tables[] = { options_detect, options_contacts, own, NULL };
 
 const struct cli_tool tool = {
     "nsd-detect", "[FILE ...]",
@@ -68,6 +68,7 @@ static void detect(struct frame *f, const char *where)
     tool_wants_packing(f, where);
     options_theta(&f->packing, false);
     options_overlap(&f->packing, false);
+    options_stiffness(f, NULL);
     flow(&f->packing);
     struct packing *p = &f->packing;
     if (external_force_begin(&p->outside, p->mass, p->n, p->walls, &failure)) die_why(&failure);

@@ -55,6 +55,9 @@ static void add_law(json_t *j, const struct pair_law *l)
     if (pair_law_rolls(l))
         json_object_set_new(j, "rolling",
                             json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p));
+    if (pair_law_springs(l))
+        json_object_set_new(j, "stiffness",
+                            json_pack("{s:f, s:f}", "normal", l->kn, "tangential", l->kt));
     if (!pair_law_adheres(l)) return;
     json_t *a = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "c_n", l->cn, "c_t", l->ct, "w", l->w,
                           "eta", l->eta, "area", l->area, "beta", l->beta);
@@ -313,6 +316,11 @@ static void add_tie(json_t *j, const struct contact_law *t)
     if (t->beta > 0) {
         json_object_set_new(j, "stiffness", json_numbers(t->stiff, 2));
         json_object_set_new(j, "jump", json_numbers(t->jump, 3));
+    }
+    if (t->spring[0] > 0) {
+        json_object_set_new(j, "spring", json_numbers(t->spring, 2));
+        json_object_set_new(j, "stretch", json_numbers(t->jump, 3));
+        json_object_set_new(j, "meets", json_boolean(t->state & CONTACT_LAW_MEETS));
     }
     if (t->mu_r > 0 || t->mu_p > 0) {
         json_object_set_new(j, "mu_r", json_number(t->mu_r));

@@ -1,4 +1,5 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
+#include "scene/stiffness.h"
 #include "file/background_writer.h"
 #include "file/reader.h"
 #include "file/writer.h"
@@ -65,8 +66,9 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
-static const struct cli_option *const tables[] = { own,         options_solve, options_detect,
-                                                   options_run, options_loop,  NULL };
+static const struct cli_option *const tables[] = {
+    own, options_solve, options_detect, options_contacts, options_run, options_loop, NULL
+};
 
 const struct cli_tool tool = {
     "nsd-step", "[FILE ...]",
@@ -202,6 +204,23 @@ static void summary(int64_t made)
              "at "
              "up to %.3g m/s",
              (long long)total.growing, total.approach);
+}
+
+/* With which stiffness the contacts were solved, where they have one */
+static void say_stiffness(const struct packing *p)
+{
+    double k[2];
+    const double soft = stiffness_softness(p);
+    stiffness_range(p, k);
+    if (!(k[1] > 0)) return;
+    char range[60];
+    if (k[0] < k[1])
+        snprintf(range, sizeof range, "%.3g to %.3g", k[0], k[1]);
+    else
+        snprintf(range, sizeof range, "%.3g", k[1]);
+    warn("stiffness of contacts %s N/m, compliance %.2g of W%s", range, soft,
+         soft < STIFFNESS_SOFT ? ": too stiff for dt to keep sweeps from growing with the packing"
+                               : "");
 }
 
 /* ---- how far it is ---- */
@@ -630,6 +649,7 @@ static void start_in_place(struct run *r, struct reader *in, const char *path, d
     set_dt(&r->f.packing, asked, path);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
+    options_stiffness(&r->f, path);
     if (theta != r->f.packing.theta)
         die_usage("--theta: %s has %g, and a trajectory has one", path, theta);
     if (writer_take_place(r->out, &failure)) die_why(&failure);
@@ -645,6 +665,7 @@ static void start(struct run *r, struct reader *in, double asked)
     set_dt(&r->f.packing, asked, NULL);
     options_theta(&r->f.packing, false);
     options_overlap(&r->f.packing, false);
+    options_stiffness(&r->f, NULL);
     if (writer_open(&r->out, output, WRITER_TRAJECTORY, &failure)) die_why(&failure);
     if (frame_note(&r->f, cli_history(), &failure)) die_why(&failure);
 }
@@ -717,6 +738,7 @@ int tool_main(int argc, char **argv)
     if (loop_asks()) loop_close(&r.ended);
     const char *told = processes_leave();
     summary(made);
+    say_stiffness(&r.f.packing);
     options_leave_device();
     if (told) warn("%s", told);
     say_worst(&r.f.packing.names);

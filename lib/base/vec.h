@@ -121,4 +121,16 @@ static inline quat quat_rotation(vec3 a)
     return q;
 }
 
+/* The rotation that takes the unit vector `from` to `to` the short way, of a vector x across `from`; 0 where it is more
+   than nearly half a turn */
+static inline vec3 v3_turn_along(vec3 from, vec3 to, vec3 x)
+{
+    vec3 axis = v3_cross(from, to);
+    double c = v3_dot(from, to);
+    if (!(c > -0.999)) return v3(0, 0, 0);
+    // Rodrigues: x + axis x x + axis x (axis x x)/(1 + c)
+    vec3 y = v3_cross(axis, x);
+    return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
+}
+
 #endif

@@ -2,6 +2,7 @@
 #include "contact/contact_law.h"
 
 #include "contact/bond_anchor.h"
+#include "contact/spring.h"
 #include "state/attraction.h"
 #include "state/freedom.h"
 #include "state/kinematics.h"
@@ -66,17 +67,6 @@ double contact_laws_reach(const struct packing *p)
     return fmax(reach, contact_laws_touch_most(p));
 }
 
-/* The rotation that takes the unit vector `from` to `to` the short way, of a vector across `from` */
-static vec3 turn_along(vec3 from, vec3 to, vec3 x)
-{
-    vec3 axis = v3_cross(from, to);
-    double c = v3_dot(from, to);
-    if (!(c > -0.999)) return v3(0, 0, 0); // the pair has been passed: nothing of the shear is left
-    // Rodrigues: x + axis x x + axis x (axis x x)/(1 + c)
-    vec3 y = v3_cross(axis, x);
-    return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
-}
-
 bool contact_laws_bond(const struct packing *p, const struct pair_law *l)
 {
     const double end = p->t + p->dt, rounding = 4 * DBL_EPSILON; // of times, relative
@@ -107,7 +97,7 @@ static void contact_law_set_bond(struct contact_law *t, const struct packing *p,
     } else if (due) {
         if (l->beta > 0) c->en = c->et = 0; // nothing rebounds that is bonded where it touches
     } else if (old && (old->beta > 0 || l->forever)) {
-        vec3 slip = turn_along(old->n, c->n, old->slip);
+        vec3 slip = v3_turn_along(old->n, c->n, old->slip);
         t->beta = old->beta, t->state |= CONTACT_LAW_BONDED;
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
     }
@@ -162,9 +152,10 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->among;
     if (pair_law_adheres(l)) contact_law_set_bond(t, p, c, old, of);
-    if (contact_law_holds(t) && c->gap > 0) t->offset = offset_apart(p, c);
+    if (contact_law_holds(t) && c->gap > 0 && !pair_law_springs(l)) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
+    spring_set(t, p, c, old);
 }
 
 /* Are both contacts of the same two bodies? */
@@ -236,8 +227,14 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
                                        const struct contact_law *t, const struct found *found)
 {
     const struct pair_law *l = law_of(p, c);
-    struct contact_law_end e = { .gap = c->gap + p->dt * opening_after(p, c, t, found),
-                                 .beta = t->beta };
+    struct contact_law_end e = { .beta = t->beta };
+    if (t->spring[0] > 0) {
+        struct spring_end s = spring_end(p->dt, c, t, found, opening_of(p, c, step_ahead(p)));
+        e.gap = c->gap + p->dt * s.un;
+        for (int k = 0; k < 3; k++) e.stretch[k] = s.stretch[k];
+    } else {
+        e.gap = c->gap + p->dt * opening_after(p, c, t, found);
+    }
     e.wet = t->state & CONTACT_LAW_WET && e.gap < bridge_reach(l);
     for (int k = 0; k < 2 && t->beta > 0; k++) e.slip[k] = t->jump[1 + k] + p->dt * found->u[1 + k];
     double open = fmax(0, e.gap);
@@ -293,6 +290,10 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
         after += left * left * stretched;
         a.broken += (1 - left * left) * stretched;
     }
+    if (t->spring[0] > 0) {
+        before += spring_energy(t, t->jump), after += spring_energy(t, end->stretch);
+        a.implicit = spring_implicit(t, end->stretch);
+    }
     a.change = after - before, a.stored = after;
     return a;
 }
@@ -326,6 +327,15 @@ static struct made made_by_push(const struct packing *p, const struct contacts *
                               contact_law_is_due(p, c, bonds_find(&p->bonds, c, &pair), broken) };
 }
 
+/* Is there a spring to be remembered: one that pushes, or that keeps the overlap of its pair out of the push? */
+static bool contact_law_is_pressed(const struct packing *p, const struct contact *c,
+                                   const struct contact_law *t, const struct found *found,
+                                   const struct contact_law_end *end)
+{
+    if (!(t->spring[0] > 0)) return false;
+    return contact_law_pushes(p, t, found) || (c->gap - t->jump[0] < 0 && end->gap < 0);
+}
+
 /* What lasts of contact i; false: nothing does. */
 static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i, struct made made,
                     struct bond *b)
@@ -339,11 +349,15 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     bool rests = bonded && (e.gap <= contact_laws_touch(p, c) || contact_anchored(c));
     *b = (struct bond){ .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
     for (int k = 0; k < 3; k++) b->shift[k] = c->shift[k];
+    b->pressed = contact_law_is_pressed(p, c, t, &s->found[i], &e);
+    if (b->pressed) b->rest = spring_rest_after(p, c, t);
     b->gap = e.gap, b->beta = made.bonded ? law_of(p, c)->beta : e.beta;
     b->wet = e.wet ? BOND_WET : made.wet && e.gap < bridge_reach(law_of(p, c)) ? BOND_WETTED : 0;
-    if (!b->wet && !(b->beta > 0) && !rests) return false;
-    vec3 slip = v3_axpy(v3_scale(e.slip[0], c->t1), e.slip[1], contact_t2(c));
-    if (e.beta > 0) b->slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
+    if (!b->wet && !(b->beta > 0) && !rests && !b->pressed) return false;
+    const double *across = b->pressed ? e.stretch + 1 : e.slip;
+    vec3 slip = v3_axpy(v3_scale(across[0], c->t1), across[1], contact_t2(c));
+    if (e.beta > 0 || b->pressed)
+        b->slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
     return true;
 }
 
@@ -431,7 +445,8 @@ static bool contact_law_keep(struct contact_law_keeping *y, int64_t i)
     while (y->pair < y->p->bonds.n && contact_law_comes_before(&y->p->bonds.bond[y->pair], c))
         y->pair++;
     struct made made = made_by_push(y->p, y->s, i, y->pair);
-    bool lasts = t->state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED) || made.wet || made.bonded;
+    bool lasts = t->state & (CONTACT_LAW_WET | CONTACT_LAW_BONDED) || made.wet || made.bonded ||
+                 t->spring[0] > 0;
     if (!lasts || !bond_of(y->p, y->s, i, made, &b)) return true;
     bool bonded =
         (t->state & CONTACT_LAW_BONDED && (t->beta > 0 || contact_anchored(c))) || made.bonded;

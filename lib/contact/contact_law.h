@@ -80,6 +80,7 @@ static inline void contact_law_push(double dt, const struct contact_law *t, cons
 /* What has become of a tie when the step is over */
 struct contact_law_end {
     double gap, slip[2]; /* m */
+    double stretch[3];   /* m: of the contact's springs; 0: rigid */
     double beta;
     bool wet;
 };
@@ -90,6 +91,7 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
    what was given up by bonds that broke and by liquid that joined */
 struct contact_law_account {
     double change, stored, broken;
+    double implicit; /* lost by the implicit step of springs, at least 0 [contact/spring.h] */
 };
 struct contact_law_account contact_law_account(const struct packing *p, const struct contact *c,
                                                const struct contact_law *t,

@@ -1,6 +1,8 @@
 /* contact/depth.c: the deepest contact, and bodies that are wedged [contact/depth.h]. */
 #include "contact/depth.h"
 
+#include "contact/spring.h"
+
 #include <stdlib.h>
 
 /* A body's side of a contact that is too deep, its normal pointing into the body */
@@ -15,10 +17,12 @@ static int by_body(const void *x, const void *y)
     return (a->body > b->body) - (a->body < b->body);
 }
 
-static double radii(const struct packing *p, const struct contact *c)
+/* Of contact i, without what its springs carry */
+static double radii(const struct packing *p, const struct contacts *s, int64_t i)
 {
+    const struct contact *c = &s->c[i];
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
-    return -c->gap / small;
+    return -(s->law ? spring_unloaded_gap(c, &s->law[i]) : c->gap) / small;
 }
 
 /* Whether normals among these sides, of one body, point against each other */
@@ -48,7 +52,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     *d = (struct depth){ 0 };
     for (int64_t i = 0; i < s->n; i++) {
         if (s->c[i].gap >= 0) continue; // as most are, without a quotient
-        double depth = radii(p, &s->c[i]);
+        double depth = radii(p, s, i);
         deep += depth > DEPTH_WEDGED;
         if (depth > d->deepest) d->deepest = depth, most = i;
     }
@@ -62,7 +66,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        if (!(c->gap < 0 && radii(p, c) > DEPTH_WEDGED)) continue;
+        if (!(c->gap < 0 && radii(p, s, i) > DEPTH_WEDGED)) continue;
         if (p->mass[c->b] > 0) side[n++] = (struct depth_side){ c->b, c->n };
         if (c->a >= 0 && p->mass[c->a] > 0)
             side[n++] = (struct depth_side){ c->a, v3_scale(-1, c->n) };

@@ -273,6 +273,7 @@ int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3
 /* What decides which pairs that do not touch the law sees */
 struct detect_sight {
     bool meets;  /* those that approach, too */
+    bool soft;   /* the same of contacts with a stiffness, if there are any */
     double calm; /* m/s */
     double near; /* m: what loads may close in a step */
     double most; /* m: half the smallest radius, so that lists of neighbours stay short where
@@ -281,8 +282,9 @@ struct detect_sight {
 
 static struct detect_sight ray_of(const struct packing *p)
 {
-    return (struct detect_sight){ overlap_meets(p->overlap), freedoms_calm(p),
-                                  p->dt * freedoms_speed(p), 0.5 * packing_whole(p).small };
+    return (struct detect_sight){ overlap_meets(p->overlap), packing_has_springs(p),
+                                  freedoms_calm(p), p->dt * freedoms_speed(p),
+                                  0.5 * packing_whole(p).small };
 }
 
 /* m: how far apart two bodies may be that touch before the next step's contacts are sought: those that
@@ -294,12 +296,13 @@ static double seeing_reach(const struct packing *p)
     double speed = p->shape ? all.rotation_speed : all.speed; // a corner is faster than its body
     for (int32_t w = 0; w < p->walls; w++) speed = fmax(speed, wall_top_speed(p, &p->wall[w]));
     double near = fmin(OVERLAP_NEAR * all.large + o.near, o.most);
-    return o.meets ? fmax(near, fmin(p->dt * (2 * speed + o.calm), o.most)) : near;
+    return o.meets || o.soft ? fmax(near, fmin(p->dt * (2 * speed + o.calm), o.most)) : near;
 }
 
 double detect_reach(const struct packing *p, double gap)
 {
-    double reach = overlap_sees_gaps(p->overlap) ? fmax(gap, seeing_reach(p)) : gap;
+    bool sees = overlap_sees_gaps(p->overlap) || packing_has_springs(p);
+    double reach = sees ? fmax(gap, seeing_reach(p)) : gap;
     return p->law ? fmax(reach, contact_laws_reach(p)) : reach;
 }
 
@@ -308,8 +311,11 @@ double detect_reach(const struct packing *p, double gap)
 static bool is_seen(const struct packing *p, const struct detect_sight *o, const struct contact *c)
 {
     double small = c->a < 0 ? p->radius[c->b] : dmin(p->radius[c->a], p->radius[c->b]);
+    const bool soft = o->soft && packing_springs(p, c);
+    if (!soft && !overlap_sees_gaps(p->overlap)) return false;
     if (c->gap <= OVERLAP_NEAR * small) return true;
     double approach = -opening_of(p, c, step_ahead(p));
+    if (soft) return c->gap <= fmax(o->near, p->dt * (approach + o->calm));
     if (c->en > 0 && approach > o->calm) return false;
     return c->gap <= o->near || (o->meets && c->gap <= p->dt * (approach + o->calm));
 }
@@ -319,8 +325,8 @@ static bool is_seen(const struct packing *p, const struct detect_sight *o, const
 static void keep_seen(struct contacts *s, const struct packing *p, double gap)
 {
     int64_t n = 0;
-    bool sees = overlap_sees_gaps(p->overlap);
     const struct detect_sight o = ray_of(p);
+    bool sees = overlap_sees_gaps(p->overlap) || o.soft;
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->law && contact_law_holds(&s->law[i]);
         bool seen = sees && is_seen(p, &o, &s->c[i]);

@@ -107,7 +107,7 @@ int contact_rows_read(struct contact_rows *r, struct frame *f, struct failure *f
         table_read_columns(r->source, "/contacts", "", first,
                            RECORDS_OF(p, contact_key_fields, s->n, s->c), failure) ||
         (s->law && table_read_columns(r->source, "/contacts", "", first,
-                                      RECORDS(contact_law_fields, s->n, s->law), failure)) ||
+                                      RECORDS_OF(p, contact_law_fields, s->n, s->law), failure)) ||
         (solved && table_read_columns(r->source, "/contacts", "", first,
                                       RECORDS(found_fields, s->n, s->found), failure)) ||
         (solved && packing_rolls(&f->packing) && read_moments(r->source, first, s, failure)))
@@ -193,7 +193,8 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
                             RECORDS_OF(&f->packing, contact_key_fields, t->n, t->c), CHUNK_CONTACTS,
                             failure) ||
         (f->packing.law &&
-         table_write_columns(s, "/contacts", "", RECORDS(contact_law_fields, t->n, t->law),
+         table_write_columns(s, "/contacts", "",
+                             RECORDS_OF(&f->packing, contact_law_fields, t->n, t->law),
                              CHUNK_CONTACTS, failure)) ||
         (t->found && table_write_columns(s, "/contacts", "", RECORDS(found_fields, t->n, t->found),
                                          CHUNK_CONTACTS, failure)) ||

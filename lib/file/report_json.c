@@ -55,6 +55,7 @@ static json_t *balance(const struct report *r)
         json_object_set_new(j, "bond_energy", json_number(b->bond_energy));
         json_object_set_new(j, "broken", json_number(b->broken));
     }
+    if (r->soft) json_object_set_new(j, "implicit", json_number(b->implicit));
     if (r->may_gain) json_object_set_new(j, "gained", json_number(b->gained));
     if (r->projected) {
         json_object_set_new(j, "projection", json_number(b->projection));

@@ -15,6 +15,7 @@ static const struct {
     size_t flag; /* of a bool in struct report */
 } parts[] = {
     { bond_balance_fields, offsetof(struct report, tied) },
+    { spring_balance_fields, offsetof(struct report, soft) },
     { gain_balance_fields, offsetof(struct report, may_gain) },
     { projection_balance_fields, offsetof(struct report, projected) },
     { peculiar_balance_fields, offsetof(struct report, sheared) },

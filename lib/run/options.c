@@ -3,6 +3,7 @@
 #include "base/team.h"
 #include "file/reader.h"
 #include "file/report_json.h"
+#include "scene/stiffness.h"
 #include "solve/device.h"
 
 #include <errno.h>
@@ -22,6 +23,14 @@ const struct cli_option options_run[] = {
       .help = "write one JSON line per solve, with its seconds" },
     { CLI_FLAG, 'e', "strict", &options.strict, .silent = true,
       .help = "exit with 1 if a solve or a step fails; nsd-step ends with it" },
+    { 0 },
+};
+
+static const char *stiffness; /* --stiffness */
+
+const struct cli_option options_contacts[] = {
+    { CLI_TEXT, 0, "stiffness", &stiffness, "K|rigid|auto",
+      .help = "set the stiffness of contacts, N/m [document, else rigid]" },
     { 0 },
 };
 
@@ -124,6 +133,28 @@ void options_overlap(struct packing *p, bool detected)
         die_usage("--overlap %s: the contacts were detected with %s: nsd-detect --overlap %s",
                   overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
     p->overlap = now;
+}
+
+void options_stiffness(struct frame *f, const char *fixed)
+{
+    struct packing *p = &f->packing;
+    struct failure failure = { 0 };
+    double k, was[2];
+    if (!stiffness) return;
+    if (options.paper && strcmp(stiffness, "rigid"))
+        die_usage("--stiffness: contacts of the paper are rigid, and --paper is given");
+    if (stiffness_read(&k, stiffness, p, &failure)) {
+        if (failure.status == EX_USAGE) die_usage("--stiffness: %s", failure.text);
+        die(failure.status, "--stiffness: %s", failure.text);
+    }
+    stiffness_range(p, was);
+    if (fixed && (was[0] != k || was[1] != k))
+        die_usage("--stiffness: %s has %g N/m, and a trajectory has one", fixed, was[1]);
+    if (!fixed && stiffness_set(p, k, &failure))
+        die(failure.status, "--stiffness: %s", failure.text);
+    if (p->law && !f->contacts.law &&
+        contacts_alloc_laws(&f->contacts)) // those of the last step were rigid
+        die(EX_SOFTWARE, "no memory for the laws");
 }
 
 static FILE *log_file;

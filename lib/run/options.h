@@ -5,11 +5,14 @@
 #ifndef NSD_OPTIONS_H
 #define NSD_OPTIONS_H
 
+#include "file/frame.h"
 #include "run/cli.h"
 #include "state/account.h"
 #include "step/step_options.h"
 
 extern const struct cli_option options_run[]; /* -j, --device, --log, -e */
+
+extern const struct cli_option options_contacts[]; /* --stiffness */
 
 /* Does a run end with the first step that fails its account? */
 bool options_end_on_failure(void);
@@ -31,6 +34,10 @@ void options_theta(struct packing *packing, bool detected);
  * after the solve; else EX_USAGE.
  */
 void options_overlap(struct packing *packing, bool detected);
+
+/* Sets the stiffness of contacts: --stiffness, else the frame's own. fixed: a file that has one, which another may not
+   follow; or NULL */
+void options_stiffness(struct frame *frame, const char *fixed);
 
 /*
  * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,

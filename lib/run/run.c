@@ -6,6 +6,7 @@
 #include "convert/scene_file.h"
 #include "run/document.h"
 #include "scene/scene_build.h"
+#include "scene/stiffness.h"
 #include "solve/err.h"
 #include "step/adapt.h"
 
@@ -258,10 +259,29 @@ static int run_set_flag(bool *to, const char *name, const char *value, struct fa
     return option_set(&o, to, value, failure);
 }
 
+static int run_set_stiffness(struct nsd_run *r, const char *text, struct failure *failure)
+{
+    double k, was[2];
+    struct failure why = { 0 };
+    struct packing *p = &r->f.packing;
+    stiffness_range(p, was);
+    if (stiffness_read(&k, text, p, &why))
+        return failure_set(failure, why.status, "stiffness: %s", why.text);
+    if (r->out && (was[0] != k || was[1] != k))
+        return failure_set(failure, NSD_USAGE,
+                           "stiffness: a trajectory has one: nsd_finish() ends it");
+    r->chosen = false;
+    if (stiffness_set(p, k, failure)) return failure->status;
+    if (p->law && !r->f.contacts.law && contacts_alloc_laws(&r->f.contacts))
+        return failure_set(failure, NSD_SOFTWARE, "no memory for the laws");
+    return 0;
+}
+
 static int set_option(struct nsd_run *r, const char *name, const char *value,
                       struct failure *failure)
 {
     if (!strcmp(name, "dt")) return run_set_dt(r, value, failure);
+    if (!strcmp(name, "stiffness")) return run_set_stiffness(r, value, failure);
     if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, failure);
     if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, failure);
     if (asked_has(name)) return asked_set(&r->asked, name, value, failure);

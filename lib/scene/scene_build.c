@@ -321,7 +321,7 @@ static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->kinds * s->kinds; k++)
         if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
-            s->law[k].pair_law.impact > 0)
+            s->law[k].pair_law.impact > 0 || pair_law_springs(&s->law[k].pair_law))
             return true;
     return false;
 }

@@ -76,8 +76,9 @@ static int carry_bonds(const struct carried *y, struct failure *failure)
         b.b += (int32_t)y->row;
         const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
         if (!pair_law_wets(l)) b.wet = 0;
+        if (!pair_law_springs(l)) b.pressed = 0, b.rest = 0;
         bool bonds = pair_law_adheres(l);
-        if (!has_images(y, b.shift) || (!bonds && !b.wet)) continue;
+        if (!has_images(y, b.shift) || (!bonds && !b.wet && !b.pressed)) continue;
         if (!bonds) b.beta = 0;
         if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
         if (!bonds_add(&p->bonds, &b))
@@ -177,9 +178,18 @@ void scene_carry_dt(struct packing *p, const struct scene *s)
     }
 }
 
+/* How many rows are not of springs alone, which end with the stiffness */
+static int64_t scene_carry_ties(const struct bonds *s)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < s->n; i++)
+        n += !s->bond[i].pressed || s->bond[i].wet || s->bond[i].beta > 0;
+    return n;
+}
+
 struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
 {
-    struct scene_lost lost = { .bonds = -p->bonds.n };
+    struct scene_lost lost = { .bonds = -scene_carry_ties(&p->bonds) };
     const struct lasting *has = &p->outside.lasts;
     int64_t poured = 0;
     for (int32_t k = 0; k < s->pours; k++) poured += s->pour[k].poured.bodies;
@@ -189,7 +199,7 @@ struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
         const struct lasting *had = &from->outside.lasts;
         const double dt = packing_whole_dt(from);
         if (!lost.file) lost.file = s->bodies[g].file;
-        lost.bonds += from->bonds.n;
+        lost.bonds += scene_carry_ties(&from->bonds);
         lost.forces |= (had->force && !has->force) || (had->torque && !has->torque) ||
                        (had->push && !has->push);
         if (!continues(s, from)) continue;

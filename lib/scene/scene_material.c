@@ -1,5 +1,6 @@
 /* scene/scene_material.c: materials: kinds, and the law of each pair of them, from their JSON. */
 
+#include "contact/spring.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -159,6 +160,41 @@ static int read_impact(jnode n, struct scene *s, void *member)
     return json_node_fault(n, "needs \"newton\" or \"bounded\"");
 }
 
+/* K, or {"normal": K, "tangential": K} */
+static const struct key stiffness_key[] = {
+    { "normal", &key_positive, AT(kn), "N/m", REQUIRED, "1e5", "Normal force per overlap." },
+    { "tangential", &key_positive, AT(kt), "N/m", "2/7 of it", "3e4",
+      "Tangential force per displacement." },
+    { 0 },
+};
+
+static int finish_stiffness(jnode o, struct scene *s, void *out)
+{
+    struct pair_law *l = out;
+    (void)s;
+    if (!keys_has(&o, "tangential")) l->kt = SPRING_ACROSS * l->kn;
+    return 0;
+}
+
+static const struct keys stiffness_keys = { "stiffness", stiffness_key,
+                                            .finish = finish_stiffness };
+
+static int read_stiffness(jnode n, const struct key *k, struct scene *s, void *member)
+{
+    struct pair_law *l = member;
+    (void)k;
+    if (json_is_object(n.json)) return keys_read(n, &stiffness_keys, s, l);
+    if (json_node_number(n, J_POSITIVE, &l->kn)) return 1;
+    l->kt = SPRING_ACROSS * l->kn;
+    return 0;
+}
+
+static const struct key_type key_stiffness = {
+    "number or object",
+    "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'stiffness'}]}", read_stiffness,
+    NULL, &stiffness_keys
+};
+
 static const struct key_type key_impact = { "string", "{'enum': ['newton', 'bounded']}", NULL,
                                             NULL };
 
@@ -195,6 +231,9 @@ static const struct key law_key[] = {
       "Rolling and pivoting friction.", .object = &rolling_keys },
     { "adhesion", &key_object, AT(pair_law), "-", "none", "see below", "Bonds with damage.",
       .object = &adhesion_keys },
+    { "stiffness", &key_stiffness, AT(pair_law), "N/m", "rigid", "1e5",
+      "Stiffness of contacts along the normal (in the plane for each metre of thickness), or an "
+      "object. Without it contacts are rigid, see nsd-methods(7), \"Contacts with a stiffness\"." },
     { 0 },
 };
 #undef ROW

@@ -580,7 +580,8 @@ void time_step_of(struct time_step *t, const struct scene *s, const struct packi
 {
     *t = (struct time_step){ .radius = smallest(s, p), .by = -1, .best = INFINITY };
     t->x[LIMIT_GRAVITY] = v3_norm(p->g);
-    t->x[LIMIT_PRESSURE] = pressure_of(p) * lightest(p);
+    t->pressure = pressure_of(p);
+    t->x[LIMIT_PRESSURE] = t->pressure * lightest(p);
     of_loads(t, p);
     t->x[LIMIT_STRAIN] = time_step_strain_of(&p->cell);
     t->x[LIMIT_SPEED] = start_speed(s, p);

@@ -60,6 +60,7 @@ extern const struct time_step_limit time_step_limit[LIMITS];
 
 struct time_step {
     double radius;    /* m: the smallest; of a grain that is no ball, by how thin it is */
+    double pressure;  /* Pa, in the plane N/m: the largest of loads and of the cell */
     double x[LIMITS]; /* the quantities; 0: no limit */
     double dt[LIMITS];
     int32_t by;  /* the row that is the least */

@@ -53,6 +53,8 @@ static void apply_bodies(const struct problem *p, struct apply *a, const double 
         if (p->contact[i] < 0) continue;
         problem_velocity(p, a->body, i / BUNDLE, NULL, slot_lane(i), y + 3 * i);
         for (int k = 0; e && k < 3; k++) y[3 * i + k] *= e->s[k > 0][slot_lane(i)];
+        for (int k = 0; p->kind.soft && k < 3; k++)
+            y[3 * i + k] += e->soft[k > 0][slot_lane(i)] * x[3 * i + k];
     }
 }
 

@@ -32,8 +32,12 @@ static void assembly_velocity(const struct assembly *A, struct body *body, doubl
         const struct rebound *e = slot_rebound(A->p, A->slot[c]);
         int lane = slot_lane(A->slot[c]);
         double u[3];
-        problem_velocity(A->p, body, A->slot[c] / BUNDLE, e, lane, u);
-        for (int k = 0; k < d; k++) *out++ = e ? u[k] / e->s[k > 0][lane] : u[k];
+        problem_velocity(A->p, body, A->slot[c] / BUNDLE, NULL, lane, u);
+        for (int k = 0; k < d; k++) {
+            const double s =
+                e ? e->s[k > 0][lane] : 1; // without the springs: r is not that of body[]
+            *out++ = e ? (s * u[k] + e->offset[k][lane]) / s : u[k];
+        }
     }
 }
 
@@ -179,6 +183,14 @@ static void assembly_add_shared(const struct couplings *y, int64_t c, int64_t b,
         }
 }
 
+/* kg^-1: of component k of contact c, in D u~; 0: rigid */
+static double compliance(const struct assembly *A, int64_t c, int k)
+{
+    const struct rebound *e = slot_rebound(A->p, A->slot[c]);
+    const int lane = slot_lane(A->slot[c]);
+    return e ? e->soft[k > 0][lane] / e->s[k > 0][lane] : 0;
+}
+
 /* B = W_cb, the sum of J_c M^-1 J_b^T over the movable bodies and the freedoms that c and b
    share */
 static void assembly_block(const struct assembly *A, int64_t c, int64_t b, enum blocks_of which,
@@ -197,6 +209,7 @@ static void assembly_block(const struct assembly *A, int64_t c, int64_t b, enum 
                            ii * (J[i][3] * K[j][3] + J[i][4] * K[j][4] + J[i][5] * K[j][5]);
     }
     if (A->p->coupling) assembly_add_shared(A->p->coupling, c, b, which, B);
+    for (int i = 0; c == b && A->p->kind.soft && i < 3; i++) B[i][i] += compliance(A, c, i);
 }
 
 /* The contacts of a body or a freedom, ascending, while they are being merged with others */
@@ -341,8 +354,10 @@ static int32_t freedoms_of(const struct assembly *A)
 }
 
 /* M diagonal, f = M v_free; first[body] is the body's first unknown. The w of a body that cannot
-   turn stays in the vector w; its unknowns are in no equation of a contact. */
-static void fill_M(const struct assembly *A, const int32_t *first, struct stored *M, double *f)
+   turn stays in the vector w; its unknowns are in no equation of a contact. spring: the first unknown of springs, each of
+   which has a velocity c r, as a body of mass 1/c that only its contact's component pushes */
+static void fill_M(const struct assembly *A, const int32_t *first, int32_t spring, struct stored *M,
+                   double *f)
 {
     int dofs = A->p->d == 2 ? 3 : 6;
     const int *dof = A->p->d == 2 ? dof_plane : dof_space;
@@ -356,6 +371,13 @@ static void fill_M(const struct assembly *A, const int32_t *first, struct stored
             f[row] = M->x[row] * (turns ? b->w[dof[k] - 3] : b->v[dof[k]]);
         }
     }
+    for (int64_t c = 0; A->p->kind.soft && c < A->p->n; c++)
+        for (int k = 0; k < A->p->d; k++) {
+            const double soft = compliance(A, c, k);
+            if (!(soft > 0)) continue;
+            M->p[spring + 1] = spring + 1, M->i[spring] = spring;
+            M->x[spring] = 1 / soft, f[spring++] = 0;
+        }
     for (int32_t i = 0; i < freedoms_of(A); i++) {
         const struct freedom *freedom = &A->p->coupling->freedoms.f[i];
         int32_t row = first[A->p->bodies + i];
@@ -366,8 +388,8 @@ static void fill_M(const struct assembly *A, const int32_t *first, struct stored
     }
 }
 
-/* H = J^T by columns; those of freedoms come last, and in the order of the freedoms */
-static void fill_H(const struct assembly *A, const int32_t *first, struct stored *H)
+/* H = J^T by columns; those of freedoms come after those of bodies, in the order of the freedoms, then those of springs */
+static void fill_H(const struct assembly *A, const int32_t *first, int32_t spring, struct stored *H)
 {
     int d = A->p->d, dofs = d == 2 ? 3 : 6;
     const int *dof = d == 2 ? dof_plane : dof_space;
@@ -391,6 +413,8 @@ static void fill_H(const struct assembly *A, const int32_t *first, struct stored
                 H->i[count] = first[A->p->bodies + y->of[k].freedom];
                 H->x[count++] = y->of[k].J[i];
             }
+            if (A->p->kind.soft && compliance(A, c, i) > 0)
+                H->i[count] = spring++, H->x[count++] = 1;
             H->p[d * c + i + 1] = count;
         }
     }
@@ -413,23 +437,34 @@ static int64_t assembly_unknowns(const struct assembly *A, int32_t *first)
     return nv;
 }
 
+/* How many unknowns springs have */
+static int64_t springs_of(const struct assembly *A)
+{
+    int64_t n = 0;
+    for (int64_t c = 0; A->p->kind.soft && c < A->p->n; c++)
+        for (int k = 0; k < A->p->d; k++) n += compliance(A, c, k) > 0;
+    return n;
+}
+
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
                 struct failure *failure)
 {
     int64_t nd = A->p->n * A->p->d, couplings = A->p->coupling ? A->p->coupling->n : 0;
+    const int64_t most = A->p->kind.soft ? 13 : 12; // numbers of a column of H
     *M = *H = (struct stored){ 0 }, *f = NULL;
-    if (A->p->bodies > INT32_MAX / 6 - freedoms_of(A) || nd > (INT32_MAX - 3 * couplings) / 12)
+    if (A->p->bodies > (INT32_MAX - nd) / 6 - freedoms_of(A) ||
+        nd > (INT32_MAX - 3 * couplings) / most)
         return failure_set(failure, EX_DATAERR,
                            "/fclib_global/H: too large for the 32-bit indices of FCLIB");
     int32_t *first = malloc((size_t)(A->p->bodies + freedoms_of(A) + 1) * sizeof *first);
     if (!first) return assembly_short_of_memory(failure);
-    int64_t nv = assembly_unknowns(A, first);
+    const int64_t of_bodies = assembly_unknowns(A, first), nv = of_bodies + springs_of(A);
     *f = malloc((size_t)(nv + 1) * sizeof **f);
-    bool good =
-        *f && stored_init(M, nv, nv, -1, nv) && stored_init(H, nv, nd, -1, 12 * nd + 3 * couplings);
+    bool good = *f && stored_init(M, nv, nv, -1, nv) &&
+                stored_init(H, nv, nd, -1, most * nd + 3 * couplings);
     if (good) {
-        fill_M(A, first, M, *f);
-        fill_H(A, first, H);
+        fill_M(A, first, (int32_t)of_bodies, M, *f);
+        fill_H(A, first, (int32_t)of_bodies, H);
     }
     free(first);
     return good ? 0 : assembly_short_of_memory(failure);

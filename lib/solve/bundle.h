@@ -37,11 +37,12 @@ struct near_bundle {
     struct beside beside;
 };
 
-/* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, and
-   what the law sees besides [state/offset.h]: u~ = s u + offset */
+/* Newton's impact law in a bundle, the velocity d by which an image moves faster than its body, what the law sees
+   besides [state/offset.h], and the compliance of springs [contact/spring.h]: u~ = s u + offset + soft r */
 struct rebound {
     double s[2][BUNDLE];      /* 1/(1 + e_n), 1/(1 + e_t) */
     double offset[3][BUNDLE]; /* m/s: D^-1 (E (u^- + d^-) + d + law) */
+    double soft[2][BUNDLE];   /* kg^-1: D^-1 diag(c_n, c_t), part of W~_cc; 0: rigid */
 };
 
 /* Of eight partial results, one a lane: their sum; the largest, at least 0 and never NaN */
@@ -132,6 +133,17 @@ ALWAYS_INLINE void bundle_basis(GLOBAL const struct bundle *c, GLOBAL const stru
     for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
 }
 
+/* u~ of u, for the r that made it; what is rigid keeps its bits. */
+ALWAYS_INLINE void bundle_rebound_of(GLOBAL const struct bundle *c, GLOBAL const struct rebound *e,
+                                     int k, vd u[3])
+{
+    for (int i = 0; i < 3; i++) {
+        vd soft = vload(e->soft[i > 0] + k);
+        u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
+        u[i] = pick(lt(splat(0), soft), u[i] + soft * vload(c->r[i] + k), u[i]);
+    }
+}
+
 /* u~ from the bodies' velocities, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
 ALWAYS_INLINE void bundle_velocity(GLOBAL const struct bundle *c, GLOBAL const struct beside *t,
                                    GLOBAL const struct rebound *e, int k, const struct twist *a,
@@ -145,7 +157,7 @@ ALWAYS_INLINE void bundle_velocity(GLOBAL const struct bundle *c, GLOBAL const s
     // w x (l n) . t1 = l w . t2, and the arm of b is -lb n
     vd un = dot3(n, dv), u1 = dot3(t1, dv) - dot3(t2, m), u2 = dot3(t2, dv) + dot3(t1, m);
     u[0] = un, u[1] = u1, u[2] = u2;
-    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
+    if (e) bundle_rebound_of(c, e, k, u);
 }
 
 /* Adds to the bodies' velocities what a change dr (n, t1, t2) of the reactions makes of them. */
@@ -193,7 +205,7 @@ ALWAYS_INLINE void levers_velocity(const struct bundle *c, const struct beside *
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             u[i] += vload(g->Gb[3 * i + j] + k) * b->w[j] - vload(g->Ga[3 * i + j] + k) * a->w[j];
-    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
+    if (e) bundle_rebound_of(c, e, k, u);
 }
 
 /* As bundle_push() */

@@ -62,6 +62,7 @@ const char *device_declines(const struct problem *p)
     if (p->exchange) return "several processes share the contacts";
     if (p->kind.rolls) return "contacts have rolling friction";
     if (p->kind.extra) return "contacts have bonds";
+    if (p->kind.soft) return "contacts have a stiffness";
     if (p->kind.levers) return "grains are no balls or discs";
     if (p->W && p->W->common) return "loads push contacts";
     return p->slots > INT32_MAX ? "there are too many contacts" : NULL;

@@ -1,6 +1,7 @@
 /* solve/fill.c: slots of balls, with levers, and what bonds and moments add [solve/fill.h]. */
 #include "solve/fill.h"
 
+#include "contact/spring.h"
 #include "solve/problem.h"
 #include "state/kinematics.h"
 #include "state/offset.h"
@@ -28,6 +29,16 @@ struct lattice lattice_of(const struct packing *pack)
     for (int k = 0; k < 3; k++) l.before[k] = pack->cell.rate[k];
     cell_next_rate(&pack->cell, pack->t + pack->dt, step_ahead(pack), step_after(pack), l.after);
     return l;
+}
+
+/* Of a contact with a stiffness: what its springs add to D u~ besides C r, and their compliance, in units of D^-1 */
+static void add_springs(const struct slot_filling *f, struct rebound *e, const double s[2])
+{
+    double law[3], c[2];
+    const int k = slot_lane(f->i);
+    spring_seen(f->of->p->dt, f->c, f->law, law, c);
+    for (int j = 0; j < 3; j++) e->offset[j][k] += s[j > 0] * law[j];
+    for (int j = 0; j < 2; j++) e->soft[j][k] = s[j] * c[j];
 }
 
 /* What the image of b is faster than b, in the basis of the contact */
@@ -81,8 +92,12 @@ void fill_ball(const struct slot_filling *f)
         e->offset[0][k] += law->offset;
     else if (e && offset_in(pack, c))
         add_offset(e, k, pack, c, u[0]);
-    for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j];
+    for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j], e->soft[j][k] = 0;
     w[0][k] = s[0] * im, w[1][k] = s[1] * it;
+    if (e && law && law->spring[0] > 0) {
+        add_springs(f, e, s);
+        for (int j = 0; j < 2; j++) w[j][k] += e->soft[j][k];
+    }
     for (int j = 0; j < 2; j++) r->iw[j][k] = 1 / w[j][k];
     double lambda = slot_lambda(p, i);
     p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
@@ -130,6 +145,12 @@ void fill_lever(const struct slot_filling *f)
                     b.ii * g->Gb[3 * (j / 3) + l][k] * g->Gb[3 * (j % 3) + l][k];
         p->block[i / BUNDLE][j][k] = W[j];
     }
+    const bool soft = e && law && law->spring[0] > 0;
+    for (int j = 0; j < 3 && e; j++) e->offset[j][k] = 0;
+    for (int j = 0; j < 2 && e; j++) e->soft[j][k] = 0;
+    if (soft) add_springs(f, e, (const double[2]){ 1, 1 });
+    for (int j = 0; j < 9 && soft; j += 4)
+        W[j] += e->soft[j > 0][k], p->block[i / BUNDLE][j][k] = W[j];
     double lambda = local_lambda_max(W);
     for (int j = 0; j < 2; j++) p->w[i / BUNDLE][j][k] = lambda, r->iw[j][k] = 1 / lambda;
     p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / W[0] : rho_factor / lambda;
@@ -140,7 +161,7 @@ void fill_lever(const struct slot_filling *f)
         image_velocity(cell->before, c, before), image_velocity(cell->after, c, after);
     for (int j = 0; j < 3; j++) {
         u[j] += before[j];
-        e->offset[j][k] = en[j] * u[j] + after[j];
+        e->offset[j][k] += en[j] * u[j] + after[j];
     }
     if (law && law->offset > 0)
         e->offset[0][k] += (1 + en[0]) * law->offset;

@@ -71,6 +71,7 @@ struct problem_kind {
     bool near;       /* bundles have a struct beside after them */
     bool extra;      /* contacts have bonds or moments [solve/extra.h] */
     bool rolls;      /* some contact has rolling friction */
+    bool soft;       /* some contact has a stiffness: said of a problem, not of a row */
     double ns;       /* of a sweep, per contact [bench/results]; of W, see solve/solver.c besides */
     fill_text *fill; /* sets the numbers of a slot; NULL: problem_of_W.c does */
 };

@@ -186,6 +186,7 @@ struct survey {
     _Atomic bool shaped, rebounds; /* u~ is anything but u */
     _Atomic bool turned;       /* t1 is to be loaded: not what contact_basis() makes, or not far */
     _Atomic bool bonds, rolls; /* stiff ties; rolling friction */
+    _Atomic bool soft;         /* contacts with a stiffness */
 };
 
 static bool problem_of_bodies_same(vec3 a, vec3 b)
@@ -197,7 +198,7 @@ static void survey_some(void *arg, int64_t first, int64_t end)
 {
     struct survey *y = arg;
     bool shaped = false, rebounds = false, turned = !y->far || y->p->dim == 2;
-    bool bonds = false, rolls = false;
+    bool bonds = false, rolls = false, soft = false;
     for (int64_t i = first; i < end; i++) {
         const struct contact *c = &y->s->c[i];
         shaped |= contact_shaped(y->p, c);
@@ -210,12 +211,14 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         const struct contact_law *t = y->s->law ? &y->s->law[i] : NULL;
         bonds |= t && (t->stiff[0] > 0 || t->stiff[1] > 0);
         rolls |= t && (t->mu_r > 0 || t->mu_p > 0);
+        soft |= t && t->spring[0] > 0;
     }
     if (shaped) y->shaped = true;
     if (rebounds) y->rebounds = true;
     if (turned) y->turned = true;
     if (bonds) y->bonds = true;
     if (rolls) y->rolls = true;
+    if (soft) y->soft = true;
 }
 
 static void survey(struct survey *y, const struct packing *p, const struct contacts *s,
@@ -258,9 +261,11 @@ static int prepare_by_plan(struct problem *p, const struct packing *pack, const 
     bool room = p->body && lay_plan(p, plan);
     bool levers = anywhere(p, found.shaped), rebounds = anywhere(p, found.rebounds);
     bool bonds = anywhere(p, found.bonds), rolls = anywhere(p, found.rolls);
+    bool soft = anywhere(p, found.soft);
     bool near = found.turned || (exchange && exchange->slower);
     p->kind = *kind_of_bodies(levers, bonds, rolls, near);
-    if (rebounds) p->kind.arrays |= HAS_rebound;
+    p->kind.soft = soft;
+    if (rebounds || soft) p->kind.arrays |= HAS_rebound;
     quat *half = NULL;
     room = room && set_pulls(p, s) && lay_bundles(p) && (!levers || find_spins(p, pack, &half));
     if (!room) return free(half), problem_of_bodies_no_memory(p, failure);

@@ -80,8 +80,8 @@ ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct b
     const struct rebound *e = bundle_rebound(p, bundle);
     vd la = vload(c->la + k), lb = vload(c->lb + k), im = s->a.im + s->b.im;
     vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
-    w[0] = e ? vload(e->s[0] + k) * im : im;
-    w[1] = w[2] = e ? vload(e->s[1] + k) * it : it;
+    w[0] = e ? vload(e->s[0] + k) * im + vload(e->soft[0] + k) : im;
+    w[1] = w[2] = e ? vload(e->s[1] + k) * it + vload(e->soft[1] + k) : it;
 }
 
 /* The local problems of LANES slots; l->W points to W[9]. exact has no use for rho. */

@@ -57,6 +57,8 @@ static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, i
     if (x->b < 0 || x->b >= bodies || x->a >= bodies || x->a < -walls || x->a == x->b)
         return "no such bodies";
     if (!(x->wet >= 0 && x->wet <= BOND_WETTED)) return "is neither wet nor dry";
+    if (!(x->pressed == 0 || x->pressed == 1)) return "pushes or not: 1 or 0";
+    if (!(x->rest <= 0 && isfinite(x->rest))) return "the gap of its spring must not be positive";
     if (!(x->beta >= 0 && x->beta <= 1)) return "beta must lie in [0, 1]";
     if (!isfinite(x->gap) || !v3_finite(x->slip)) return "gap or slip is not finite";
     if (!(fabs(v3_dot(x->n, x->n) - 1) < 1e-6)) return "its normal is not a unit vector";

@@ -15,11 +15,13 @@ enum { BOND_WET = 1, BOND_WETTED };
 struct bond {
     int32_t a, b, feature; /* the key, as in struct contact */
     int8_t shift[3];
-    int8_t wet;  /* BOND_WET ...; 0: no liquid bridge */
-    double beta; /* intensity of adhesion; 0 where there is none, or it is broken */
-    double gap;  /* m: expected at the next step, at the predicted positions */
-    vec3 n;      /* the contact's normal when this was kept */
-    vec3 slip;   /* m: across n: how far the bond is sheared, b against a */
+    int8_t wet;     /* BOND_WET ...; 0: no liquid bridge */
+    int8_t pressed; /* 1: a contact with a stiffness, which pushes, or overlaps from the start; 0 */
+    double beta;    /* intensity of adhesion; 0 where there is none, or it is broken */
+    double gap;     /* m: expected at the next step, at the predicted positions */
+    vec3 n;         /* the contact's normal when this was kept */
+    vec3 slip;      /* m: across n: how far the bond, or the spring, is sheared, b against a */
+    double rest;    /* m, at most 0: the gap at which the spring does not push */
     /* Of grains that are no balls, a bond keeps the place where it was made [contact/bond_anchor.h]. */
     double area;     /* m^2; 0: none has been kept, and what follows is 0 */
     vec3 at_a, at_b; /* m: in the frames of a, a body or a boundary, and of b */

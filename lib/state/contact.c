@@ -172,14 +172,21 @@ static bool contact_not_negative(double x)
 static const char *contact_law_trouble(const struct contact_law *t)
 {
     if (!contact_not_negative(t->pull) || !contact_not_negative(t->offset) ||
-        !contact_not_negative(t->jump[0]) || !isfinite(t->jump[1]) || !isfinite(t->jump[2]))
+        !isfinite(t->jump[0]) || (t->jump[0] < 0 && t->spring[0] == 0) || !isfinite(t->jump[1]) ||
+        !isfinite(t->jump[2]))
         return "its pull, offset or jump is out of range";
     if (!contact_not_negative(t->stiff[0]) || !contact_not_negative(t->stiff[1]) ||
         !(t->beta >= 0 && t->beta <= 1))
         return "its stiffness or beta is out of range";
+    if (!contact_not_negative(t->spring[0]) || !contact_not_negative(t->spring[1]) ||
+        (t->spring[0] > 0) != (t->spring[1] > 0))
+        return "its spring is out of range";
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(t->hit[k])) return "its impulse of impact is not finite";
     if (!contact_not_negative(t->mu_r) || !contact_not_negative(t->mu_p))
         return "mu_r and mu_p must not be negative";
-    return t->state >= 0 && t->state < CONTACT_LAW_STATES ? NULL : "its tie has no such state";
+    const int states = t->spring[0] > 0 ? CONTACT_LAW_STATES : CONTACT_LAW_MEETS;
+    return t->state >= 0 && t->state < states ? NULL : "its tie has no such state";
 }
 
 int contacts_check(const struct contacts *s, int64_t bodies, int32_t walls, struct failure *failure)

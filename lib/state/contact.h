@@ -32,17 +32,25 @@ struct found {
 enum { STATUS_JAMMED = 3, STATUS_SUMMED = 4 };
 
 /* Of a contact's tie: what is kept of it, and what is new in this step */
-enum { CONTACT_LAW_WET = 1, CONTACT_LAW_BONDED = 2, TIE_NEW_BRIDGE = 4, CONTACT_LAW_STATES = 8 };
+enum {
+    CONTACT_LAW_WET = 1,
+    CONTACT_LAW_BONDED = 2,
+    TIE_NEW_BRIDGE = 4,
+    CONTACT_LAW_MEETS = 8, /* an impact of bodies that push no spring yet [contact/spring.h] */
+    CONTACT_LAW_STATES = 16
+};
 
 /* What laws beyond friction and restitution do at a contact [contact/contact_law.h]. Apart, so that it takes
    memory only where there are such laws. */
 struct contact_law {
     double pull;       /* N: f_c */
     double stiff[2];   /* N/m: S beta^2 c_n, S beta^2 c_t */
-    double jump[3];    /* m: d, in the contact's basis */
+    double jump[3];    /* m: d, in the contact's basis; of springs, how far they are stretched */
     double beta;       /* intensity of adhesion at the beginning of the step */
     double offset;     /* m/s: what Signorini's condition adds to u_n, because the pair is apart */
     double mu_r, mu_p; /* m: rolling and pivoting friction */
+    double spring[2];  /* N/m: k_n, k_t of the contact; 0: rigid */
+    double hit[3];     /* N s: the impulse of the impact, were the pair alone */
     int8_t state;      /* TIE_... */
 };
 

@@ -184,6 +184,8 @@ const struct field law_fields[] = {
     LAW(made, "made", "s"),
     LAW(forever, "forever", "1"),
     LAW(impact, "impact", "1", | FIELD_OPTIONAL),
+    LAW(kn, "k_n", "N m-1", | FIELD_OPTIONAL),
+    LAW(kt, "k_t", "N m-1", | FIELD_OPTIONAL),
     { 0 },
 };
 
@@ -206,6 +208,11 @@ static bool has_images(const void *of)
     return cell_repeats(&((const struct packing *)of)->cell);
 }
 
+static bool has_springs(const void *of)
+{
+    return packing_has_springs(of);
+}
+
 static bool has_rolling(const void *of)
 {
     return packing_rolls(of);
@@ -221,6 +228,8 @@ const struct field bond_fields[] = {
     FIELD(struct bond, gap, F64, 1, "gap", "m", FIELD_MOVES),
     FIELD(struct bond, n, F64, 3, "normal", "1", FIELD_MOVES),
     FIELD(struct bond, slip, F64, 3, "slip", "m", FIELD_MOVES),
+    FIELD(struct bond, pressed, I8, 1, "pressed", "1", FIELD_MOVES, .when = has_springs),
+    FIELD(struct bond, rest, F64, 1, "rest", "m", FIELD_MOVES, .when = has_springs),
     FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes),
     FIELD(struct bond, at_a, F64, 3, "anchor_a", "m", FIELD_MOVES, .when = has_shapes),
     FIELD(struct bond, at_b, F64, 3, "anchor_b", "m", FIELD_MOVES, .when = has_shapes),
@@ -310,6 +319,8 @@ const struct field contact_law_fields[] = {
     FIELD(struct contact_law, mu_r, F64, 1, "mu_r", "m", FIELD_MOVES),
     FIELD(struct contact_law, mu_p, F64, 1, "mu_p", "m", FIELD_MOVES),
     FIELD(struct contact_law, state, I8, 1, "tie", "1", FIELD_MOVES),
+    FIELD(struct contact_law, spring, F64, 2, "spring", "N m-1", FIELD_MOVES, .when = has_springs),
+    FIELD(struct contact_law, hit, F64, 3, "hit", "N s", FIELD_MOVES, .when = has_springs),
     { 0 },
 };
 
@@ -372,6 +383,12 @@ const struct field bond_balance_fields[] = {
     FIELD(struct report, balance.bond_change, F64, 1, "bond_change", "J", FIELD_MOVES),
     FIELD(struct report, balance.bond_energy, F64, 1, "bond_energy", "J", FIELD_MOVES),
     FIELD(struct report, balance.broken, F64, 1, "broken", "J", FIELD_MOVES),
+    { 0 },
+};
+
+/* The same where contacts have a stiffness */
+const struct field spring_balance_fields[] = {
+    FIELD(struct report, balance.implicit, F64, 1, "implicit", "J", FIELD_MOVES),
     { 0 },
 };
 

@@ -70,16 +70,23 @@ static inline double opening_of(const struct packing *p, const struct contact *c
     return v3_dot(v3_sub(vb, va), c->n);
 }
 
+/* m/s: of b against a at the contact, with the velocities that the bodies have now and these arms */
+static inline vec3 velocity_of(const struct packing *p, const struct contact *c,
+                               const struct arms *o)
+{
+    const struct wall *w = c->a < 0 ? &p->wall[-1 - c->a] : NULL;
+    vec3 va = w ? v3_add(wall_velocity(p, w, c->x), wall_belt(p, w, c->n))
+                : v3_add(p->v[c->a], v3_cross(p->w[c->a], o->a));
+    vec3 vb = v3_add(p->v[c->b], v3_cross(p->w[c->b], o->b));
+    return v3_sub(v3_add(vb, cell_shift(p->cell.rate, c->shift)), va);
+}
+
 /* m/s: |u_t|, with the velocities that the bodies have now, as above; the cell's edges (m) there */
 static inline double sliding_of(const struct packing *p, const struct contact *c, double ahead,
                                 const vec3 edge[3])
 {
     const struct arms o = arm_vectors(p, c, ahead, edge);
-    const struct wall *w = c->a < 0 ? &p->wall[-1 - c->a] : NULL;
-    vec3 va = w ? v3_add(wall_velocity(p, w, c->x), wall_belt(p, w, c->n))
-                : v3_add(p->v[c->a], v3_cross(p->w[c->a], o.a));
-    vec3 vb = v3_add(p->v[c->b], v3_cross(p->w[c->b], o.b));
-    vec3 u = v3_sub(v3_add(vb, cell_shift(p->cell.rate, c->shift)), va);
+    const vec3 u = velocity_of(p, c, &o);
     return v3_norm(v3_axpy(u, -v3_dot(u, c->n), c->n));
 }
 

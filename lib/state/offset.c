@@ -38,6 +38,7 @@ static double bend_of(const struct packing *p, const struct contact *c)
 
 bool offset_in(const struct packing *pack, const struct contact *c)
 {
+    if (packing_springs(pack, c)) return false; // its springs see the gap
     return (overlap_sees_gaps(pack->overlap) && (c->gap > 0 || overlap_pushes(pack->overlap))) ||
            may_bend(pack, c);
 }

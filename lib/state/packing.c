@@ -135,6 +135,18 @@ int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure)
     return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
+bool packing_has_springs(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+        if (pair_law_springs(&p->law[k])) return true;
+    return false;
+}
+
+bool packing_springs(const struct packing *p, const struct contact *c)
+{
+    return p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)]);
+}
+
 int packing_alloc_laws(struct packing *p, struct failure *failure)
 {
     free(p->law);

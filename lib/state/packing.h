@@ -210,6 +210,9 @@ bool packing_sticks(const struct packing *p);
 bool packing_rolls(const struct packing *p);
 /* May an impact gain energy [step/balance.h]? It needs restitution and friction. */
 bool packing_may_gain(const struct packing *p);
+/* Have contacts of any pair of kinds, and has this one, a stiffness [contact/spring.h]? */
+bool packing_has_springs(const struct packing *p);
+bool packing_springs(const struct packing *p, const struct contact *c);
 /* Is Newton's law to be bounded for the contact [step/balance.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);
 

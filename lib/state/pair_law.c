@@ -36,6 +36,11 @@ const char *pair_law_trouble(const struct pair_law *l)
     if (!isfinite(l->made)) return "the time of bonds is not finite";
     if (!(l->impact >= 0 && l->impact < IMPACT_LAWS) || l->impact != floor(l->impact))
         return "an impact is Newton's or bounded: 0, 1 or 2";
+    if (!pair_law_not_negative(l->kn) || !pair_law_not_negative(l->kt) ||
+        (l->kn > 0) != (l->kt > 0))
+        return "the stiffness of a contact must be positive along n and across, or 0 for both";
+    if (l->kn > 0 && l->w > 0)
+        return "a pair has adhesion or a stiffness of its contacts: not both";
     return l->forever == 0 || l->forever == 1 ? NULL : "bonds are made at a time or for ever";
 }
 

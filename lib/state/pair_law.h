@@ -40,6 +40,10 @@ struct pair_law {
     double forever; /* 1: whenever bodies meet, instead */
 
     double impact; /* enum impact_law */
+
+    double kn,
+        kt; /* N/m, in the plane of 1 m of thickness: stiffness of the contact along n and across; 0: rigid
+                      [contact/spring.h] */
 };
 
 /* What is wrong with the numbers, or NULL */
@@ -52,6 +56,10 @@ static inline bool pair_law_wets(const struct pair_law *l)
 static inline bool pair_law_adheres(const struct pair_law *l)
 {
     return l->w > 0;
+}
+static inline bool pair_law_springs(const struct pair_law *l)
+{
+    return l->kn > 0;
 }
 static inline bool pair_law_rolls(const struct pair_law *l)
 {

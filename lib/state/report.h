@@ -65,6 +65,8 @@ struct balance {
     /* J, where pairs are tied [contact/contact_law.h]: of what is stored, in the step; what is stored then; what
        broken bonds and joining liquid have given up, in the step */
     double bond_change, bond_energy, broken;
+    double
+        implicit;  /* J: lost by the implicit step of springs, in the step; a part of dissipation */
     double gained; /* J: by impacts, in the step; a part of -dissipation */
     double
         projection; /* J: against gravity, by moving bodies apart after the step; where that is done */
@@ -100,6 +102,7 @@ struct report {
     struct err err;
     bool balanced;          /* balance is known: where there is a packing */
     bool tied;              /* its terms of bonds too: where pairs have other laws */
+    bool soft;              /* and of springs: where contacts have a stiffness */
     bool may_gain;          /* and of impacts that gain: where they may */
     bool projected;         /* and of moving bodies apart: where the overlap rule does */
     bool sheared;           /* and of the peculiar velocities: where the cell moves */

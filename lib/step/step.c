@@ -11,6 +11,7 @@
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/balance.h"
+#include "step/hit_bound.h"
 #include "step/move.h"
 #include "step/project.h"
 #include "step/sum_step.h"
@@ -61,21 +62,32 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
     return failed ? failure->status : 0;
 }
 
+/* Solves contacts anew, from what they have; the report adds up what both solves took. */
+static int solve_again(const struct packing *pack, struct contacts *s, struct plan **kept,
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    const struct report before = *rep;
+    if (solve_contacts(pack, s, kept, o, rep, failure)) return failure->status;
+    rep->bus_to += before.bus_to, rep->bus_from += before.bus_from;
+    rep->kernels += before.kernels;
+    rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
+    if (o->solve.history) return 0; // which is of the last solve
+    rep->sweeps += before.sweeps, rep->newton += before.newton;
+    rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
+    return 0;
+}
+
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct rebound_search *search = NULL;
+    struct hit_search *hits = NULL;
     bool again = true;
-    while (!rebound_reduce(&search, pack, s, &again, failure) && again) {
-        const struct report before = *rep;
-        if (solve_contacts(pack, s, kept, o, rep, failure)) break;
-        rep->bus_to += before.bus_to, rep->bus_from += before.bus_from;
-        rep->kernels += before.kernels;
-        rep->seconds += before.seconds, rep->elapsed += before.elapsed, rep->work += before.work;
-        if (o->solve.history) continue; // which is of the last solve
-        rep->sweeps += before.sweeps, rep->newton += before.newton;
-        rep->safeguarded += before.safeguarded, rep->gave_up += before.gave_up;
-    }
+    while (!hit_reduce(&hits, pack, s, &again, failure) && again)
+        if (solve_again(pack, s, kept, o, rep, failure)) break;
+    hit_free(hits);
+    while (!failure->status && !rebound_reduce(&search, pack, s, &again, failure) && again)
+        if (solve_again(pack, s, kept, o, rep, failure)) break;
     rebound_free(search);
     return failure->status;
 }
@@ -104,6 +116,7 @@ static int step_begin(struct step_makers *m,
 static bool account_for(struct report *rep, const struct packing *p, const struct step_opt *o)
 {
     rep->balanced = !o->bare, rep->tied = p->law != NULL, rep->may_gain = packing_may_gain(p);
+    rep->soft = packing_has_springs(p);
     rep->projected = rep->sheared = false;
     return rep->balanced;
 }
@@ -131,7 +144,7 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                                       .rho_factor = o->solve.method->rho,
                                       .order = o->order };
     if (problem_prepare_delassus(&p, W, &form, failure)) return failure->status;
-    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = false;
+    rep->balanced = rep->tied = rep->may_gain = rep->projected = rep->sheared = rep->soft = false;
     int failed = solve_problem(&p, &o->solve, rep);
     for (int64_t i = 0; i < p.slots; i++) {
         double r[3], v[3];

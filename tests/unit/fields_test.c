@@ -249,7 +249,7 @@ static void test_parts(const char *scene, struct frame *f)
 static void test_frame(const char *scene, struct frame *f)
 {
     struct contacts *s = &f->contacts;
-    static bool read[11];
+    static bool read[12];
     struct {
         const struct field *fields;
         int where; /* find_in_frame() */
@@ -259,6 +259,7 @@ static void test_frame(const char *scene, struct frame *f)
                    { velocity_fields, 0, 1, 0 },
                    { balance_fields, 0, 1, 0 },
                    { bond_balance_fields, 0, 1, 0 },
+                   { spring_balance_fields, 0, 1, 0 },
                    { gain_balance_fields, 0, 1, 0 },
                    { peculiar_balance_fields, 0, 1, 0 },
                    { projection_balance_fields, 0, 1, 0 },
@@ -268,7 +269,7 @@ static void test_frame(const char *scene, struct frame *f)
                    { contact_law_fields, 3, s->law ? s->n : 0, sizeof *s->law } };
     bool good = true;
     f->report.criterion = CRITERION_VELOCITY, f->report.balanced = f->report.tied = true;
-    f->report.may_gain = f->report.projected = f->report.sheared = true;
+    f->report.may_gain = f->report.projected = f->report.sheared = f->report.soft = true;
     for (size_t k = 0; k < sizeof tables / sizeof *tables; k++)
         for (const struct field *j = tables[k].fields; j->name && tables[k].n && !read[k]; j++) {
             if (j->when && !j->when(&f->packing)) continue;

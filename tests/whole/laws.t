@@ -436,6 +436,76 @@ jq '.adhesion = { c_n: 1e11, w: 0.1, forever: true } | .capillary = { volume: 1e
 like "bonded and wet under a piston: energy is balanced" "$(misfit "$tmp/press.log" | jq '. < 1e-11')" true
 like "and all steps converge" "$(jq -s 'all(.converged) and .[-1].contacts > 50' "$tmp/press.log")" true
 
+# ---- contacts with a stiffness ----
+
+# soft KEYS HEIGHT VX: a ball of 1 cm above a floor, with these keys of the scene besides
+soft()
+{
+    jq -n --argjson more "$1" --argjson z "$2" --argjson vx "$3" '{ dt: 1e-3, mu: 0.3, stiffness: 1e6,
+        walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], bodies: [{ x: [0, 0, $z], radius: 0.01, v: [$vx, 0, 0] }] } + $more' | nsd-gen -
+}
+near() { jq -en "($1 - $2 | fabs) <= $3 * (if $2 > 0 then $2 else 1 end)" >/dev/null; } # VALUE WANTED RELATIVE
+last() { nsd-info --last -p "$1"; }
+weight=$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 9.81')
+for k in 1e5 1e6; do
+    soft '{"stiffness": '$k'}' 0.01 0 | step --eps 1e-9 -n 400 --every 400 -o "$tmp/rest.h5"
+    ok "a ball at rest sinks by m g/k, k = $k" near "$(last "$tmp/rest.h5" | jq '0.01 - .x[2]')" "$(jq -n "$weight / $k")" 1e-6
+    rm "$tmp/rest.h5"
+done
+for e in 0 0.3 0.7 1; do
+    soft '{"e_n": '$e'}' 0.11 0 | step -n 200 -o "$tmp/bounce.h5"
+    ok "a ball rebounds with $e of its speed" near "$(nsd-info -p "$tmp/bounce.h5" | jq -s '-(map(.v[2]) | max) / (map(.v[2]) | min)')" "$e" 1e-4
+    rm "$tmp/bounce.h5"
+done
+for m in sbp sal ebp eal exact; do
+    soft '{"e_n": 0.5}' 0.01 1 | step -m $m --eps 1e-9 -n 400 --every 400 -o "$tmp/rolled.h5"
+    ok "-m $m: a ball slides, then rolls at 5/7 of its speed" near "$(last "$tmp/rolled.h5" | jq '.v[0]')" "$(jq -n 5/7)" 1e-9
+    rm "$tmp/rolled.h5"
+done
+# a brick on a slope below the angle of friction: its springs carry it
+jq -n '{ dt: 1e-3, mu: 0.5, gravity: [2, 0, -9], stiffness: { normal: 1e6, tangential: 5e5 },
+    walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], shapes: { brick: { box: [0.04, 0.04, 0.01] } },
+    bodies: [{ x: [0, 0, 0.005], shape: "brick", size: 1 }] }' | nsd-gen - | step --eps 1e-9 -n 3000 --every 3000 -o "$tmp/brick.h5"
+# four springs of 5e5 N/m along the slope, and the turn by its pull at the centre, 5 mm above them
+ok "a brick on a slope stays, displaced by m g sin/(4 k_t)" near "$(last "$tmp/brick.h5" | jq '.x[0]')" "$(jq -n '0.08 / 2e6 + 0.08 * 2.5e-5 / (4e6 * 4e-4)')" 1e-2
+
+# a heap: unique reactions, the same bits by every way, and at rest
+nsd-gen 200 | step --stiffness auto -n 1500 --every 1500 -o "$tmp/heap.h5"
+nsd-cat --last "$tmp/heap.h5" >"$tmp/springs.h5"
+nsd-detect "$tmp/springs.h5" >"$tmp/found.h5"
+reactions() # WAY ...
+{
+    nsd-solve --criterion natural --eps 3e-11 --max-sweeps 100000 "$@" "$tmp/found.h5" 2>/dev/null | nsd-info -c | jq -c 'select(.r) | .r'
+}
+reactions --cold >"$tmp/r"
+for way in '-m exact --order random' '-m eal' '--global prox' '--global ipm'; do
+    # shellcheck disable=SC2086 # a way is several words
+    reactions $way >"$tmp/other"
+    ok "$way finds the same reactions, to 1e-5 of their mean" \
+        test "$(jq -n --slurpfile a "$tmp/r" --slurpfile b "$tmp/other" \
+            '([$a, $b] | transpose | map(transpose | map(.[0] - .[1] | fabs) | max) | max) < 1e-5 * ($a | map(.[0]) | add / length)')" = true
+done
+whole springs.h5
+like "a heap at rest stays at rest" "$(step -n 500 --every 500 "$tmp/springs.h5" | nsd-info | tail -n 1 | jq '.kinetic_energy < 1e-8 and .balance.implicit >= 0')" true
+nsd-detect --fclib=global "$tmp/springs.h5" | solve --eps 1e-12 | nsd-err >"$tmp/global.err"
+like "the global form is the same problem" "$(jq '.natural < 1e-9' "$tmp/global.err")" true
+
+# a wedge that locks itself: Newton's law has no solution there
+jq -n '{ dt: 2e-4, mu: 0.5, e_n: 0.9, stiffness: 1e6, bodies: [{ x: [0, 0, 0.01], radius: 1e-3 }],
+    walls: [1, -1 | { point: [0, 0, 0], normal: [. * 0.94, 0, 0.34] }] }' | nsd-gen - | nsd-step -e -n 400 --contacts -o "$tmp/vee.h5" 2>"$tmp/said" && vee=0 || vee=$?
+is "every step of an impact in a self-locking wedge has a solution" "$vee" 0
+like "the force is bounded: with e = 0 it is 7.9e-3 N" \
+    "$(nsd-stat -m boundaries "$tmp/vee.h5" | jq -s '[.[].boundaries.force | flatten | map(fabs) | max] | max < 0.12')" true
+like "the last lines name the stiffness" "$(cat "$tmp/said")" 'stiffness of contacts 1e\+06 N/m, compliance 0.00013'
+rm "$tmp"/vee.h5
+
+# bodies that overlap in a scene part slowly
+jq -n '{ dt: 1e-3, stiffness: 1e6, overlap: true, walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
+    bodies: [{ x: [0, 0, 0.0095], radius: 0.01 }] }' | nsd-gen - | step -n 100 -o "$tmp/deep.h5"
+like "a ball that is in a floor rises at g dt" "$(nsd-info -p "$tmp/deep.h5" | jq -s '(map(.v[2]) | max) < 0.01 and (.[-1].x[2] | . > 0.00999)')" true
+refuses 65 "adhesion with a stiffness is refused" nsd-gen - <<<'{ "dt": 1e-3, "stiffness": 1e6, "adhesion": { "c_n": 1e9, "w": 1 }, "bodies": [{ "x": [0, 0, 0], "radius": 0.01 }] }'
+refuses 64 "and no word for a stiffness" nsd-step --stiffness soft "$tmp/springs.h5"
+
 # ---- grains that are no balls ----
 
 # A brick bonded below another, held by four corners. Its centre of mass is not below the middle of the bond, so that it

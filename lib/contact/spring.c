@@ -1,0 +1,161 @@
+/* contact/spring.c: what springs of contacts do in a step, and keep [contact/spring.h]. */
+#include "contact/spring.h"
+
+#include "state/freedom.h"
+#include "state/kinematics.h"
+#include "state/rotation.h"
+
+/* A contact's bodies: the arms to it, and the velocity of b against a before the step and without reactions */
+struct spring_meeting {
+    const struct packing *p;
+    const struct contact *c;
+    struct arms arm;
+    vec3 before, free; /* m/s */
+};
+
+static vec3 fall_of(const struct packing *p, int32_t i)
+{
+    return i >= 0 && p->mass[i] > 0 ? packing_fall(p, i) : v3(0, 0, 0);
+}
+
+static struct spring_meeting meeting_of(const struct packing *p, const struct contact *c)
+{
+    struct spring_meeting m = { .p = p, .c = c };
+    vec3 edge[3];
+    cell_predict(&p->cell, step_ahead(p), edge);
+    m.arm = arm_vectors(p, c, step_ahead(p), edge);
+    m.before = velocity_of(p, c, &m.arm);
+    m.free = v3_add(m.before, v3_sub(fall_of(p, c->b), fall_of(p, c->a)));
+    return m;
+}
+
+/* m/s: what an impulse f (N s) makes of the velocity of body i at the contact, arm from its centre */
+static vec3 spring_push(const struct packing *p, int32_t i, vec3 arm, vec3 f)
+{
+    if (i < 0 || !(p->mass[i] > 0)) return v3(0, 0, 0);
+    vec3 moment = v3_cross(arm, f);
+    vec3 w = rotation_is(p, i) ? rotation_spin(p, i, rotation_predict(p, i), moment)
+                               : v3_scale(1 / p->inertia[i], moment);
+    if (p->dim == 2) w = v3(0, 0, moment.z / p->inertia[i]);
+    return v3_axpy(v3_cross(w, arm), 1 / p->mass[i], f);
+}
+
+/* x[3] = W_cc^-1 y, in the contact's basis; 0 where no body moves */
+static void spring_impulse(const struct spring_meeting *m, const double y[3], double x[3])
+{
+    const struct contact *c = m->c;
+    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
+    vec3 W[3]; // columns, in the basis; W is symmetric
+    for (int j = 0; j < 3; j++) {
+        vec3 u = v3_add(spring_push(m->p, c->b, m->arm.b, e[j]),
+                        spring_push(m->p, c->a, m->arm.a, e[j]));
+        W[j] = v3(v3_dot(e[0], u), v3_dot(e[1], u), v3_dot(e[2], u));
+    }
+    const vec3 r = v3(y[0], y[1], y[2]);
+    const double det = v3_dot(W[0], v3_cross(W[1], W[2]));
+    x[0] = x[1] = x[2] = 0;
+    if (!(det > 0)) return;
+    x[0] = v3_dot(r, v3_cross(W[1], W[2])) / det;
+    x[1] = v3_dot(W[0], v3_cross(r, W[2])) / det;
+    x[2] = v3_dot(W[0], v3_cross(W[1], r)) / det;
+}
+
+/* On the disc of mu r_n */
+static void spring_cut(double most, double x[2])
+{
+    const double t = sqrt(x[0] * x[0] + x[1] * x[1]);
+    for (int k = 0; k < 2 && t > most; k++) x[k] *= most / t;
+}
+
+/* Of the impulse of an impact: what springs push in a step in which they are taken not to push */
+#define SLIGHT 1e-2
+
+/* Is it an impact? Sets t->hit. */
+static bool spring_meets(struct contact_law *t, const struct packing *p, const struct contact *c)
+{
+    const struct spring_meeting m = meeting_of(p, c);
+    const vec3 e[3] = { c->n, c->t1, contact_t2(c) };
+    double off[3];
+    if (!(-v3_dot(m.before, c->n) > freedoms_calm(p))) return false;
+    if (!(t->jump[0] + p->dt * v3_dot(m.free, c->n) < 0)) return false; // not in this step
+    for (int k = 0; k < 3; k++)
+        off[k] = -v3_dot(m.free, e[k]) - (k ? c->et : c->en) * v3_dot(m.before, e[k]);
+    if (!(c->en > 0)) off[0] -= fmax(0, t->jump[0]) / p->dt;
+    spring_impulse(&m, off, t->hit);
+    t->hit[0] = fmax(0, t->hit[0]);
+    spring_cut(c->mu * t->hit[0], t->hit + 1);
+    const bool meets = -t->spring[0] * t->jump[0] * p->dt <= SLIGHT * t->hit[0];
+    for (int k = 0; k < 3 && !meets; k++) t->hit[k] = 0;
+    return meets;
+}
+
+void spring_set(struct contact_law *t, const struct packing *p, struct contact *c,
+                const struct bond *old)
+{
+    const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
+    const bool pressed = old && old->pressed;
+    if (!pair_law_springs(l)) return;
+    t->spring[0] = l->kn, t->spring[1] = l->kt;
+    const double rest = fmin(0, pressed ? fmax(old->rest, c->gap) : c->gap);
+    t->jump[0] = c->gap - rest;
+    if (pressed) {
+        vec3 slip = v3_turn_along(old->n, c->n, old->slip);
+        t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
+        spring_cut(c->mu * l->kn * fmax(0, -t->jump[0]) / l->kt, t->jump + 1);
+    }
+    if (pressed) c->en = c->et = 0;
+    if (spring_meets(t, p, c))
+        t->state |= CONTACT_LAW_MEETS;
+    else
+        c->en = c->et = 0;
+}
+
+void spring_seen(double dt, const struct contact *c, const struct contact_law *t, double law[3],
+                 double compliance[2])
+{
+    const bool meets = t->state & CONTACT_LAW_MEETS;
+    for (int k = 0; k < 2; k++) compliance[k] = 1 / (t->spring[k] * dt * dt);
+    for (int k = 0; k < 3; k++) {
+        law[k] = t->jump[k] / dt;
+        if (meets)
+            law[k] = (k == 0 && !(c->en > 0) ? fmax(0, law[k]) : 0) - compliance[k > 0] * t->hit[k];
+    }
+}
+
+struct spring_end spring_end(double dt, const struct contact *c, const struct contact_law *t,
+                             const struct found *found, double before)
+{
+    double law[3], compliance[2];
+    struct spring_end e;
+    spring_seen(dt, c, t, law, compliance);
+    e.un = (1 + c->en) * found->u[0] - c->en * before - law[0] - compliance[0] * found->r[0];
+    e.stretch[0] = t->jump[0] + dt * e.un;
+    const bool meets = t->state & CONTACT_LAW_MEETS;
+    for (int k = 1; k < 3; k++) e.stretch[k] = meets ? 0 : -found->r[k] / (dt * t->spring[1]);
+    return e;
+}
+
+double spring_energy(const struct contact_law *t, const double x[3])
+{
+    const double n = fmin(0, x[0]);
+    return 0.5 * (t->spring[0] * n * n + t->spring[1] * (x[1] * x[1] + x[2] * x[2]));
+}
+
+double spring_implicit(const struct contact_law *t, const double end[3])
+{
+    double d[3];
+    for (int k = 0; k < 3; k++) d[k] = end[k] - t->jump[k];
+    d[0] = fmin(0, end[0]) - fmin(0, t->jump[0]);
+    return 0.5 * (t->spring[0] * d[0] * d[0] + t->spring[1] * (d[1] * d[1] + d[2] * d[2]));
+}
+
+double spring_rest_after(const struct packing *p, const struct contact *c,
+                         const struct contact_law *t)
+{
+    return fmin(0, c->gap - t->jump[0] + p->dt * packing_most_fall(p));
+}
+
+double spring_unloaded_gap(const struct contact *c, const struct contact_law *t)
+{
+    return t->spring[0] > 0 ? c->gap - fmin(0, t->jump[0]) : c->gap;
+}
