@@ -180,7 +180,6 @@ ok "beyond the limit of substeps bodies pass, and are counted" grep -q 'worst: .
 # ---- the same bytes ----
 
 cp "$tmp/swarm.h5" "$tmp/whole.h5"
-nsd-gen scenes/gas.json | jq -n empty
 py tests/support/hard_balls.py make 60 3 | jq '.mu = 0.2 | .e_n = 0.8 | .gravity = [0, 0, -9.81]' | nsd-gen - >"$tmp/in.h5"
 nsd-step -n 4 --contacts -o "$tmp/one.h5" "$tmp/in.h5" 2>/dev/null
 nsd-step -j 4 -n 4 --contacts -o "$tmp/four.h5" "$tmp/in.h5" 2>/dev/null
