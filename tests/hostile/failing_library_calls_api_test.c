@@ -32,10 +32,10 @@ static uint32_t state(const struct nsd_run *r)
         crc = add(crc, &p->memory.recall[i].r, sizeof p->memory.recall[i].r);
     for (size_t i = 0; i < m; i++) crc = add(crc, &s->c[i].x, sizeof s->c[i].x);
     for (size_t i = 0; i < m && s->found; i++) crc = add(crc, s->found[i].r, sizeof s->found[i].r);
-    for (int t = 0; t < CONTROL_TERMS && r->acts.id; t++)
-        for (size_t i = 0; i < (size_t)r->acts.n; i++)
-            if (v3_norm(r->acts.force[t][i]) > 0)
-                crc = add(crc, &r->acts.force[t][i], sizeof(vec3));
+    for (int t = 0; t < CONTROL_TERMS && r->driver.acts.id; t++)
+        for (size_t i = 0; i < (size_t)r->driver.acts.n; i++)
+            if (v3_norm(r->driver.acts.force[t][i]) > 0)
+                crc = add(crc, &r->driver.acts.force[t][i], sizeof(vec3));
     return crc;
 }
 
