@@ -1,7 +1,6 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK, memfd_create
 #include "file/writer.h"
 
-#include "base/embedded.h"
 #include "base/output.h"
 #include "file/frame_write.h"
 #include "file/h5.h"
