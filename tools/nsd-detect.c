@@ -20,6 +20,8 @@ static struct cli_choice form_choice(int k)
 
 static int form;
 
+static struct problem problem; /* of the frame in hand */
+
 static const struct cli_option own[] = {
     { CLI_CHOICE, 0, "fclib", &form, .choice = form_choice,
       .help = "also write the contact problem in the FCLIB format" },
@@ -36,16 +38,16 @@ const struct cli_tool tool = {
     "  nsd-detect --fclib=local < packing.h5 > problem.h5\n"
 };
 
-/* The contact problem, which the writer then adds in the FCLIB format. */
+/* The contact problem, which the writer then adds in the FCLIB format; that of the frame before is freed. */
 static void add_problem(struct frame *f)
 {
     struct failure failure = { 0 };
-    f->export = calloc(1, sizeof *f->export);
-    if (!f->export) die(EX_SOFTWARE, "no memory for the contact problem");
-    if (problem_prepare(f->export, &f->packing, &f->contacts,
+    problem_free(&problem);
+    if (problem_prepare(&problem, &f->packing, &f->contacts,
                         &(struct prepare_opt){ .rho_factor = 1 }, &failure))
         die_why(&failure);
-    if (f->export->kind.rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
+    if (problem.kind.rolls) die(EX_DATAERR, "rolling friction has no place in an FCLIB problem");
+    f->export = &problem, f->write_export = fclib_write_problem;
     f->export_global = form == FORM_GLOBAL;
 }
 
@@ -83,5 +85,6 @@ static void detect(struct frame *f, const char *where)
 int tool_main(int argc, char **argv)
 {
     tool_filter(argc, argv, detect);
+    problem_free(&problem);
     return 0;
 }

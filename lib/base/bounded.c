@@ -12,7 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Limits of the system [base/bounded.h]. */
+/* ---- limits of the system ---- */
 
 enum { SLOWER = SANITIZED ? 10 : 1 };
 

@@ -1,6 +1,6 @@
 #include "base/option.h"
 
-#include "base/number.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -2,13 +2,12 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK
 #include "base/output.h"
 
-#include "base/embedded.h"
-
 #include <errno.h>
 #include <fcntl.h>
 #include <limits.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -306,4 +305,18 @@ int output_stream_close(struct output *o, FILE *stream, struct failure *failure)
     if (fclose(stream)) output_failed(o, failure, errno);
     if (bad) failure_set(failure, EX_IOERR, "%s: not written (disk full?)", o->name);
     return output_close(o, failure);
+}
+
+/* ---- whose process it is ---- */
+
+static atomic_bool embedded;
+
+void embedded_set(void)
+{
+    atomic_store(&embedded, true);
+}
+
+bool embedded_is(void)
+{
+    return atomic_load(&embedded);
 }

@@ -2,7 +2,7 @@
  * base/output.h: an output file. What a tool writes goes into a new file next to its target, hidden, which
  * takes the target's place in one stroke when there is something whole in it. Until then nothing of the
  * user's is touched; a tool that fails, or is stopped by a signal, removes the new file and leaves the
- * target as it was; in the program of somebody else [base/embedded.h] a signal leaves the new file, which the next writer
+ * target as it was; in the program of somebody else a signal leaves the new file, which the next writer
  * uses. What is no regular file (a pipe, a device, /dev/stdout) is written where it is.
  *
  * An output has one writer: both files are locked, and a second writer is refused.
@@ -56,5 +56,10 @@ int output_lock(int fd, int how, const char *name, struct failure *failure);
 void output_unlock(int fd);
 /* Has another program removed the open file, which had a name once? */
 bool output_removed(int fd);
+
+/* Is this the library in the program of somebody else? Then the process is not ours: its signals stay as they are, and it may have
+   other threads. */
+void embedded_set(void);
+bool embedded_is(void);
 
 #endif

@@ -1,8 +1,29 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): fopencookie
+#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): fopencookie, strtod_l
 #include "base/text.h"
 
+#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The C library has it, and makes no other: it is not to be freed. */
+static locale_t plain(void)
+{
+    return newlocale(LC_ALL_MASK, "C", (locale_t)0);
+}
+
+double number_read(const char *text, char **end)
+{
+    return strtod_l(text, end, plain());
+}
+
+void number_write(char *text, size_t room, int digits, char form, double x)
+{
+    locale_t was = uselocale(plain());
+    snprintf(text, room, form == 'e' ? "%.*e" : "%.*g", digits, x);
+    uselocale(was);
+}
+
+/* ---- a text in memory ---- */
 
 static ssize_t text_put(void *to, const char *bytes, size_t n)
 {

@@ -1,12 +1,18 @@
 /*
- * base/text.h: a text in memory, written as a stream. open_memstream() does the same, but where memory is exhausted it drops what
- * does not fit, and neither ferror() nor fclose() reports it.
+ * base/text.h: numbers as text, with a decimal point in every locale: the library is in programs that have called setlocale(), as
+ * Python programs do. And a text in memory, written as a stream. open_memstream() does the same, but where memory is exhausted it
+ * drops what does not fit, and neither ferror() nor fclose() reports it.
  */
 #ifndef NSD_TEXT_H
 #define NSD_TEXT_H
 
 #include <stdbool.h>
 #include <stdio.h>
+
+/* As strtod() */
+double number_read(const char *text, char **end);
+/* As snprintf() with %.*g or %.*e; form: 'g' or 'e' */
+void number_write(char *text, size_t room, int digits, char form, double x);
 
 struct text {
     char *bytes;

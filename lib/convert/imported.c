@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-struct imported_ball imported_ball(void)
+static struct imported_ball imported_ball(void)
 {
     return (struct imported_ball){ .q = { 1, 0, 0, 0 }, .type = 1, .id = -1 };
 }
@@ -28,7 +28,7 @@ void imported_free(struct imported *t)
     *t = (struct imported){ 0 };
 }
 
-/* Lines of numbers under named columns, as balls [convert/imported.h]. */
+/* ---- lines of numbers under named columns, as balls ---- */
 
 static const struct {
     const char *name;

@@ -38,7 +38,6 @@ struct imported {
 
 enum { IMPORTED_MOST = 1 << 27 }; /* balls */
 
-struct imported_ball imported_ball(void);
 /* One more ball. Returns 0 or EX_SOFTWARE. */
 int imported_add(struct imported *to, const struct imported_ball *ball, struct failure *failure);
 void imported_free(struct imported *it);

@@ -56,17 +56,6 @@ static int keep_wanted(struct sheet *s, enum part part, const struct export_fram
     return 0;
 }
 
-int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure)
-{
-    static int (*const fill[PART_COUNT])(struct sheet *, const struct export_frame *,
-                                         struct failure *) = { sheet_grains, sheet_contacts,
-                                                               sheet_boundary, sheet_box,
-                                                               sheet_surfaces };
-    *s = (struct sheet){ .shape = SHEET_POINT };
-    if (fill[part](s, m, failure) || keep_wanted(s, part, m, failure)) sheet_free(s);
-    return failure->status;
-}
-
 /* Room for so many points, and as many cells and corners */
 static int sheet_grow(struct sheet *s, int64_t least)
 {
@@ -121,7 +110,7 @@ int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix, stru
 
 /* The cell as the lines along its edges; none where nothing repeats. */
 
-int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *failure)
+static int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct cell *c = &m->packing->cell;
     struct box b;
@@ -187,7 +176,7 @@ static int sheet_add_forces(struct sheet *s, const struct export_frame *m, struc
     return 0;
 }
 
-int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
+static int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     s->shape = SHEET_LINE;
@@ -234,7 +223,7 @@ static int sheet_add_contacts(struct sheet *s, const struct export_frame *m,
     return 0;
 }
 
-int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure)
+static int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     const size_t n = (size_t)p->n;
@@ -335,7 +324,7 @@ static void sheet_surfaces_add_contacts(struct sheet *s, const int32_t *of,
     free(sum), free(pushes);
 }
 
-int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure *failure)
+static int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     struct sheet_cells c = { .s = s, .failure = failure };
@@ -350,5 +339,18 @@ int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure
         sheet_surfaces_add_contacts(s, c.of, m, failure);
     facets_free(&f);
     free(c.of);
+    return failure->status;
+}
+
+/* ---- any part ---- */
+
+int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, struct failure *failure)
+{
+    static int (*const fill[PART_COUNT])(struct sheet *, const struct export_frame *,
+                                         struct failure *) = { sheet_grains, sheet_contacts,
+                                                               sheet_boundary, sheet_box,
+                                                               sheet_surfaces };
+    *s = (struct sheet){ .shape = SHEET_POINT };
+    if (fill[part](s, m, failure) || keep_wanted(s, part, m, failure)) sheet_free(s);
     return failure->status;
 }

@@ -42,13 +42,9 @@ static inline int64_t sheet_rows(const struct sheet *s)
     return s->of_points ? s->points : s->cells;
 }
 
-/* ---- for those who fill one: export/sheet_*.c ---- */
+/* ---- for those who fill one: sheet.c, sheet_walls.c ---- */
 
-int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure);
-int sheet_contacts(struct sheet *s, const struct export_frame *m, struct failure *failure);
 int sheet_boundary(struct sheet *s, const struct export_frame *m, struct failure *failure);
-int sheet_surfaces(struct sheet *s, const struct export_frame *m, struct failure *failure);
-int sheet_box(struct sheet *s, const struct export_frame *m, struct failure *failure);
 
 /* One cell more, of these corners. */
 int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failure);

@@ -27,9 +27,9 @@
 enum page_text { PAGE_HTML, PAGE_CSS, PAGE_JS, PAGE_THREE, PAGE_LICENCE };
 
 /* The text of a file */
-const char *page_part(enum page_text which);
+static const char *page_part(enum page_text which);
 
-/* The assembler takes the files in as they are [draw/page.h]. */
+/* ---- the assembler takes the files in as they are ---- */
 
 #define TAKE_IN(name, file)                                                                        \
     __asm__(".section .rodata\n.hidden " name "\n.globl " name "\n" name                           \
@@ -44,7 +44,7 @@ TAKE_IN("nsd_page_licence", "LICENSE.three");
 extern const char nsd_page_html[], nsd_page_css[], nsd_page_js[], nsd_page_three[],
     nsd_page_licence[];
 
-const char *page_part(enum page_text which)
+static const char *page_part(enum page_text which)
 {
     static const char *const part[] = { nsd_page_html, nsd_page_css, nsd_page_js, nsd_page_three,
                                         nsd_page_licence };

@@ -144,7 +144,7 @@ json_t *page_meta(const struct page *p)
     return j;
 }
 
-/* Shapes as triangles, by draw/facets.h [draw/page_data.h]. */
+/* ---- shapes as triangles, by draw/facets.h ---- */
 
 enum { DETAIL = 2 }; /* of what is round */
 

@@ -160,7 +160,7 @@ struct rgb paint_disc(const struct paint *p, struct rgb own, vec3 b)
     return b.y > 0 ? pale(own) : own; // the half that is up when the disc is not turned
 }
 
-/* Sums over contacts, and a table read [draw/paint.h]. */
+/* ---- sums over contacts, and a table read ---- */
 
 static const char blank[] = " \t\r\n,";
 

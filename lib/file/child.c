@@ -2,7 +2,7 @@
 #include "file/child.h"
 
 #include "base/bounded.h"
-#include "base/embedded.h"
+#include "base/output.h"
 #include "file/h5.h"
 #include "file/server.h"
 

@@ -38,6 +38,8 @@ void fclib_free(struct fclib *problem);
 int fclib_store_solution(const struct fclib *problem, int64_t file, const double *u,
                          const double *r, struct failure *failure);
 
+/* Removes an object, if it is there. */
+int fclib_remove(int64_t file, const char *path, struct failure *failure);
 /* Writes a packing's contact problem with its info. Replaces any problem and solution there. */
 int fclib_write_problem(const struct problem *problem, bool global, int64_t file,
                         struct failure *failure);

@@ -9,9 +9,8 @@ void frame_free(struct frame *f)
     contacts_free(&f->contacts);
     report_free(&f->report);
     if (f->foreign) fclib_free(&f->problem);
-    if (f->export) problem_free(f->export);
     unknown_free(f->unknown);
-    free(f->export), free(f->u), free(f->history);
+    free(f->u), free(f->history);
     *f = (struct frame){ 0 };
 }
 

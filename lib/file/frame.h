@@ -29,8 +29,11 @@ struct frame {
     struct fclib problem;
     double *u; /* [n d] m/s, of the problem's solution; NULL: not solved. r is problem.W.r */
 
-    struct problem *export; /* to be written as an FCLIB problem too; or NULL */
-    bool export_global;     /* in global form */
+    const struct problem *export; /* borrowed: to be written as an FCLIB problem, too; or NULL */
+    bool export_global;           /* in global form */
+    /* fclib_write_problem(): whoever exports nothing does not link it */
+    int (*write_export)(const struct problem *p, bool global, int64_t file,
+                        struct failure *failure);
 
     char *history;           /* a JSON line for each command, each ended by a newline; or NULL */
     struct unknown *unknown; /* what nsd does not know in the document it came from; or NULL */

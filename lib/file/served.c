@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What reading a document may cost [file/served.h]. */
+/* ---- what reading a document may cost ---- */
 
 uint64_t budget_unpacked(uint64_t size, uint64_t allowed)
 {

@@ -1,7 +1,7 @@
 #include "file/server.h"
 
 #include "base/bounded.h"
-#include "base/embedded.h"
+#include "base/output.h"
 #include "file/serve.h"
 #include "file/stream.h"
 

@@ -1,7 +1,6 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): F_OFD_SETLK, memfd_create
 #include "file/writer.h"
 
-#include "base/embedded.h"
 #include "base/output.h"
 #include "file/frame_write.h"
 #include "file/h5.h"
@@ -317,7 +316,7 @@ static int stream_frame(struct writer *s, const struct frame *f, struct failure 
     if (doc.file < 0) return failure_set(failure, EX_SOFTWARE, "no memory for the document");
     int e = frame_write_static(&doc, f, failure) || frame_write_moment(&doc, f, failure) ||
             frame_write_step(&doc, f, failure) ||
-            (f->export && fclib_write_problem(f->export, f->export_global, doc.file, failure)) ||
+            (f->export && f->write_export(f->export, f->export_global, doc.file, failure)) ||
             (f->foreign && f->u &&
              fclib_store_solution(&f->problem, doc.file, f->u, f->problem.W.r, failure)) ||
             writer_fill(&doc, NULL, failure) || for_vtk(s, doc.file, f, true, failure) ||

@@ -61,7 +61,7 @@ int writer_pass(struct writer *writer, struct reader *from, struct failure *fail
 /* Completes the document (lengths, checksum) and reports what the file system had held back. */
 int writer_close(struct writer *writer, struct failure *failure);
 
-/* In a new process by fork(), of the program of somebody else [base/embedded.h]: the descriptors of the open writers' files
+/* In a new process by fork(), of the program of somebody else [base/output.h]: the descriptors of the open writers' files
    lead elsewhere, so that nothing that this process does, or libhdf5 as it ends, reaches the files. */
 void writer_forget_all(void);
 

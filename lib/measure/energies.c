@@ -21,10 +21,10 @@ struct step_start {
 };
 
 /* Of solved contacts. Returns 0 or EX_SOFTWARE; to be freed either way. */
-int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure);
-void step_start_free(struct step_start *m);
+static int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure);
+static void step_start_free(struct step_start *m);
 
-int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure)
+static int step_start_init(struct step_start *m, const struct snapshot *s, struct failure *failure)
 {
     *m = (struct step_start){ .p = s->p };
     if (s->moved) {
@@ -35,7 +35,7 @@ int step_start_init(struct step_start *m, const struct snapshot *s, struct failu
     return impulses_init(&m->sum, m->p, s->s, false, failure);
 }
 
-void step_start_free(struct step_start *m)
+static void step_start_free(struct step_start *m)
 {
     impulses_free(&m->sum);
     packing_free(&m->back);

@@ -21,11 +21,11 @@
 
 /* A row for each of `bins` bins of the same width from 0 to `most`, which is in the last.
    Returns 0 or EX_SOFTWARE. */
-int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
-                   struct failure *failure);
+static int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
+                          struct failure *failure);
 
-int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
-                   struct failure *failure)
+static int histogram_rows(struct table *t, const double *x, int64_t n, double most, int64_t bins,
+                          struct failure *failure)
 {
     // GSL's own allocation ends the program when memory is short
     gsl_histogram h = { (size_t)bins, calloc((size_t)bins + 1, sizeof(double)),

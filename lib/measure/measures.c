@@ -1,6 +1,6 @@
 #include "measure/measures.h"
 
-#include "base/number.h"
+#include "base/text.h"
 #include "measure/follow.h"
 #include "measure/photo.h"
 

@@ -1,6 +1,6 @@
 #include "measure/table.h"
 
-#include "base/number.h"
+#include "base/text.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -166,7 +166,7 @@ void contact_list_found(const struct contact_list *l, const struct subdomain *y,
     parcels_free(t, in);
 }
 
-/* Sums along the order of all slots [mpi/contact_list.h]. */
+/* ---- sums along the order of all slots ---- */
 
 enum {
     OWNED = 1024 /* bundles that one rank adds up: a multiple of every chunk */

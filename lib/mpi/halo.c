@@ -157,7 +157,7 @@ void halo_refresh(const struct subdomain *y, struct problem *p)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-/* What ranks answer alike [mpi/halo.h]. */
+/* ---- what ranks answer alike ---- */
 
 static double most(struct exchange *s, double x)
 {

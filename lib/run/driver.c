@@ -1,6 +1,6 @@
 #include "run/driver.h"
 
-#include "base/number.h"
+#include "base/text.h"
 #include "step/adapt.h"
 
 #include <float.h>

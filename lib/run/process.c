@@ -1,6 +1,6 @@
 #include "run/process.h"
 
-#include "base/embedded.h"
+#include "base/output.h"
 #include "file/child.h"
 #include "file/writer.h"
 

@@ -1,8 +1,8 @@
 /* run/run.c: a run: made, set, stepped and closed. */
 #include "run/run.h"
 
-#include "base/number.h"
 #include "base/team.h"
+#include "base/text.h"
 #include "convert/scene_file.h"
 #include "run/document.h"
 #include "scene/scene_build.h"

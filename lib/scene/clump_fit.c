@@ -25,8 +25,8 @@ struct clump_grid {
 };
 
 /* Returns 0, EX_DATAERR where the surface has too little within it, or EX_SOFTWARE; clump_grid_free in any case. */
-int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure);
-void clump_grid_free(struct clump_grid *g);
+static int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure);
+static void clump_grid_free(struct clump_grid *g);
 
 static inline vec3 clump_grid_at(const struct clump_grid *g, int64_t k)
 {
@@ -36,7 +36,7 @@ static inline vec3 clump_grid_at(const struct clump_grid *g, int64_t k)
 }
 
 /* m: from c to the surface, of which is known that it is no more than `most` */
-double clump_grid_distance(const struct clump_grid *g, vec3 c, double most);
+static double clump_grid_distance(const struct clump_grid *g, vec3 c, double most);
 
 enum { INSIDE_LEAST = 200 };
 
@@ -89,7 +89,7 @@ static int find_inside(struct clump_grid *g, struct failure *failure)
     return failure->status;
 }
 
-double clump_grid_distance(const struct clump_grid *g, vec3 c, double most)
+static double clump_grid_distance(const struct clump_grid *g, vec3 c, double most)
 {
     const struct surface *s = &g->surface;
     struct surface_walk walk;
@@ -113,7 +113,7 @@ static void find_depths(struct clump_grid *g, double extent)
     }
 }
 
-int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure)
+static int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure)
 {
     vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
     *g = (struct clump_grid){ .mesh = m };
@@ -138,7 +138,7 @@ int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *
     return 0;
 }
 
-void clump_grid_free(struct clump_grid *g)
+static void clump_grid_free(struct clump_grid *g)
 {
     free(g->depth);
     surface_free(&g->surface);

@@ -1,7 +1,7 @@
 #include "scene/grains.h"
 
 #include "base/json.h"
-#include "base/number.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,4 +1,4 @@
-/* scene/hull.c: qhull asked, and a shape made of its answer [scene/hull.h]. */
+/* scene/hull.c: points thinned out, their hull by qhull, its triangles joined to faces, and the shape made of these [scene/hull.h]. */
 #include "scene/hull.h"
 
 #include "base/failure.h"
@@ -41,12 +41,14 @@ struct loops {
 
 /* The faces of a hull; in a plane: what is closer to it than `flat`. Returns 0, EX_DATAERR where
    no body is left, or EX_SOFTWARE; loops_free() in any case. */
-int hull_faces(struct loops *l, const struct facets *hull, double flat, struct failure *failure);
+static int hull_faces(struct loops *l, const struct facets *hull, double flat,
+                      struct failure *failure);
 /* The same in the plane: one loop, of segments. */
-int hull_loop(struct loops *l, const struct facets *hull, double flat, struct failure *failure);
-void loops_free(struct loops *l);
+static int hull_loop(struct loops *l, const struct facets *hull, double flat,
+                     struct failure *failure);
+static void loops_free(struct loops *l);
 
-/* Points sorted by the cells of a grid, and thinned out in that order [scene/hull.h]. */
+/* ---- points sorted by the cells of a grid, and thinned out in that order ---- */
 
 struct celled {
     int64_t cell[3];
@@ -115,7 +117,7 @@ int thin_out(int32_t *to, const vec3 *x, int64_t n, double apart, struct failure
     return 0;
 }
 
-/* Faces grown over triangles, and their loops of corners [scene/hull.h]. */
+/* ---- faces grown over triangles, and their loops of corners ---- */
 
 static int hull_faces_no_memory(struct failure *failure)
 {
@@ -127,7 +129,7 @@ static int hull_faces_is_flat(struct failure *failure)
     return failure_set(failure, EX_DATAERR, "is flat to rounding");
 }
 
-void loops_free(struct loops *l)
+static void loops_free(struct loops *l)
 {
     free(l->first), free(l->corner);
     *l = (struct loops){ 0 };
@@ -259,7 +261,8 @@ static bool thin_loops(struct loops *l, int32_t *of, int32_t points)
     return n < all;
 }
 
-int hull_faces(struct loops *l, const struct facets *hull, double flat, struct failure *failure)
+static int hull_faces(struct loops *l, const struct facets *hull, double flat,
+                      struct failure *failure)
 {
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;
@@ -293,7 +296,8 @@ static double off_line(vec3 a, vec3 b, vec3 c)
     return fabs(d.x * e.y - d.y * e.x) / v3_norm(d);
 }
 
-int hull_loop(struct loops *l, const struct facets *hull, double flat, struct failure *failure)
+static int hull_loop(struct loops *l, const struct facets *hull, double flat,
+                     struct failure *failure)
 {
     const struct facet *facet = hull->of;
     const int32_t facets = hull->n;

@@ -2,7 +2,7 @@
 #include "scene/mesh_file.h"
 
 #include "base/json.h"
-#include "base/number.h"
+#include "base/text.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* Text taken apart [scene/mesh_file.h]. */
+/* ---- text taken apart ---- */
 
 enum {
     NUMBER_MOST = 400, /* bytes of a number */

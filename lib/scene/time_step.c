@@ -1,7 +1,7 @@
 /* scene/time_step.c: limits of the time step [scene/time_step.h]. */
 #include "scene/time_step.h"
 
-#include "base/number.h"
+#include "base/text.h"
 #include "contact/detect.h"
 #include "shape/wall_edge.h"
 #include "state/servo_box.h"

@@ -31,11 +31,11 @@
  */
 
 /* Is the problem one of few contacts with faces? The same in every process that has a part of it. */
-bool even_concerns(const struct problem *p);
+static bool even_concerns(const struct problem *p);
 /* Makes such steps from the iterate, a bounded number, and judges. Returns 0, or -1 when memory is short. */
-int even_start(struct solve *s);
+static int even_start(struct solve *s);
 
-/* Steps of all contacts at once [solve/auto.h]. */
+/* ---- steps of all contacts at once ---- */
 
 enum {
     CONTACTS = 32,   /* at most: more have their symmetry, if any, broken by where they lie */
@@ -48,7 +48,7 @@ static const double SAFE = 1.05;
 /* Of eps: less is not worth a step */
 static const double ENOUGH = 0.1;
 
-bool even_concerns(const struct problem *p)
+static bool even_concerns(const struct problem *p)
 {
     return p->packing && p->kind.full && !p->kind.extra && p->n > 1 && p->n <= CONTACTS;
 }
@@ -112,7 +112,7 @@ static void step_all(const struct scaled *a, double eps, double *x, double *w)
     }
 }
 
-int even_start(struct solve *s)
+static int even_start(struct solve *s)
 {
     struct scaled a;
     struct failure failure = { 0 };

@@ -173,7 +173,7 @@ void device_react(struct problem *p, const struct mixing *m, double leap,
     if (d) d->here = false, d->kind->react(d, p, m, leap, gamma);
 }
 
-/* The small problem, and the comparison [solve/device.h]. */
+/* ---- the small problem, and the comparison ---- */
 
 enum {
     CHAIN =

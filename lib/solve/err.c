@@ -252,7 +252,7 @@ bool err_no_solution(const struct report *r)
     return !r->converged && (r->err.jammed || err_of(&r->err, r->criterion) <= r->eps);
 }
 
-/* The velocities that reactions make, beside them [solve/err.h]. */
+/* ---- the velocities that reactions make, beside them ---- */
 
 /* y = W r of the slots */
 static int err_move(const struct problem *p, double *r, double *y)

@@ -117,7 +117,7 @@ void extra_roll(const struct extra_lane *at, enum method_id method, const struct
     for (int j = 0; j < 2; j++) l->b[1 + j] += l->s[1] * k * length * (q.x[4 + j] - was[j]);
 }
 
-/* Bonds and moments as matrices [solve/extra.h]. */
+/* ---- bonds and moments as matrices ---- */
 
 /* C = A^-1, 3 x 3; A's eigenvalues are at least 1. */
 static void extra_invert(const double A[9], double C[9])

@@ -77,7 +77,7 @@ const char *opencl_error(int32_t error)
     return text;
 }
 
-/* The assembler takes the files in as they are [solve/opencl_api.h]. */
+/* ---- the assembler takes the files in as they are ---- */
 
 #define EACH_TEXT(X)                                                                               \
     X(begin, "lib/solve/opencl/begin.cl")                                                          \

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* M + H K H^T, condensed [solve/prepare.h]. */
+/* ---- M + H K H^T, condensed ---- */
 
 #define GB 1e9 /* bytes */
 

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The cut and the zones [solve/schedule.h]. */
+/* ---- the cut and the zones ---- */
 
 enum {
     SAMPLE = 16384,                  /* contacts that decide where to cut, at most */

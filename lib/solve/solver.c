@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One point and its value [solve/solver.h]. */
+/* ---- one point and its value ---- */
 
 int best_init(struct best *b, int64_t size)
 {
@@ -39,7 +39,7 @@ void best_forget(struct best *b)
     b->value = INFINITY;
 }
 
-/* The prices that were measured, and the formulas over them [solve/solver.h]. */
+/* ---- the prices that were measured, and the formulas over them ---- */
 
 #define SWEEP_BLOCK    2.0 /* ns per sweep, beyond kind.ns, for each block of W beside the diagonal, */
 #define SWEEP_COMMON   2.0   /* and for each column of J */

@@ -8,6 +8,16 @@
 
 const char *const criterion_name[] = { "glob", "scaled", "natural", "velocity" };
 
+static const char *const endless_name[] = {
+    [ENDLESS_POSITION] = "the position of body",
+    [ENDLESS_VELOCITY] = "the velocity of body",
+    [ENDLESS_SPIN] = "the angular velocity of body",
+    [ENDLESS_ENERGY] = "the energy of body",
+    [ENDLESS_WALL] = "the position or velocity of wall",
+    [ENDLESS_CELL] = "the size or rate of the periodic cell",
+    [ENDLESS_REPORT] = "an error or a balance of the step",
+};
+
 bool report_made(const struct report *r)
 {
     return isfinite(r->err.paper.eps_glob) && !r->endless.what;

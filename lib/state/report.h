@@ -92,7 +92,6 @@ struct endless {
     } what;
     int32_t id; /* of the body; a wall w is -1-w */
 };
-extern const char *const endless_name[];
 
 struct report {
     char method[16];

@@ -1,4 +1,4 @@
-/* step/balance.c: energy and momentum, summed over bodies and contacts [step/balance.h]. */
+/* step/balance.c: energy and momentum, summed over bodies and contacts, and restitutions that gain no energy [step/balance.h]. */
 #include "step/balance.h"
 
 #include "contact/contact_law.h"
@@ -248,7 +248,7 @@ int balance_step(struct balance *b, const struct packing *p, const struct contac
     return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the balances");
 }
 
-/* The search for restitutions that gain nothing [step/balance.h]. */
+/* ---- the search for restitutions that gain nothing ---- */
 
 enum {
     ROUNDS = 24 /* solves: of one impact 5 to 8 do */

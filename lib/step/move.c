@@ -94,16 +94,6 @@ static void move_bodies(struct packing *p, const struct impulses *sum, bool back
 
 /* ---- what would not be finite ---- */
 
-const char *const endless_name[] = {
-    [ENDLESS_POSITION] = "the position of body",
-    [ENDLESS_VELOCITY] = "the velocity of body",
-    [ENDLESS_SPIN] = "the angular velocity of body",
-    [ENDLESS_ENERGY] = "the energy of body",
-    [ENDLESS_WALL] = "the position or velocity of wall",
-    [ENDLESS_CELL] = "the size or rate of the periodic cell",
-    [ENDLESS_REPORT] = "an error or a balance of the step",
-};
-
 static enum endless_what body_after(const struct packing *p, const struct impulses *sum, int64_t i)
 {
     vec3 x = v3_axpy(p->x[i], step_ahead(p), p->v[i]), v = p->v[i], w = p->w[i];

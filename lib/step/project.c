@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The level of each contact, and a counting sort by it [step/project.h]. */
+/* ---- the level of each contact, and a counting sort by it ---- */
 
 /* level[i] of every contact; returns the number of levels. after[bodies]: one above the highest level of a body's
    contacts so far. */

@@ -41,6 +41,7 @@ static int write_problem(bool global, uint32_t *crc, struct failure *failure)
 {
     struct frame was = frame[now];
     frame[now].export = &problem[now], frame[now].export_global = global;
+    frame[now].write_export = fclib_write_problem;
     write_stream(crc, failure);
     frame[now] = was;
     return failure->status;

@@ -49,8 +49,8 @@ if command -v mpirun >/dev/null && command -v nsd-step-mpi >/dev/null; then
     done
     frozen "silo-ranks3" "nsd-gen scenes/silo.json >in.h5; mpirun --oversubscribe --bind-to none -n 3 nsd-step -n 8 --sums --contacts -o out.h5 in.h5 2>said </dev/null; cat out.h5"
 fi
-frozen heap-pipe "$heap; nsd-step -n 3 heap.h5 | nsd-detect | nsd-solve -m eal | nsd-err; nsd-detect heap.h5 | nsd-solve | nsd-move | nsd-info"
-frozen heap-fclib "$heap; nsd-detect --fclib=local heap.h5 >f.h5; nsd-solve f.h5 | nsd-err; nsd-detect --fclib=global heap.h5 >g.h5; nsd-solve g.h5 | nsd-err"
+frozen heap-pipe "$heap; nsd-step -n 3 heap.h5 2>step.said | nsd-detect | nsd-solve -m eal 2>solve.said | nsd-err; cat step.said solve.said; nsd-detect heap.h5 | nsd-solve 2>solve.said | nsd-move | nsd-info; cat solve.said"
+frozen heap-fclib "$heap; for form in local global; do nsd-detect --fclib=\$form heap.h5 | nsd-solve >s.h5; nsd-err s.h5; done"
 frozen heap-stat "$heap; nsd-step -n 3 --contacts --sums heap.h5 -o out.h5; nsd-stat -m all out.h5 || nsd-stat out.h5; nsd-stat -l -f fields.h5 out.h5; cat fields.h5"
 for to in vtk xyz lammps csv gsd stl lammps-data; do
     frozen "export-$to" "$heap; nsd-step -n 2 --contacts heap.h5 -o out.h5; nsd-export -l -t $to out.h5 -o x.$to; find . -name 'x*' -newer heap.h5 -type f | sort | xargs cat"
