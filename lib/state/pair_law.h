@@ -42,7 +42,7 @@ struct pair_law {
     double impact; /* enum impact_law */
 };
 
-/* What is wrong with the numbers, or NULL */
+/* What is wrong with numbers that are in their ranges, or NULL */
 const char *pair_law_trouble(const struct pair_law *law);
 
 static inline bool pair_law_wets(const struct pair_law *l)
