@@ -4,6 +4,8 @@
 #include "file/writer.h"
 #include "run/cli.h"
 
+#include <string.h>
+
 static bool last, stream;
 static const char *steps, *output;
 static int vtk;
@@ -39,6 +41,23 @@ const struct cli_tool tool = {
     "  nsd-cat --vtk grains out.h5 > paraview.h5\n"
 };
 
+/* A trajectory says of the first of its reports alone how it was solved: a warning, once, where another was solved otherwise */
+static void warn_of_other_solver(const struct report *r, const char *where)
+{
+    static struct report first;
+    static bool any, warned;
+    if (!any) memcpy(first.method, r->method, sizeof first.method);
+    if (!any) first.criterion = r->criterion, first.eps = r->eps, any = true;
+    bool same =
+        !strcmp(first.method, r->method) && first.criterion == r->criterion && first.eps == r->eps;
+    if (same || warned) return;
+    warned = true;
+    warn("%s: solved by -m %s --criterion %s --eps %g; the trajectory states -m %s --criterion %s "
+         "--eps %g for all: --stream keeps each",
+         where, r->method, criterion_name[r->criterion], r->eps, first.method,
+         criterion_name[first.criterion], first.eps);
+}
+
 int tool_main(int argc, char **argv)
 {
     struct reader *in;
@@ -66,6 +85,8 @@ int tool_main(int argc, char **argv)
             if (writer_pass(out, in, &failure)) break;
         } else {
             if (whole && reader_take(in, &f, &failure)) break;
+            if (f.reported && !stream && !last && !writer_passes(out))
+                warn_of_other_solver(&f.report, reader_where(in));
             if (writer_frame(out, &f, &failure) == EX_DATAERR)
                 die(EX_DATAERR, "%s: %s", reader_where(in), failure.text);
             if (failure.status) break;

@@ -1,5 +1,6 @@
 #include "base/field.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -77,6 +78,36 @@ const char *field_trouble(const struct field *f, const void *x)
         square += at * at;
     }
     return f->range == FIELD_UNIT && !(fabs(square - 1) < 1e-6) ? "is not a unit vector" : NULL;
+}
+
+bool field_fits(const struct field *f, const void *rows, int64_t n)
+{
+    const double *x = rows;
+    const int64_t numbers = n * f->width;
+    bool bad = false;
+    if (f->range == FIELD_ANY) return true;
+    if (f->type == COLUMN_F64 && f->range <= FIELD_NOT_NEGATIVE) {
+        const double least = f->range == FIELD_FINITE ? -DBL_MAX : 0;
+        for (int64_t i = 0; i < numbers; i++) bad |= !(x[i] >= least && x[i] <= DBL_MAX);
+        for (int64_t i = 0; f->range == FIELD_POSITIVE && i < numbers; i++) bad |= x[i] == 0;
+        return !bad;
+    }
+    for (int64_t i = 0; i < n && !bad; i++)
+        bad = field_trouble(f, (const char *)rows + (size_t)i * field_bytes(f));
+    return !bad;
+}
+
+int records_check(struct records o, const char *what, struct failure *failure)
+{
+    for (int64_t i = 0; i < o.n; i++)
+        for (const struct field *f = o.fields; f->name; f++) {
+            const char *row = (const char *)o.structs + (size_t)i * o.stride;
+            const char *trouble = field_trouble(f, row + f->offset);
+            if (trouble)
+                return failure_set(failure, EX_DATAERR, "%s %lld: %s %s", what, (long long)i,
+                                   f->name, trouble);
+        }
+    return 0;
 }
 
 bool field_equal(const struct field *f, const void *x, const void *y)

@@ -7,6 +7,8 @@
 #ifndef NSD_FIELD_H
 #define NSD_FIELD_H
 
+#include "base/failure.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -87,6 +89,10 @@ void field_scatter(const struct field *field, int64_t n, const void *in, void *s
 
 /* What is wrong with the numbers at x, of one row, or NULL: "must be positive and finite" */
 const char *field_trouble(const struct field *field, const void *x);
+/* Is nothing wrong with n rows, one after another? Fast; field_trouble() says what. */
+bool field_fits(const struct field *field, const void *rows, int64_t n);
+/* The same of structs: EX_DATAERR with the first row and field that has trouble: "WHAT 3: name must be ..." */
+int records_check(struct records records, const char *what, struct failure *failure);
 /* Are the rows at x and y the same numbers? No number is the same as no number. */
 bool field_equal(const struct field *field, const void *x, const void *y);
 /* Has a document that is written the field of these records? */

@@ -324,19 +324,7 @@ static int read_passages(struct source *s, int64_t k, const struct field *fields
                          struct flow_count *to, struct failure *failure)
 {
     if (n && table_read_frame(s, flow, k, RECORDS(fields, n, to), failure)) return failure->status;
-    for (int32_t i = 0; i < n; i++)
-        if (to[i].bodies < 0 || !(to[i].mass >= 0 && isfinite(to[i].mass)))
-            return failure_set(failure, EX_DATAERR,
-                               "%s: a number or mass of bodies is out of range", flow);
-    return 0;
-}
-
-static int check_event(const struct event *e, struct failure *failure)
-{
-    for (const struct field *f = event_fields; f->name; f++)
-        if (field_trouble(f, (const char *)e + f->offset))
-            return failure_set(failure, EX_DATAERR, "%s: a number is out of range", events);
-    return 0;
+    return records_check(RECORDS(fields, n, to), flow, failure);
 }
 
 static int read_events(struct source *s, int64_t k, struct packing *p, struct failure *failure)
@@ -345,9 +333,7 @@ static int read_events(struct source *s, int64_t k, struct packing *p, struct fa
                         (struct list_of){ &p->events.e, &p->events.n, &p->events.room },
                         RECORDS(event_fields, 0, p->events.e), failure))
         return failure->status;
-    for (int64_t i = 0; i < p->events.n; i++)
-        if (check_event(&p->events.e[i], failure)) return failure->status;
-    return 0;
+    return records_check(RECORDS(event_fields, p->events.n, p->events.e), "event", failure);
 }
 
 int flow_tables_read_numbers(struct source *s, struct packing *p, struct failure *failure)

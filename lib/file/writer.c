@@ -540,7 +540,7 @@ static int trajectory_frame(struct writer *s, const struct frame *f, struct fail
     bool first = s->doc.file < 0;
     if (!first && !still_there(s)) return output_failed(s, failure, CUT_OFF);
     if (first ? trajectory_begin(s, f, failure) : reserve(s, f, failure)) return failure->status;
-    if (writer_check_same(s, f, failure)) return failure->status;
+    if (!first && writer_check_same(s, f, failure)) return failure->status;
     if (frame_write_moment(&s->doc, f, failure) || flush(s, failure) || fill_frame(s, f, failure) ||
         frame_write_step(&s->doc, f, failure) || flush(s, failure) ||
         for_vtk(s, s->doc.file, f, false, failure))

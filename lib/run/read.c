@@ -162,8 +162,8 @@ static const char *column_name(int k)
 
 const char *nsd_array_name(int k)
 {
-    if (k >= 0 && k < BODY_COLUMNS) return column_name(k);
-    return k >= 0 && k < BODY_COLUMNS + ROWS ? table[k - BODY_COLUMNS].name : NULL;
+    if (k < 0 || k >= BODY_COLUMNS + ROWS) return NULL;
+    return k < BODY_COLUMNS ? column_name(k) : table[k - BODY_COLUMNS].name;
 }
 
 /* The row of the table that a column of bodies would have */

@@ -1,6 +1,8 @@
 /* state/bond.c: the list of what lasts of pairs [state/bond.h]. */
 #include "state/bond.h"
 
+#include "state/fields.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -59,10 +61,6 @@ static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, i
     if (!(x->wet >= 0 && x->wet <= BOND_WETTED)) return "is neither wet nor dry";
     if (!(x->pressed == 0 || x->pressed == 1)) return "pushes or not: 1 or 0";
     if (!(x->rest <= 0 && isfinite(x->rest))) return "the gap of its spring must not be positive";
-    if (!(x->beta >= 0 && x->beta <= 1)) return "beta must lie in [0, 1]";
-    if (!isfinite(x->gap) || !v3_finite(x->slip)) return "gap or slip is not finite";
-    if (!(fabs(v3_dot(x->n, x->n) - 1) < 1e-6)) return "its normal is not a unit vector";
-    if (!(x->area >= 0 && isfinite(x->area))) return "its area is not a number of at least 0";
     if (!bond_anchored(x)) return NULL;
     if (!v3_finite(x->at_a) || !v3_finite(x->at_b)) return "its place is not finite";
     if (!(fabs(v3_dot(x->axis, x->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
@@ -75,6 +73,7 @@ static const char *bond_trouble(const struct bond *x, int dim, int64_t bodies, i
 int bonds_check(const struct bonds *s, int dim, int64_t bodies, int32_t walls,
                 struct failure *failure)
 {
+    if (records_check(RECORDS(bond_fields, s->n, s->bond), "bond", failure)) return failure->status;
     for (int64_t i = 0; i < s->n; i++) {
         const struct bond *x = &s->bond[i];
         const char *trouble = bond_trouble(x, dim, bodies, walls);

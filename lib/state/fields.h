@@ -1,7 +1,7 @@
 /*
  * state/fields.h: the tables of fields [base/field.h] of what a frame has: of a packing's parts [state/part.h], its
  * contacts and its report. nsd-format(5) says the same in words. Rows stand in the order in which their datasets are made.
- * A new member of a struct is a row here, and the place that uses it.
+ * A new member of a struct is a row in state/field_tables.c, and the place that uses it.
  */
 #ifndef NSD_FIELDS_OF_STATE_H
 #define NSD_FIELDS_OF_STATE_H

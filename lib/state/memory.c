@@ -1,6 +1,8 @@
 /* state/memory.c: the reactions that last from step to step [state/memory.h]. */
 #include "state/memory.h"
 
+#include "state/fields.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,18 +127,18 @@ void memory_follow(struct memory *m, const int32_t *row)
 
 int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct failure *failure)
 {
+    const char *what = "remembered reaction";
+    if (records_check(RECORDS(recall_fields, m->n, m->recall), what, failure))
+        return failure->status;
     for (int64_t i = 0; i < m->n; i++) {
         const struct recall *x = &m->recall[i];
         const char *trouble = NULL;
         if (x->b < 0 || x->b >= bodies || x->a >= bodies || x->a < -walls || x->a == x->b)
             trouble = "no such bodies";
-        else if (!v3_finite(x->r) || !v3_finite(x->m))
-            trouble = "is not finite";
         else if (i && memory_compare(x - 1, x) >= 0)
             trouble = "not sorted by its bodies, or twice";
         if (trouble)
-            return failure_set(failure, EX_DATAERR, "remembered reaction %lld: %s", (long long)i,
-                               trouble);
+            return failure_set(failure, EX_DATAERR, "%s %lld: %s", what, (long long)i, trouble);
     }
     return 0;
 }

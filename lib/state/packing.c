@@ -437,9 +437,12 @@ static int check_cell(const struct packing *p, struct failure *failure)
 
 static int packing_check_each_body(const struct packing *p, int64_t first, struct failure *failure)
 {
+    bool fits = true;
+    for (const struct field *b = body_columns; b->name; b++)
+        fits = fits && (!field_array(b, p) || field_fits(b, field_array(b, p), p->n));
     for (int64_t i = 0; i < p->n; i++) {
         const char *trouble = NULL;
-        for (const struct field *b = body_columns; b->name && !trouble; b++) {
+        for (const struct field *b = body_columns; b->name && !fits; b++) {
             trouble = field_array(b, p) ? field_trouble(b, field_row(b, p, i)) : NULL;
             if (trouble)
                 return failure_set(failure, EX_DATAERR, "body %lld: %s %s", (long long)(first + i),
@@ -459,6 +462,23 @@ int packing_check_bodies(const struct packing *p, int64_t first, struct failure 
                : 0;
 }
 
+/* The numbers of a pair of kinds */
+static int check_pair(const struct packing *p, int32_t i, struct failure *failure)
+{
+    const struct field *bad = NULL;
+    const char *trouble = NULL;
+    for (const struct field *f = material_fields; f->name && !bad; f++)
+        bad = (trouble = field_trouble(f, field_row(f, p, i))) ? f : NULL;
+    for (const struct field *f = law_fields; p->law && f->name && !bad; f++)
+        bad = (trouble = field_trouble(f, (char *)&p->law[i] + f->offset)) ? f : NULL;
+    if (!bad && p->law) trouble = pair_law_trouble(&p->law[i]);
+    if (!trouble && p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
+    if (!trouble) return 0;
+    return failure_set(failure, EX_DATAERR, "the material of kinds %s and %s: %s%s%s",
+                       p->kind_name[i / p->kinds], p->kind_name[i % p->kinds], bad ? bad->name : "",
+                       bad ? " " : "", trouble);
+}
+
 int packing_check(const struct packing *p, struct failure *failure)
 {
     if (p->dim != 2 && p->dim != 3)
@@ -472,18 +492,8 @@ int packing_check(const struct packing *p, struct failure *failure)
     if (external_force_check(&p->outside, p->dim, p->n, p->walls, failure)) return failure->status;
     if (p->dim == 2 && p->g.z != 0)
         return failure_set(failure, EX_DATAERR, "gravity leaves the plane, and dim is 2");
-    for (int32_t i = 0; i < p->kinds * p->kinds; i++) {
-        const char *pair = "the material of kinds %s and %s: %s";
-        const char *a = p->kind_name[i / p->kinds], *b = p->kind_name[i % p->kinds];
-        const char *trouble = p->law ? pair_law_trouble(&p->law[i]) : NULL;
-#define CHECK(member, name, unit, key, most, range)                                                \
-    if (!(p->member[i] >= 0 && p->member[i] <= (most) && isfinite(p->member[i])))                  \
-        trouble = name " " range;
-        EVERY_PAIR_COLUMN(CHECK)
-#undef CHECK
-        if (p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
-        if (trouble) return failure_set(failure, EX_DATAERR, pair, a, b, trouble);
-    }
+    for (int32_t i = 0; i < p->kinds * p->kinds; i++)
+        if (check_pair(p, i, failure)) return failure->status;
     if (packing_check_each_body(p, 0, failure)) return failure->status;
     if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
         return failure_set(
@@ -493,14 +503,10 @@ int packing_check(const struct packing *p, struct failure *failure)
     if (drives_check(&p->drives, p->walls, p->dim, "drive", failure) ||
         drives_check(&p->pushes, p->walls, p->dim, "push", failure))
         return failure->status; // before any wall is asked where it is
+    if (records_check(RECORDS(wall_fields, p->walls, p->wall), "wall", failure))
+        return failure->status;
     for (int32_t i = 0; i < p->walls; i++) {
-        const struct wall *w = &p->wall[i];
-        for (const struct field *f = wall_fields; f->name; f++) {
-            const char *trouble = field_trouble(f, (const char *)w + f->offset);
-            if (trouble)
-                return failure_set(failure, EX_DATAERR, "wall %d: %s %s", i, f->name, trouble);
-        }
-        const char *trouble = wall_trouble(p, w);
+        const char *trouble = wall_trouble(p, &p->wall[i]);
         if (trouble) return failure_set(failure, EX_DATAERR, "wall %d: %s", i, trouble);
     }
     if (check_room(p, failure)) return failure->status;

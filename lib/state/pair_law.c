@@ -6,42 +6,17 @@
 #include <math.h>
 #include <stddef.h>
 
-static bool positive(double x)
-{
-    return x > 0 && isfinite(x);
-}
-
-static bool pair_law_not_negative(double x)
-{
-    return x >= 0 && isfinite(x);
-}
-
 const char *pair_law_trouble(const struct pair_law *l)
 {
-    if (!pair_law_not_negative(l->cohesion) || !pair_law_not_negative(l->range))
-        return "cohesion and its range must not be negative";
-    if (!pair_law_not_negative(l->volume) || !pair_law_not_negative(l->tension))
-        return "volume and tension of a bridge must not be negative";
-    if (!(l->wetting >= 0 && l->wetting < M_PI / 2))
-        return "the wetting angle must lie in [0, pi/2)";
-    if (!pair_law_not_negative(l->mu_r) || !pair_law_not_negative(l->mu_p))
-        return "mu_r and mu_p must not be negative";
-    if (!pair_law_not_negative(l->w) || !pair_law_not_negative(l->eta) ||
-        !pair_law_not_negative(l->area))
-        return "energy, viscosity and area of a bond must not be negative";
-    if (!pair_law_not_negative(l->cn) || !pair_law_not_negative(l->ct) ||
-        (l->w > 0 && !positive(l->cn)))
-        return "the stiffness of a bond must be positive";
-    if (!(l->beta >= 0 && l->beta <= 1)) return "beta must lie in [0, 1]";
-    if (!isfinite(l->made)) return "the time of bonds is not finite";
-    if (!(l->impact >= 0 && l->impact < IMPACT_LAWS) || l->impact != floor(l->impact))
+    if (!(l->wetting < M_PI / 2)) return "the wetting angle must lie in [0, pi/2)";
+    if (l->w > 0 && !(l->cn > 0)) return "the stiffness of a bond must be positive";
+    if (!(l->impact < IMPACT_LAWS) || l->impact != floor(l->impact))
         return "an impact is Newton's or bounded: 0, 1 or 2";
-    if (!pair_law_not_negative(l->kn) || !pair_law_not_negative(l->kt) ||
-        (l->kn > 0) != (l->kt > 0))
+    if ((l->kn > 0) != (l->kt > 0))
         return "the stiffness of a contact must be positive along n and across, or 0 for both";
     if (l->kn > 0 && l->w > 0)
         return "a pair has adhesion or a stiffness of its contacts: not both";
-    return l->forever == 0 || l->forever == 1 ? NULL : "bonds are made at a time or for ever";
+    return NULL;
 }
 
 double bridge_radius(double a, double b)

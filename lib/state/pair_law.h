@@ -46,7 +46,7 @@ struct pair_law {
                       [contact/spring.h] */
 };
 
-/* What is wrong with the numbers, or NULL */
+/* What is wrong with numbers that are in their ranges, or NULL */
 const char *pair_law_trouble(const struct pair_law *law);
 
 static inline bool pair_law_wets(const struct pair_law *l)

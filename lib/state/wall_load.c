@@ -1,5 +1,6 @@
 #include "state/wall_load.h"
 
+#include "state/fields.h"
 #include "state/wall_faces.h"
 
 #include <math.h>
@@ -59,12 +60,8 @@ int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall
     if (wall_faces_init(&f, walls, wall, NULL, failure)) return failure->status;
     if (f.n != s->n || !isfinite(s->since))
         failure_set(failure, EX_DATAERR, "sums of %d faces, and the walls have %d", s->n, f.n);
-    for (int32_t i = 0; i < s->n && !failure->status; i++) {
-        const struct face_sums *x = &s->face[i];
-        if (!v3_finite(x->impulse) || !v3_finite(x->moment) ||
-            !isfinite(x->normal + x->tangential + x->work + x->friction + x->rub))
-            failure_set(failure, EX_DATAERR, "sums of face %d: not finite", i);
-    }
+    if (!failure->status)
+        records_check(RECORDS(sum_fields, s->n, s->face), "sums of face", failure);
     wall_faces_free(&f);
     return failure->status;
 }

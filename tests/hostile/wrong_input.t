@@ -356,6 +356,10 @@ like "says what" "$(cat "$tmp/err")" "overlap differs from the trajectory's"
 nsd-step --contacts "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream | nsd-detect >"$tmp/two.h5"
 refuses 65 "solved contacts and unsolved ones" nsd-cat -o "$tmp/joined.h5" "$tmp/kept.h5" "$tmp/two.h5"
 like "says what" "$(cat "$tmp/err")" 'contacts solved and unsolved in one trajectory'
+nsd-step -n 2 -m sbp "$tmp/kept.h5" -o "$tmp/two.h5" 2>/dev/null
+status 0 "reports of two methods are joined" nsd-cat -o "$tmp/joined.h5" "$tmp/kept.h5" "$tmp/two.h5"
+like "with a warning" "$(cat "$tmp/err")" 'two.h5: solved by -m sbp .* the trajectory states -m [a-z]+ '
+rm -f "$tmp/joined.h5"
 refuses 65 "an FCLIB problem behind a packing" nsd-cat -o "$tmp/joined.h5" "$tmp/one.h5" "$tmp/local.hdf5"
 like "says what" "$(cat "$tmp/err")" 'an FCLIB problem does not go into a trajectory'
 

@@ -1,5 +1,5 @@
 /*
- * Every field of the tables of state/fields.c, in frames of several scenes: a copy has it, and is a copy; a document that is
+ * Every field of the tables of state/field_tables.c, in frames of several scenes: a copy has it, and is a copy; a document that is
  * written and read has it, with random numbers that are legal; and where all frames of a trajectory share it, a frame with
  * another number is refused by its name.
  */

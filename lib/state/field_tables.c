@@ -154,10 +154,12 @@ const struct field named_fields[] = {
 
 /* ---- materials: /nsd/law/NAME [kinds][kinds] where any pair has a law beyond friction and restitution ---- */
 
-#define MATERIAL(member, name, unit, ...)                                                          \
-    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME),
-#define OPTIONAL(member, name, unit, ...)                                                          \
-    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME | FIELD_OPTIONAL),
+#define MATERIAL(member, name, unit, key, most, ...)                                               \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME,                                  \
+          .range = (most) == 1 ? FIELD_FRACTION : FIELD_NOT_NEGATIVE),
+#define OPTIONAL(member, name, unit, key, most, ...)                                               \
+    FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME | FIELD_OPTIONAL,                 \
+          .range = (most) == 1 ? FIELD_FRACTION : FIELD_NOT_NEGATIVE),
 /* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
 const struct field material_fields[] = {
     EACH_PAIR_COLUMN(MATERIAL) EACH_OPTIONAL_PAIR_COLUMN(OPTIONAL){ 0 },
@@ -165,27 +167,28 @@ const struct field material_fields[] = {
 #undef MATERIAL
 #undef OPTIONAL
 
-#define LAW(member, name, unit, ...)                                                               \
-    FIELD(struct pair_law, member, F64, 1, name, unit, FIELD_SAME __VA_ARGS__)
+#define LAW(member, name, unit, bounds, ...)                                                       \
+    FIELD(struct pair_law, member, F64, 1, name, unit, FIELD_SAME __VA_ARGS__,                     \
+          .range = FIELD_##bounds)
 const struct field law_fields[] = {
-    LAW(cohesion, "cohesion", "N"),
-    LAW(range, "range", "m"),
-    LAW(volume, "volume", "m3"),
-    LAW(tension, "tension", "N m-1"),
-    LAW(wetting, "wetting", "rad"),
-    LAW(mu_r, "mu_r", "m"),
-    LAW(mu_p, "mu_p", "m"),
-    LAW(cn, "c_n", "N m-3"),
-    LAW(ct, "c_t", "N m-3"),
-    LAW(w, "w", "J m-2"),
-    LAW(eta, "eta", "N s m-1"),
-    LAW(area, "area", "m2"),
-    LAW(beta, "beta", "1"),
-    LAW(made, "made", "s"),
-    LAW(forever, "forever", "1"),
-    LAW(impact, "impact", "1", | FIELD_OPTIONAL),
-    LAW(kn, "k_n", "N m-1", | FIELD_OPTIONAL),
-    LAW(kt, "k_t", "N m-1", | FIELD_OPTIONAL),
+    LAW(cohesion, "cohesion", "N", NOT_NEGATIVE),
+    LAW(range, "range", "m", NOT_NEGATIVE),
+    LAW(volume, "volume", "m3", NOT_NEGATIVE),
+    LAW(tension, "tension", "N m-1", NOT_NEGATIVE),
+    LAW(wetting, "wetting", "rad", NOT_NEGATIVE),
+    LAW(mu_r, "mu_r", "m", NOT_NEGATIVE),
+    LAW(mu_p, "mu_p", "m", NOT_NEGATIVE),
+    LAW(cn, "c_n", "N m-3", NOT_NEGATIVE),
+    LAW(ct, "c_t", "N m-3", NOT_NEGATIVE),
+    LAW(w, "w", "J m-2", NOT_NEGATIVE),
+    LAW(eta, "eta", "N s m-1", NOT_NEGATIVE),
+    LAW(area, "area", "m2", NOT_NEGATIVE),
+    LAW(beta, "beta", "1", FRACTION),
+    LAW(made, "made", "s", FINITE),
+    LAW(forever, "forever", "1", FLAG),
+    LAW(impact, "impact", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
+    LAW(kn, "k_n", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
+    LAW(kt, "k_t", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
     { 0 },
 };
 
@@ -224,13 +227,16 @@ const struct field bond_fields[] = {
     FIELD(struct bond, feature, I32, 1, "feature", "1", FIELD_MOVES),
     FIELD(struct bond, shift, I8, 3, "shift", "1", FIELD_MOVES),
     FIELD(struct bond, wet, I8, 1, "wet", "1", FIELD_MOVES),
-    FIELD(struct bond, beta, F64, 1, "beta", "1", FIELD_MOVES),
-    FIELD(struct bond, gap, F64, 1, "gap", "m", FIELD_MOVES),
-    FIELD(struct bond, n, F64, 3, "normal", "1", FIELD_MOVES),
-    FIELD(struct bond, slip, F64, 3, "slip", "m", FIELD_MOVES),
-    FIELD(struct bond, pressed, I8, 1, "pressed", "1", FIELD_MOVES, .when = has_springs),
-    FIELD(struct bond, rest, F64, 1, "rest", "m", FIELD_MOVES, .when = has_springs),
-    FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes),
+    FIELD(struct bond, beta, F64, 1, "beta", "1", FIELD_MOVES, .range = FIELD_FRACTION),
+    FIELD(struct bond, gap, F64, 1, "gap", "m", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct bond, n, F64, 3, "normal", "1", FIELD_MOVES, .range = FIELD_UNIT),
+    FIELD(struct bond, slip, F64, 3, "slip", "m", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct bond, pressed, I8, 1, "pressed", "1", FIELD_MOVES, .when = has_springs,
+          .range = FIELD_FLAG),
+    FIELD(struct bond, rest, F64, 1, "rest", "m", FIELD_MOVES, .when = has_springs,
+          .range = FIELD_FINITE),
+    FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes,
+          .range = FIELD_NOT_NEGATIVE),
     FIELD(struct bond, at_a, F64, 3, "anchor_a", "m", FIELD_MOVES, .when = has_shapes),
     FIELD(struct bond, at_b, F64, 3, "anchor_b", "m", FIELD_MOVES, .when = has_shapes),
     FIELD(struct bond, axis, F64, 3, "axis", "1", FIELD_MOVES, .when = has_shapes),
@@ -240,10 +246,11 @@ const struct field bond_fields[] = {
 /* /nsd/memory/NAME [reactions][width], of each frame that has it `count` rows from `start` on */
 const struct field recall_fields[] = {
     FIELD(struct recall, a, I32, 2, "body", "1", FIELD_MOVES),
-    FIELD(struct recall, r, F64, 3, "impulse", "N s", FIELD_MOVES),
+    FIELD(struct recall, r, F64, 3, "impulse", "N s", FIELD_MOVES, .range = FIELD_FINITE),
     FIELD(struct recall, feature, I32, 1, "feature", "1", FIELD_MOVES, .when = has_features),
     FIELD(struct recall, shift, I8, 3, "shift", "1", FIELD_MOVES, .when = has_images),
-    FIELD(struct recall, m, F64, 3, "moment", "N m s", FIELD_MOVES, .when = has_rolling),
+    FIELD(struct recall, m, F64, 3, "moment", "N m s", FIELD_MOVES, .when = has_rolling,
+          .range = FIELD_FINITE),
     { 0 },
 };
 
@@ -251,25 +258,28 @@ const struct field recall_fields[] = {
 
 /* /particles/boundary/sums/NAME/value [frames][faces][width] where they are kept */
 const struct field sum_fields[] = {
-    FIELD(struct face_sums, impulse, F64, 3, "impulse", "N s", FIELD_MOVES),
-    FIELD(struct face_sums, moment, F64, 3, "moment", "N m s", FIELD_MOVES),
-    FIELD(struct face_sums, normal, F64, 1, "normal", "N s", FIELD_MOVES),
-    FIELD(struct face_sums, tangential, F64, 1, "tangential", "N s", FIELD_MOVES),
-    FIELD(struct face_sums, work, F64, 1, "work", "J", FIELD_MOVES),
-    FIELD(struct face_sums, friction, F64, 1, "friction", "J", FIELD_MOVES),
-    FIELD(struct face_sums, rub, F64, 1, "rub", "J", FIELD_MOVES),
+    FIELD(struct face_sums, impulse, F64, 3, "impulse", "N s", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct face_sums, moment, F64, 3, "moment", "N m s", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct face_sums, normal, F64, 1, "normal", "N s", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct face_sums, tangential, F64, 1, "tangential", "N s", FIELD_MOVES,
+          .range = FIELD_FINITE),
+    FIELD(struct face_sums, work, F64, 1, "work", "J", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct face_sums, friction, F64, 1, "friction", "J", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct face_sums, rub, F64, 1, "rub", "J", FIELD_MOVES, .range = FIELD_FINITE),
     { 0 },
 };
 
 /* /nsd/flow/NAME/value [frames][pours], or [removals] */
 const struct field poured_fields[] = {
-    FIELD(struct flow_count, bodies, I64, 1, "poured", "1", FIELD_MOVES),
+    FIELD(struct flow_count, bodies, I64, 1, "poured", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
     FIELD(struct flow_count, mass, F64, 1, "poured_mass", "kg", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
     { 0 },
 };
 const struct field removed_fields[] = {
-    FIELD(struct flow_count, bodies, I64, 1, "removed", "1", FIELD_MOVES),
+    FIELD(struct flow_count, bodies, I64, 1, "removed", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
     FIELD(struct flow_count, mass, F64, 1, "removed_mass", "kg", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
     { 0 },
