@@ -214,12 +214,13 @@ int json_node_word(jnode n, const char *const *words, int *out)
     const char *text = NULL;
     if (json_node_text(n, &text)) return 1;
     if (!text) return 0;
+    char known[100] = "";
     for (int k = 0; words[k]; k++) {
-        if (strcmp(words[k], text) != 0) continue;
-        *out = k;
-        return 0;
+        const size_t at = strlen(known);
+        if (!strcmp(words[k], text)) return *out = k, 0;
+        snprintf(known + at, sizeof known - at, " \"%s\"", words[k]);
     }
-    return json_node_fault(n, "\"%s\" is no choice here, \"%s\" is", text, words[0]);
+    return json_node_fault(n, "\"%s\" is no choice here; known here:%s", text, known);
 }
 
 int json_node_array(jnode n, size_t *length)

@@ -249,13 +249,9 @@ const struct key_type key_include = { .words = "keys" };
 
 static int read_number(jnode n, const struct key *k, struct scene *s, void *member)
 {
-    const enum json_range range = k->type == &key_positive       ? J_POSITIVE
-                                  : k->type == &key_not_negative ? J_NOT_NEGATIVE
-                                  : k->type == &key_share        ? J_UNIT
-                                                                 : J_ANY;
     double *x = member;
     (void)s;
-    if (json_node_number(n, range, x)) return 1;
+    if (json_node_number(n, k->type->range, x)) return 1;
     if ((k->least == 0 && k->most == 0) || (*x >= k->least && *x <= k->most)) return 0;
     if (k->limit) return json_node_fault(n, "%s", k->limit);
     return isfinite(k->most) ? json_node_fault(n, "must lie in [%g, %g]", k->least, k->most)
@@ -269,14 +265,15 @@ static void preset_number(const struct key *k, void *member)
     if (end != k->otherwise && !*end) *(double *)member = x;
 }
 
-const struct key_type key_number = { "number", "{'type': 'number'}", read_number, preset_number };
-const struct key_type key_positive = { "number > 0", "{'type': 'number', 'exclusiveMinimum': 0}",
-                                       read_number, preset_number };
-const struct key_type key_not_negative = { "number >= 0", "{'type': 'number', 'minimum': 0}",
-                                           read_number, preset_number };
-const struct key_type key_share = { "number 0 to 1",
-                                    "{'type': 'number', 'minimum': 0, 'maximum': 1}", read_number,
-                                    preset_number };
+#define NUMBER(words, schema, range)                                                               \
+    {                                                                                              \
+        words, "{'type': 'number'" schema "}", read_number, preset_number, NULL, range             \
+    }
+
+const struct key_type key_number = NUMBER("number", "", J_ANY);
+const struct key_type key_positive = NUMBER("number > 0", ", 'exclusiveMinimum': 0", J_POSITIVE);
+const struct key_type key_not_negative = NUMBER("number >= 0", ", 'minimum': 0", J_NOT_NEGATIVE);
+const struct key_type key_share = NUMBER("number 0 to 1", ", 'minimum': 0, 'maximum': 1", J_UNIT);
 
 static int read_integer(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -335,7 +332,7 @@ static int read_word(jnode n, const struct key *k, struct scene *s, void *member
     return json_node_word(n, k->words, member);
 }
 
-const struct key_type key_word = { "string", "{'type': 'string'}", read_word, NULL };
+const struct key_type key_word = { "string", NULL, read_word, NULL };
 
 static int read_vector(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -361,6 +358,43 @@ static int read_spin(jnode n, const struct key *k, struct scene *s, void *member
 }
 
 const struct key_type key_spin = { "vector; 2D: number", "{'$ref': 'spin'}", read_spin, NULL };
+
+int keys_read_array(jnode n, const struct key *k, struct scene *s, void *member)
+{
+    const struct key_type *array = k->type;
+    const size_t count = (size_t)keys_count(array, s->dim);
+    struct key item = *k;
+    size_t has;
+    if (json_node_array(n, &has)) return 1;
+    if (has != count && *array->words == '[') return json_node_fault(n, "needs %s", array->words);
+    if (has != count)
+        return json_node_fault(n, "needs an array of %zu: %s", count, array->item->words);
+    item.type = array->item;
+    for (size_t i = 0; i < count; i++)
+        if (array->item->read(json_node_item(&n, i), &item, s, (char *)member + i * array->size))
+            return 1;
+    return 0;
+}
+
+int keys_read_rows(jnode list, double *row)
+{
+    for (size_t i = 0; i < json_array_size(list.json); i++, row += 2) {
+        const jnode pair = json_node_item(&list, i), t = json_node_item(&pair, 0);
+        size_t two = 0;
+        if (json_node_array(pair, &two)) return 1;
+        if (two != 2) return json_node_fault(pair, "needs [time, value]");
+        if (json_node_number(t, J_ANY, &row[0]) ||
+            json_node_number(json_node_item(&pair, 1), J_ANY, &row[1]))
+            return 1;
+        if (i && !(row[0] > row[-2])) return json_node_fault(t, "times must rise");
+    }
+    return 0;
+}
+
+const struct key_type key_lengths = ARRAY("vector", &key_positive, 0, sizeof(double));
+const struct key_type key_two_positive = ARRAY("two numbers > 0", &key_positive, 2, sizeof(double));
+const struct key_type key_min_max = ARRAY("[min, max]", &key_positive, 2, sizeof(double));
+const struct key_type key_matrix = ARRAY("MATRIX", &key_vector, 0, sizeof(vec3));
 
 static int read_object(jnode n, const struct key *k, struct scene *s, void *member)
 {

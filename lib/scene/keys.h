@@ -14,15 +14,30 @@
 
 struct key;
 
-/* A type of values. Its JSON Schema is written with ' for ", DIM for the dimension, and names of tables and of
-   scene/schema.c's own types in $ref. */
+/*
+ * A type of values: of its own, or an array of items of another type, which follow each other in the member. A JSON Schema is
+ * written with ' for ", and the names of tables and of scene/schema.c's own types in $ref.
+ */
 struct key_type {
     const char *words; /* in the manual */
     const char *schema;
     int (*read)(jnode n, const struct key *k, struct scene *s, void *member);
     void (*preset)(const struct key *k, void *member); /* to the default; NULL: it stays as it is */
     const struct keys *object; /* the table that its schema refers to; NULL: none */
+    enum json_range range;
+    const struct key_type *item; /* of an array */
+    int count;                   /* of items; 0: that of dimensions, below 0: less by so many */
+    size_t size;                 /* bytes of an item */
 };
+#define ARRAY(words, item, count, size)                                                            \
+    {                                                                                              \
+        words, NULL, keys_read_array, NULL, NULL, J_ANY, item, count, size                         \
+    }
+int keys_read_array(jnode n, const struct key *k, struct scene *s, void *member);
+static inline int keys_count(const struct key_type *array, int dim)
+{
+    return array->count > 0 ? array->count : dim + array->count;
+}
 
 #define REQUIRED "required" /* the default of a key that is needed, where it is allowed */
 
@@ -61,6 +76,8 @@ struct keys {
 
 /* Reads an object. Returns 0, or not 0 after a fault has been reported. */
 int keys_read(jnode o, const struct keys *t, struct scene *s, void *out);
+/* Rows [[t, x], ...] whose t rise, from a list that is not empty, behind each other in memory for all of them */
+int keys_read_rows(jnode list, double *row);
 /* Reads each item of a list. */
 int keys_each(jnode a, struct scene *s, void *out,
               int (*read)(jnode n, struct scene *s, void *out));
@@ -78,6 +95,8 @@ extern const struct key_type key_text; /* const char *, borrowed from the scene'
 extern const struct key_type key_file; /* char *, to be freed */
 extern const struct key_type key_word; /* int */
 extern const struct key_type key_vector, key_direction /* of length 1 */, key_spin; /* vec3 */
+extern const struct key_type key_lengths, key_two_positive, key_min_max;            /* double[] */
+extern const struct key_type key_matrix;                    /* double[3][3] or vec3[3] */
 extern const struct key_type key_object, key_list, key_map; /* a list or a map has its own read */
 
 #endif

@@ -102,12 +102,10 @@ static const struct keys one_keys = { "body", one_key, .finish = finish_one };
 
 /* ---- a lattice ---- */
 
-static const struct key_type key_cells = { "\"equal\" or \"own\"", "{'enum': ['equal', 'own']}",
-                                           NULL, NULL };
+static const char *const cells[] = { "equal", "own", NULL };
 
 static int read_cells(jnode n, struct scene *s, void *member)
 {
-    static const char *const cells[] = { "equal", "own", NULL };
     int own = 0;
     (void)s;
     if (json_node_word(n, cells, &own)) return 1;
@@ -122,10 +120,10 @@ static const struct key lattice_key[] = {
     { "box", &key_box, AT(box), "m", "cell, wall", "{\"x\": [0, 1], ...}",
       "Region to fill; only its last axis may be open above. Default: the periodic cell, in rows "
       "along its edges; otherwise the first wall that is a box." },
-    { "cells", &key_cells, AT(from), "-", "\"equal\"", "\"own\"",
+    { "cells", &key_word, AT(from), "-", "\"equal\"", "\"own\"",
       "equal: all cells have one size. own: each grain has a cell that fits it; grains are "
       "sorted by size, and fill the box in rows and layers from below.",
-      .read = read_cells },
+      .words = cells, .read = read_cells },
     { "spacing", &key_number, AT(spacing), "-", "1.05", "1",
       "Smallest edge of a cell, in largest diameters; with own cells, in diameters of the grain. "
       "The cells fill the width of the box, and are as low as possible along the last axis.",
@@ -251,6 +249,7 @@ static int finish_document(jnode o, struct scene *s, void *out)
     struct scene_bodies *b = out;
     (void)s;
     b->from = SCENE_DOCUMENT, b->foreign = keys_has(&o, "import");
+    b->has_repeats = keys_has(&o, "repeats");
     return 0;
 }
 
@@ -277,13 +276,6 @@ static int read_types(jnode o, struct scene *s, void *out)
     return 0;
 }
 
-static int scene_bodies_read_repeats(jnode o, struct scene *s, void *out)
-{
-    struct scene_bodies *b = out;
-    b->has_repeats = true;
-    return key_repeats.read(o, NULL, s, b->repeats);
-}
-
 static const struct key_type key_types = { "object", "{'$ref': 'types'}", NULL, NULL };
 
 static const struct key import_key[] = {
@@ -294,8 +286,8 @@ static const struct key import_key[] = {
       "Kind for each type of the file. Default: the kind of the same name; ball where the file "
       "has one type.",
       .read = read_types },
-    { "repeats", &key_repeats, 0, "-", "of the file", "[true, true, false]",
-      "Periodic edges of the box of the file.", .read = scene_bodies_read_repeats },
+    { "repeats", &key_repeats, AT(repeats), "-", "of the file", "[true, true, false]",
+      "Periodic edges of the box of the file." },
     { "", &key_include, 0, .object = &group_keys },
     { 0 },
 };

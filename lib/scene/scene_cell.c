@@ -1,7 +1,7 @@
 /* scene/scene_cell.c: the cell that repeats, from its JSON. */
 #include "scene/scene_read.h"
 
-/* dim rows of dim numbers; where `given` is not NULL an item may be null, which leaves it out. */
+/* dim rows of dim numbers, or null where they are not given */
 static int scene_cell_read_matrix(jnode n, int dim, double M[3][3], bool given[3][3])
 {
     size_t rows = 0, columns = 0;
@@ -13,9 +13,9 @@ static int scene_cell_read_matrix(jnode n, int dim, double M[3][3], bool given[3
         if (columns != (size_t)dim) return json_node_fault(row, "needs %d numbers", dim);
         for (size_t j = 0; j < columns; j++) {
             jnode x = json_node_item(&row, j);
-            if (given && json_is_null(x.json)) continue;
+            if (json_is_null(x.json)) continue;
             if (json_node_number(x, J_ANY, &M[i][j])) return 1;
-            if (given) given[i][j] = true;
+            given[i][j] = true;
         }
     }
     return 0;
@@ -23,51 +23,23 @@ static int scene_cell_read_matrix(jnode n, int dim, double M[3][3], bool given[3
 
 static int read_lengths(jnode n, struct scene *s, void *member)
 {
-    vec3 length = v3(0, 0, 0), *edge = member;
-    if (json_node_vector(n, s->dim, &length)) return 1;
-    if (!(length.x > 0 && length.y > 0 && (s->dim == 2 || length.z > 0)))
-        return json_node_fault(n, "must be positive");
-    edge[0].x = length.x, edge[1].y = length.y;
-    if (s->dim == 3) edge[2].z = length.z;
+    const struct key lengths = { .type = &key_lengths };
+    double length[3] = { 0 };
+    vec3 *edge = member;
+    if (keys_read_array(n, &lengths, s, length)) return 1;
+    edge[0].x = length[0], edge[1].y = length[1];
+    if (s->dim == 3) edge[2].z = length[2];
     return 0;
 }
 
-static int read_edges(jnode a, struct scene *s, void *member)
-{
-    size_t n = 0;
-    if (json_node_array(a, &n)) return 1;
-    if (n != (size_t)s->dim) return json_node_fault(a, "needs %d vectors", s->dim);
-    for (size_t k = 0; k < n; k++)
-        if (json_node_vector(json_node_item(&a, k), s->dim, (vec3 *)member + k)) return 1;
-    return 0;
-}
-
-static int read_repeats(jnode a, const struct key *k, struct scene *s, void *member)
-{
-    size_t n = 0;
-    (void)k;
-    if (json_node_array(a, &n)) return 1;
-    if (n != (size_t)s->dim) return json_node_fault(a, "needs true or false for %d edges", s->dim);
-    for (size_t i = 0; i < n; i++)
-        if (json_node_bool(json_node_item(&a, i), (bool *)member + i)) return 1;
-    return 0;
-}
-
-const struct key_type key_repeats = { "array", "{'$ref': 'repeats'}", read_repeats, NULL };
+const struct key_type key_repeats = ARRAY("true or false", &key_bool, 0, sizeof(bool));
 
 /* ---- the gradient ---- */
 
-static int read_L(jnode n, struct scene *s, void *member)
-{
-    return scene_cell_read_matrix(n, s->dim, ((struct cell_gradient *)member)->L, NULL);
-}
-
-static const struct key_type key_matrix = { "MATRIX", "{'$ref': 'matrix'}", NULL, NULL };
-
 static const struct key moment_key[] = {
     { "t", &key_number, offsetof(struct cell_gradient, t), "s", REQUIRED, "0", "Time." },
-    { "L", &key_matrix, 0, "1/s", REQUIRED, "[[0, 1], [0, 0]]", "Velocity gradient at this time.",
-      .read = read_L },
+    { "L", &key_matrix, offsetof(struct cell_gradient, L), "1/s", REQUIRED, "[[0, 1], [0, 0]]",
+      "Velocity gradient at this time." },
     { 0 },
 };
 static const struct keys moment_keys = { "gradient", moment_key };
@@ -81,7 +53,8 @@ static int read_gradient(jnode a, struct scene *s, void *out)
     if (!table) n = 1;
     if (!(c->gradient = scene_alloc(a, n, sizeof *c->gradient))) return 1;
     c->gradients = (int32_t)n;
-    if (!table) return scene_cell_read_matrix(a, s->dim, c->gradient[0].L, NULL);
+    const struct key whole = { .type = &key_matrix };
+    if (!table) return keys_read_array(a, &whole, s, c->gradient[0].L);
     for (size_t m = 0; m < n; m++) {
         jnode moment = json_node_item(&a, m);
         if (keys_read(moment, &moment_keys, s, &c->gradient[m])) return 1;
@@ -140,23 +113,13 @@ static int read_mass(jnode n, int dim, bool yields[3][3], struct scene_cell *out
 static int read_factor(jnode a, struct scene *s, void *out)
 {
     struct cell *c = &((struct scene_cell *)out)->cell;
-    size_t n = 0, two = 0;
+    size_t n = 0;
     (void)s;
     if (json_node_array(a, &n)) return 1;
     if (!n || n >= 1 << 24) return json_node_fault(a, "needs [[time, factor], ...]");
     if (!(c->factor = scene_alloc(a, n, sizeof *c->factor))) return 1;
     c->factors = (int32_t)n;
-    for (size_t k = 0; k < n; k++) {
-        struct cell_factor *f = &c->factor[k];
-        jnode pair = json_node_item(&a, k), t = json_node_item(&pair, 0);
-        if (json_node_array(pair, &two)) return 1;
-        if (two != 2) return json_node_fault(pair, "needs [time, factor]");
-        if (json_node_number(t, J_ANY, &f->t) ||
-            json_node_number(json_node_item(&pair, 1), J_ANY, &f->x))
-            return 1;
-        if (k && !(f->t > f[-1].t)) return json_node_fault(t, "times must rise");
-    }
-    return 0;
+    return keys_read_rows(a, &c->factor->t);
 }
 
 /* The size yields to a mean stress; the gradient gives the distortion beside it. */
@@ -245,14 +208,11 @@ static const struct keys stress_keys = { "stress", stress_key, .finish = finish_
 
 #define AT(member) offsetof(struct scene_cell, member)
 
-static const struct key_type key_edges = { "array of vectors", "{'$ref': 'edges'}", NULL, NULL };
-static const struct key_type key_lengths = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
-
 static const struct key cell_key[] = {
-    { "edges", &key_edges, AT(cell.edge), "m", "of a document", "[[1, 0], [0, 1]]",
+    { "edges", &key_matrix, AT(cell.edge), "m", "of a document", "[[1, 0], [0, 1]]",
       "Edges from the origin; they need not be perpendicular. Default: those of the first "
       "document, and then origin and repeats, too; load-controlled edges keep their speed.",
-      .choice = -1, .read = read_edges },
+      .choice = -1 },
     { "lengths", &key_lengths, AT(cell.edge), "m", "-", "[1, 1, 1]",
       "Edges along x, y and z, instead of edges.", .choice = -1, .read = read_lengths },
     { "repeats", &key_repeats, AT(cell.repeats), "-", "all true", "[true, false]",

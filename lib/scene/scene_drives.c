@@ -33,16 +33,7 @@ static int scene_drives_read_table(jnode a, struct scene *s, void *out)
     if (!row) return 1;
     list->row = row, row += list->rows;
     d->first = list->rows, d->rows = (int32_t)rows;
-    for (size_t i = 0; i < rows; i++) {
-        jnode pair = json_node_item(&a, i), t, way;
-        size_t two = 0;
-        if (json_node_array(pair, &two)) return 1;
-        if (two != 2) return json_node_fault(pair, "needs [time, value]");
-        t = json_node_item(&pair, 0), way = json_node_item(&pair, 1);
-        if (json_node_number(t, J_ANY, &row[i].t) || json_node_number(way, J_ANY, &row[i].s))
-            return 1;
-        if (i && !(row[i].t > row[i - 1].t)) return json_node_fault(t, "times must rise");
-    }
+    if (keys_read_rows(a, &row->t)) return 1;
     list->rows += d->rows;
     return 0;
 }

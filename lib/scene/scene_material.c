@@ -149,15 +149,15 @@ static int finish_adhesion(jnode o, struct scene *s, void *out)
 
 static const struct keys adhesion_keys = { "adhesion", adhesion_key, .finish = finish_adhesion };
 
+static const char *const impacts[] = { "newton", "bounded", NULL };
+
 static int read_impact(jnode n, struct scene *s, void *member)
 {
-    const char *name = NULL;
-    double *impact = member;
+    int which = 0;
     (void)s;
-    if (json_node_text(n, &name)) return 1;
-    *impact = !strcmp(name, "newton") ? IMPACT_NEWTON : IMPACT_BOUNDED;
-    if (*impact == IMPACT_NEWTON || !strcmp(name, "bounded")) return 0;
-    return json_node_fault(n, "needs \"newton\" or \"bounded\"");
+    if (json_node_word(n, impacts, &which)) return 1;
+    *(double *)member = which ? IMPACT_BOUNDED : IMPACT_NEWTON;
+    return 0;
 }
 
 /* K, or {"normal": K, "tangential": K} */
@@ -195,9 +195,6 @@ static const struct key_type key_stiffness = {
     NULL, &stiffness_keys
 };
 
-static const struct key_type key_impact = { "string", "{'enum': ['newton', 'bounded']}", NULL,
-                                            NULL };
-
 /* ---- the law of all pairs, or of one ---- */
 
 #undef AT
@@ -217,12 +214,11 @@ static const struct key_type key_impact = { "string", "{'enum': ['newton', 'boun
     { key, (most) == 1 ? &key_share : &key_not_negative, AT(member), TEXT_##member },
 
 static const struct key law_key[] = {
-    EACH_PAIR_NUMBER(ROW){ "impact", &key_impact, AT(pair_law.impact), "-", "by shape",
-                           "\"bounded\"",
+    EACH_PAIR_NUMBER(ROW){ "impact", &key_word, AT(pair_law.impact), "-", "by shape", "\"bounded\"",
                            "\"bounded\" reduces restitution where an impact with friction would "
                            "gain energy; \"newton\" does not, see nsd-methods(7), \"Impact\". "
                            "Default: newton for balls and discs, bounded for other shapes.",
-                           .read = read_impact },
+                           .words = impacts, .read = read_impact },
     { "cohesion", &key_object, AT(pair_law), "-", "none", "{\"force\": 1e-3}",
       "Constant attraction.", .object = &cohesion_keys },
     { "capillary", &key_object, AT(pair_law), "-", "none", "see below", "Liquid bridges.",
@@ -264,18 +260,7 @@ struct pair {
 #undef AT
 #define AT(member) offsetof(struct pair, member)
 
-static int read_two_kinds(jnode n, const struct key *k, struct scene *s, void *member)
-{
-    size_t count;
-    if (json_node_array(n, &count)) return 1;
-    if (count != 2) return json_node_fault(n, "needs two kinds");
-    for (size_t i = 0; i < 2; i++)
-        if (read_kind(json_node_item(&n, i), k, s, (int32_t *)member + i)) return 1;
-    return 0;
-}
-
-static const struct key_type key_two_kinds = { "two strings", "{'$ref': 'two_names'}",
-                                               read_two_kinds, NULL };
+static const struct key_type key_two_kinds = ARRAY("two kinds", &key_kind, 2, sizeof(int32_t));
 
 static const struct key pair_key[] = {
     { "pair", &key_two_kinds, AT(kind), "-", REQUIRED, "[\"steel\", \"ball\"]", "The two kinds." },
@@ -352,19 +337,23 @@ static int read_group(jnode n, const struct key *k, struct scene *s, void *membe
 
 const struct key_type key_group = { "string", "{'type': 'string'}", read_group, NULL };
 
-static int read_faces(jnode n, const struct key *k, struct scene *s, void *member)
+static int read_face(jnode n, const struct key *k, struct scene *s, void *member)
 {
-    size_t count;
-    int64_t *face = member;
     (void)k, (void)s;
-    if (json_node_array(n, &count)) return 1;
-    if (count != 2) return json_node_fault(n, "needs [first, last], from 0");
-    for (size_t i = 0; i < 2; i++)
-        if (json_node_integer(json_node_item(&n, i), 0, INT32_MAX - 1, &face[i])) return 1;
-    return face[0] <= face[1] ? 0 : json_node_fault(n, "its first face is behind its last");
+    return json_node_integer(n, 0, INT32_MAX - 1, member);
 }
 
-const struct key_type key_faces = { "[first, last]", "{'$ref': 'faces'}", read_faces, NULL };
+static const struct key_type key_face = {
+    "integer", "{'type': 'integer', 'minimum': 0, 'maximum': 2147483646}", read_face
+};
+const struct key_type key_faces = ARRAY("[first, last]", &key_face, 2, sizeof(int64_t));
+
+int scene_check_faces(jnode o, const int64_t face[2])
+{
+    return face[0] <= face[1]
+               ? 0
+               : json_node_fault(json_node_key(&o, "faces"), "its first face is behind its last");
+}
 
 /* ---- "parts" of a surface ---- */
 
@@ -390,7 +379,7 @@ static int read_part(jnode o, struct scene *s, void *out)
 {
     struct part p = { 0 };
     (void)out;
-    return keys_read(o, &scene_part_keys, s, &p) ||
+    return keys_read(o, &scene_part_keys, s, &p) || scene_check_faces(o, p.face) ||
            names_give(&s->names, p.name, s->walls, (int32_t)p.face[0],
                       (int32_t)(p.face[1] - p.face[0] + 1), o.in->failure);
 }

@@ -21,7 +21,8 @@ extern const struct keys scene_law_keys, scene_kind_keys, scene_pair_keys, scene
 extern const struct key_type key_kind;  /* int32_t, a row of the kinds */
 extern const struct key_type key_name;  /* const char *, borrowed */
 extern const struct key_type key_group; /* int32_t: 1 + the row of the scene's names */
-extern const struct key_type key_faces; /* int64_t[2] */
+extern const struct key_type key_faces; /* int64_t[2], which scene_check_faces() checks */
+int scene_check_faces(jnode object, const int64_t face[2]);
 extern const struct key_type key_parts, key_mesh_parts;
 int scene_read_kinds(jnode n, struct scene *s, void *out);
 int scene_read_pairs(jnode n, struct scene *s, void *out);
@@ -33,6 +34,7 @@ int scene_read_mesh_parts(jnode n, struct scene *s, void *groups);
 extern const struct keys scene_rectangle_keys, scene_disc_keys, scene_cylinder_keys,
     scene_cone_keys, scene_sphere_keys, scene_mesh_keys, scene_circle_keys, scene_arc_keys,
     scene_polygon_keys;
+extern const struct key_type key_segment;
 int scene_read_segment(jnode n, struct scene *s, void *wall);
 int scene_read_polygon(jnode n, struct scene *s, void *wall);
 int scene_read_mesh(jnode n, struct scene *s, void *wall);

@@ -14,36 +14,8 @@ static vec3 scene_shapes_across(vec3 n, vec3 wish)
     return length > 1e-9 ? v3_scale(1 / length, e) : v3_across(n);
 }
 
-static int read_two(jnode a, const struct key *k, struct scene *s, void *member);
-
-static const struct key_type key_two_positive = { "two numbers > 0", "{'$ref': 'two_positive'}",
-                                                  read_two, NULL };
-static const struct key_type key_two = { "two numbers >= 0", "{'$ref': 'two_not_negative'}",
-                                         read_two, NULL };
-
-static int read_two(jnode a, const struct key *k, struct scene *s, void *member)
-{
-    const enum json_range range = k->type == &key_two_positive ? J_POSITIVE : J_NOT_NEGATIVE;
-    double *out = member;
-    size_t n = 0;
-    (void)s;
-    if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "needs two numbers");
-    return json_node_number(json_node_item(&a, 0), range, &out[0]) ||
-           json_node_number(json_node_item(&a, 1), range, &out[1]);
-}
-
-static const struct key_type key_side = { "string", "{'enum': ['inside', 'outside', 'both']}", NULL,
-                                          NULL };
-
-static int scene_shapes_read_side(jnode n, struct scene *s, void *member)
-{
-    int side = 0;
-    (void)s;
-    if (json_node_word(n, boundary_side_name, &side)) return 1;
-    *(int32_t *)member = side;
-    return 0;
-}
+static const struct key_type key_two =
+    ARRAY("two numbers >= 0", &key_not_negative, 2, sizeof(double));
 
 /* Rows that several shapes have */
 #define CENTER                                                                                     \
@@ -69,10 +41,9 @@ static int scene_shapes_read_side(jnode n, struct scene *s, void *member)
     }
 #define SIDE                                                                                       \
     {                                                                                              \
-        "side", &key_side, AT(side), "-", "\"inside\"", "\"both\"",                                \
-            "Side on which bodies stay: \"inside\", \"outside\" or \"both\", a surface without "   \
-            "thickness.",                                                                          \
-            .read = scene_shapes_read_side                                                         \
+        "side", &key_word, AT(side), "-", "\"inside\"", "\"both\"",                                \
+            "Side on which bodies stay; both: a surface without thickness.",                       \
+            .words = boundary_side_name                                                            \
     }
 #define ALONG(need, text)                                                                          \
     {                                                                                              \
@@ -191,18 +162,15 @@ static const struct key arc_key[] = {
 };
 const struct keys scene_arc_keys = { "arc", arc_key, .finish = finish_cylinder };
 
-/* [[x, y], [x, y]] */
+const struct key_type key_segment = ARRAY("[[x, y], [x, y]]", &key_vector, 2, sizeof(vec3));
+
 int scene_read_segment(jnode a, struct scene *s, void *out)
 {
     struct wall *w = out;
-    size_t n = 0;
+    const struct key ends = { .type = &key_segment };
     vec3 end[2] = { 0 };
-    (void)s;
     w->shape = BOUNDARY_RECTANGLE;
-    if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "needs two points");
-    for (size_t i = 0; i < 2; i++)
-        if (json_node_vector(json_node_item(&a, i), 2, &end[i])) return 1;
+    if (keys_read_array(a, &ends, s, end)) return 1;
     vec3 d = v3_sub(end[1], end[0]);
     double length = v3_norm(d);
     if (!(length > 0 && isfinite(length))) return json_node_fault(a, "is without a length");

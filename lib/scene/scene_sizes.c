@@ -9,27 +9,6 @@ enum { MOST_EXPONENT = 20 };           /* of a power law */
 static const double MOST_RATIO = 1e6;  /* of radii of one law: no more is meant */
 static const double MOST_SIZE = 1e100; /* m: its volume is a number */
 
-static int read_uniform(jnode a, struct scene *s, void *out)
-{
-    struct scene_size *z = out;
-    size_t n;
-    (void)s;
-    if (json_node_array(a, &n)) return 1;
-    if (n != 2) return json_node_fault(a, "needs [min, max]");
-    if (json_node_number(json_node_item(&a, 0), J_POSITIVE, &z->min) ||
-        json_node_number(json_node_item(&a, 1), J_POSITIVE, &z->max))
-        return 1;
-    return z->min <= z->max ? 0 : json_node_fault(a, "max is less than min");
-}
-
-/* As much mass between r and r + dr wherever r is */
-static int read_uniform_by_mass(jnode a, struct scene *s, void *out)
-{
-    struct scene_size *z = out;
-    z->law = SIZE_POWER, z->exponent = s->dim;
-    return read_uniform(a, s, out);
-}
-
 /* Probability that a standard normal deviate is below z */
 static double scene_sizes_normal_below(double z)
 {
@@ -169,19 +148,18 @@ static int read_sieve(jnode a, struct scene *s, void *out)
     return 0;
 }
 
-static const struct key_type key_min_max = { "[min, max]", "{'$ref': 'min_max'}", NULL, NULL };
 static const struct key_type key_sieve = { "array of pairs", "{'$ref': 'sieve'}", NULL, NULL };
 
 static const struct key size_key[] = {
-    { "uniform", &key_min_max, 0, "m", "-", "[1e-3, 2e-3]",
-      "Any radius in [min, max] is as likely.", .choice = 1, .read = read_uniform },
+    { "uniform", &key_min_max, AT(min), "m", "-", "[1e-3, 2e-3]",
+      "Any radius in [min, max] is as likely.", .choice = 1 },
     { "gaussian", &key_object, 0, "m", "-", "{\"mean\": 1, ...}",
       "Radii are drawn again until they lie in [min, max].", .choice = 1,
       .object = &gaussian_keys },
     { "lognormal", &key_object, 0, "m, 1", "-", "{\"median\": 1, ...}",
       "The same of the logarithm.", .choice = 1, .object = &lognormal_keys },
-    { "uniform_by_mass", &key_min_max, 0, "m", "-", "[1e-3, 4e-3]",
-      "Equal mass per unit of radius over [min, max].", .choice = 1, .read = read_uniform_by_mass },
+    { "uniform_by_mass", &key_min_max, AT(min), "m", "-", "[1e-3, 4e-3]",
+      "Equal mass per unit of radius over [min, max].", .choice = 1 },
     { "power", &key_object, 0, "1, m", "-", "{\"exponent\": 3, ...}", "A power law.", .choice = 1,
       .object = &power_keys },
     { "sieve", &key_sieve, 0, "m, 1", "-", "[[1e-3, 0], ...]",
@@ -190,7 +168,19 @@ static const struct key size_key[] = {
       .choice = 1, .read = read_sieve },
     { 0 },
 };
-static const struct keys size_keys = { "size", size_key };
+_Static_assert(AT(max) == AT(min) + sizeof(double), "[min, max] is read into both");
+
+static int finish_size(jnode o, struct scene *s, void *out)
+{
+    struct scene_size *z = out;
+    const bool by_mass = keys_has(&o, "uniform_by_mass");
+    if (by_mass) z->law = SIZE_POWER, z->exponent = s->dim;
+    if (z->min <= z->max) return 0;
+    return json_node_fault(json_node_key(&o, by_mass ? "uniform_by_mass" : "uniform"),
+                           "max is less than min");
+}
+
+static const struct keys size_keys = { "size", size_key, .finish = finish_size };
 
 static int read_size(jnode n, const struct key *k, struct scene *s, void *member)
 {

@@ -40,10 +40,9 @@ static int scene_solids_read_box(jnode box, struct scene *scene, void *out)
 {
     const int dim = scene->dim;
     struct shape *s = &((struct form *)out)->shape;
+    const struct key sides = { .type = &key_lengths };
     vec3 a = v3(1, 1, 1);
-    if (json_node_vector(box, dim, &a)) return 1;
-    if (!(a.x > 0 && a.y > 0 && (dim == 2 || a.z > 0)))
-        return json_node_fault(box, "its sides must be positive");
+    if (keys_read_array(box, &sides, scene, &a)) return 1;
     return make_box(s, dim, a, box.in->failure);
 }
 
@@ -258,17 +257,10 @@ static void turn_moments(double to[3][3], double of[3][3], double share)
 /* "inertia" of what a clump stands for, about its centre, m^5 */
 static int read_inertia(jnode n, struct scene *scene, void *out)
 {
+    const struct key matrix = { .type = &key_matrix };
     struct solid *as = out;
     double inertia[3][3];
-    size_t length;
-    (void)scene;
-    if (json_node_array(n, &length)) return 1;
-    if (length != 3) return json_node_fault(n, "needs three n of three numbers");
-    for (size_t i = 0; i < 3; i++) {
-        vec3 row = v3(0, 0, 0);
-        if (json_node_vector(json_node_item(&n, i), 3, &row)) return 1;
-        inertia[i][0] = row.x, inertia[i][1] = row.y, inertia[i][2] = row.z;
-    }
+    if (keys_read_array(n, &matrix, scene, inertia)) return 1;
     turn_moments(as->second, inertia, 0.5);
     double(*S)[3] = as->second;
     const double minor = S[0][0] * S[1][1] - S[0][1] * S[1][0];
@@ -284,13 +276,11 @@ static int read_inertia(jnode n, struct scene *scene, void *out)
                                     "than the sum of the others");
 }
 
-static const struct key_type key_inertia = { "MATRIX", "{'$ref': 'matrix'}", NULL, NULL };
-
 static const struct key solid_key[] = {
     { "volume", &key_positive, offsetof(struct solid, volume), "m^3", REQUIRED, "1e-6", "Volume." },
     { "centre", &key_vector, offsetof(struct solid, centre), "m", REQUIRED, "[0, 0, 0]",
       "Centre of mass." },
-    { "inertia", &key_inertia, 0, "m^5", REQUIRED, "[[1, 0, 0], ...]",
+    { "inertia", &key_matrix, 0, "m^5", REQUIRED, "[[1, 0, 0], ...]",
       "Inertia about the centre at density 1.", .read = read_inertia },
     { 0 },
 };
@@ -444,38 +434,15 @@ struct superquadric {
     int64_t segments;   /* 0: the default */
 };
 
-static int read_exponents(jnode e, struct scene *s, void *out)
-{
-    double *n = out;
-    size_t exponents;
-    if (json_node_array(e, &exponents)) return 1;
-    if (exponents != (size_t)s->dim - 1)
-        return json_node_fault(e, s->dim == 2 ? "needs one number" : "needs two numbers");
-    for (size_t i = 0; i < exponents; i++)
-        if (json_node_number(json_node_item(&e, i), J_POSITIVE, &n[i])) return 1;
-    if (!(n[0] >= 1 && n[1] >= 1 && n[0] <= 100 && n[1] <= 100))
-        return json_node_fault(e, "must lie in [1, 100]: below 1 it is not convex");
-    return 0;
-}
-
-static int read_radii(jnode n, struct scene *s, void *out)
-{
-    vec3 *a = out;
-    if (json_node_vector(n, s->dim, a)) return 1;
-    return a->x > 0 && a->y > 0 && (s->dim == 2 || a->z > 0)
-               ? 0
-               : json_node_fault(n, "must be positive");
-}
-
-static const struct key_type key_radii = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
-static const struct key_type key_exponents = { "two numbers; 2D: one", "{'$ref': 'exponents'}",
-                                               NULL, NULL };
+static const struct key_type key_exponents =
+    ARRAY("[n, m]; 2D: [n]", &key_number, -1, sizeof(double));
 
 static const struct key superquadric_key[] = {
-    { "radii", &key_radii, offsetof(struct superquadric, radii), "m", REQUIRED,
-      "[0.02, 0.01, 0.01]", "Half axes [a, b, c].", .read = read_radii },
+    { "radii", &key_lengths, offsetof(struct superquadric, radii), "m", REQUIRED,
+      "[0.02, 0.01, 0.01]", "Half axes [a, b, c]." },
     { "exponents", &key_exponents, offsetof(struct superquadric, exponent), "-", REQUIRED, "[2, 2]",
-      "Exponents [n, m], 1 to 100.", .read = read_exponents },
+      "Exponents [n, m], 1 to 100.", .least = 1, .most = 100,
+      .limit = "must lie in [1, 100]: below 1 it is not convex" },
     { "segments", &key_integer, offsetof(struct superquadric, segments), "-", "5; 2D: 16", "10",
       "Number of sides between two axes.", .least = 2, .most = SEGMENTS_MOST },
     { 0 },
@@ -518,7 +485,6 @@ static int read_superquadric(jnode q, struct scene *scene, void *out)
 
 static const struct key_type key_clump = { "object", "{'$ref': 'clump'}", scene_read_later, NULL,
                                            &clump_keys };
-static const struct key_type key_brick = { "vector", "{'$ref': 'lengths'}", NULL, NULL };
 static const struct key_type key_corners = { "array of vectors", "{'$ref': 'points'}", NULL, NULL };
 static const struct key_type key_balls = { "array of vectors", "{'$ref': 'balls'}", NULL, NULL };
 static const struct key_type key_polygons = { "array of arrays", "{'$ref': 'polygons'}",
@@ -526,7 +492,7 @@ static const struct key_type key_polygons = { "array of arrays", "{'$ref': 'poly
 
 /* What a mesh is replaced by stands before it: that is not read. */
 static const struct key form_key[] = {
-    { "box", &key_brick, 0, "m", "-", "[0.02, 0.01, 0.01]",
+    { "box", &key_lengths, 0, "m", "-", "[0.02, 0.01, 0.01]",
       "A brick with these edge lengths along x, y and z; in 2D a rectangle.", .choice = 1,
       .read = scene_solids_read_box },
     { "capsule", &key_object, 0, "-", "-", "{\"length\": 2, ...}",

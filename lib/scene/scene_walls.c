@@ -168,7 +168,7 @@ static int read_material(jnode o, struct scene *s, void *out)
 {
     const struct wall *w = out;
     struct material m = { .kind = w->kind, .belt = w->belt };
-    if (keys_read(o, &material_keys, s, &m)) return 1;
+    if (keys_read(o, &material_keys, s, &m) || scene_check_faces(o, m.face)) return 1;
     struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
     if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for parts of a surface");
     s->part = more;
@@ -202,8 +202,6 @@ static int scene_walls_read_materials(jnode a, struct scene *s, void *out)
             .choice = 1, .dim = (dim_), .object = &scene_##name##_keys, .read = scene_read_##name  \
     }
 
-static const struct key_type key_segment = { "[[x, y], [x, y]]", "{'$ref': 'segment'}", NULL,
-                                             NULL };
 static const struct key_type key_drives = { "array",
                                             "{'type': 'array', 'items': {'$ref': 'drive'}}",
                                             scene_read_later, NULL, &scene_drive_keys };

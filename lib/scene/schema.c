@@ -14,7 +14,7 @@ struct schema {
     bool bad;     /* there was no memory */
 };
 
-/* Types that are not objects, with ' for ". DIM is the dimension, MORE and LESS are one more and one less. */
+/* Types that are not objects, with ' for ". DIM is the dimension. */
 static const struct plain {
     const char *name, *text, *plane; /* in the plane; NULL: the same */
 } plain[] = {
@@ -24,27 +24,14 @@ static const struct plain {
       "{'type': 'array', 'items': {'type': 'number'}, 'minItems': DIM, 'maxItems': DIM, "
       "'not': {'items': {'const': 0}}}",
       NULL },
-    { "lengths",
-      "{'type': 'array', 'items': {'type': 'number', 'exclusiveMinimum': 0}, 'minItems': DIM, "
-      "'maxItems': DIM}",
-      NULL },
     { "spin", "{'$ref': 'vector'}", "{'type': 'number'}" },
     { "matrix", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': DIM, 'maxItems': DIM}",
       NULL },
-    { "edges", "{'$ref': 'matrix'}", NULL },
     { "loose_matrix",
       "{'type': 'array', 'items': {'type': 'array', 'items': {'type': ['number', 'null']}, "
       "'minItems': DIM, 'maxItems': DIM}, 'minItems': DIM, 'maxItems': DIM}",
       NULL },
-    { "repeats",
-      "{'type': 'array', 'items': {'type': 'boolean'}, 'minItems': DIM, 'maxItems': DIM}", NULL },
-    { "exponents",
-      "{'type': 'array', 'items': {'type': 'number', 'minimum': 1, 'maximum': 100}, "
-      "'minItems': LESS, 'maxItems': LESS}",
-      NULL },
     { "points", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': 2}", NULL },
-    { "segment", "{'type': 'array', 'items': {'$ref': 'vector'}, 'minItems': 2, 'maxItems': 2}",
-      NULL },
     { "balls",
       "{'type': 'array', 'minItems': 1, 'maxItems': 4096, 'items': {'type': 'array', "
       "'prefixItems': "
@@ -62,14 +49,6 @@ static const struct plain {
     { "interval",
       "{'type': 'array', 'items': {'type': ['number', 'null']}, 'minItems': 2, 'maxItems': 2}",
       NULL },
-    { "two_positive",
-      "{'type': 'array', 'items': {'type': 'number', 'exclusiveMinimum': 0}, 'minItems': 2, "
-      "'maxItems': 2}",
-      NULL },
-    { "two_not_negative",
-      "{'type': 'array', 'items': {'type': 'number', 'minimum': 0}, 'minItems': 2, 'maxItems': 2}",
-      NULL },
-    { "min_max", "{'$ref': 'two_positive'}", NULL },
     { "sieve",
       "{'type': 'array', 'items': {'type': 'array', 'prefixItems': [{'type': 'number', "
       "'exclusiveMinimum': 0}, {'type': 'number', 'minimum': 0, 'maximum': 1}], 'minItems': 2, "
@@ -90,11 +69,6 @@ static const struct plain {
     { "names",
       "{'anyOf': [{'type': 'string'}, {'type': 'array', 'items': {'type': 'string'}, 'minItems': "
       "1}]}",
-      NULL },
-    { "two_names", "{'type': 'array', 'items': {'type': 'string'}, 'minItems': 2, 'maxItems': 2}",
-      NULL },
-    { "faces",
-      "{'type': 'array', 'items': {'type': 'integer', 'minimum': 0}, 'minItems': 2, 'maxItems': 2}",
       NULL },
     { "types",
       "{'type': 'object', 'patternProperties': {'^[0-9]+$': {'type': 'string'}, '^comment$': "
@@ -147,14 +121,11 @@ static void resolve(struct schema *to, json_t *j, const struct keys *table)
 
 static json_t *parse(struct schema *to, const char *text, const struct keys *table)
 {
-    static const char *const token[] = { "DIM", "MORE", "LESS" };
-    const int number[] = { to->dim, to->dim + 1, to->dim - 1 };
     char *copy = malloc(strlen(text) + 1), *o = copy;
-    for (const char *s = text; copy && *s;) {
-        int t = 0;
-        while (t < 3 && strncmp(s, token[t], strlen(token[t])) != 0) t++;
-        *o++ = t < 3 ? (char)('0' + number[t]) : *s == '\'' ? '"' : *s;
-        s += t < 3 ? strlen(token[t]) : 1;
+    for (const char *t = text; copy && *t;) {
+        const bool dim = !strncmp(t, "DIM", 3);
+        *o++ = dim ? (char)('0' + to->dim) : *t == '\'' ? '"' : *t;
+        t += dim ? 3 : 1;
     }
     if (copy) *o = 0;
     json_t *j = copy ? json_loads(copy, 0, NULL) : NULL;
@@ -172,9 +143,28 @@ static json_t *ref(struct schema *to, const struct keys *t)
     return j;
 }
 
+static json_t *value_of(struct schema *to, const struct key *k);
+
+static json_t *array_of(struct schema *to, const struct key *k)
+{
+    const struct key item = { .type = k->type->item, .least = k->least, .most = k->most };
+    const int n = keys_count(k->type, to->dim);
+    return json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", value_of(to, &item),
+                     "minItems", n, "maxItems", n);
+}
+
+static json_t *words_of(struct schema *to, const char *const *words)
+{
+    json_t *list = json_array();
+    for (; *words; words++) append(to, list, json_string(*words));
+    return json_pack("{s:o}", "enum", list);
+}
+
 static json_t *bare_value(struct schema *to, const struct key *k)
 {
     if (k->type->schema) return parse(to, k->type->schema, k->type->object);
+    if (k->type->item) return array_of(to, k);
+    if (k->words) return words_of(to, k->words);
     if (k->type == &key_list)
         return json_pack("{s:s, s:o}", "type", "array", "items", ref(to, k->object));
     if (k->type == &key_map)
@@ -194,13 +184,14 @@ static json_t *value_of(struct schema *to, const struct key *k)
     json_t *j = bare_value(to, k), *standard = literal(k->otherwise),
            *example = literal(k->example);
     const bool unit = k->unit && *k->unit && strcmp(k->unit, "-") != 0;
-    if (k->least != 0 || k->most != 0 || k->type == &key_integer) {
+    if (!k->type->item && (k->least != 0 || k->most != 0 || k->type == &key_integer)) {
         put(to, j, "minimum",
             k->type == &key_integer ? json_integer((json_int_t)k->least) : json_real(k->least));
         if (isfinite(k->most))
             put(to, j, "maximum",
                 k->type == &key_integer ? json_integer((json_int_t)k->most) : json_real(k->most));
     }
+    if (!k->help) return j; // an item of an array
     put(to, j, "description",
         unit ? json_sprintf("%s [%s]", k->help, k->unit) : json_string(k->help));
     if (standard) put(to, j, "default", standard);
@@ -374,7 +365,11 @@ static void table_lines(struct seen *seen, const struct keys *t,
     if (!t || !is_new(seen, t)) return;
     for (int i = 0; t->forms && t->forms[i]; i++) table_lines(seen, t->forms[i], line);
     for (const struct key *k = t->key; k && k->name; k++) {
-        const char *const field[7] = { t->name,      k->name,    k->type->words, k->unit,
+        char two[60];
+        const char *type = k->type->words, *const *word = k->words;
+        if (word && word[1] && !word[2] && strlen(word[0]) + strlen(word[1]) < 10)
+            snprintf(two, sizeof two, "\"%s\" or \"%s\"", word[0], word[1]), type = two;
+        const char *const field[7] = { t->name,      k->name,    type,   k->unit,
                                        k->otherwise, k->example, k->help };
         if (k->type != &key_include) line(field);
     }
