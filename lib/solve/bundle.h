@@ -176,6 +176,7 @@ ALWAYS_INLINE void bundle_push(GLOBAL const struct bundle *c, int k, const vd t1
     bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
 }
 
+#ifndef ON_DEVICE // which has balls alone
 /*
  * Bundles of contacts whose lever arms are any vectors, between bodies of any
  * inertia.
@@ -228,4 +229,5 @@ ALWAYS_INLINE void levers_push(const struct bundle *c, const struct levers *g, i
     bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
 }
 
+#endif
 #endif
