@@ -45,7 +45,7 @@ static const struct quantity quantities[] = {
     { "kinetic", "J", 1, "kinetic energy of translation" },
     { "rotation", "J", 1, "kinetic energy of rotation" },
     { "potential", "J", 1, "potential energy, - sum m g . x, zero at the origin" },
-    { "stored", "J", 1, "energy stored in cohesion, liquid and bonds" },
+    { "stored", "J", 1, "energy stored in cohesion, liquid, bonds and springs" },
     { "total", "J", 1, "sum of these four" },
     { "dissipated", "J", 1, "energy dissipated by contacts in their step, without stored energy" },
     { "impact", "J", 1, "part of dissipated by normal velocities" },

@@ -133,18 +133,16 @@ ALWAYS_INLINE void bundle_basis(GLOBAL const struct bundle *c, GLOBAL const stru
     for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) t2[i] = n[j] * t1[l] - n[l] * t1[j];
 }
 
-/* u~ of u, for the r that made it; what is rigid keeps its bits. */
-ALWAYS_INLINE void bundle_rebound_of(GLOBAL const struct bundle *c, GLOBAL const struct rebound *e,
-                                     int k, vd u[3])
+/* u += what the springs add for the reactions r that made u~; what is rigid keeps its bits. */
+ALWAYS_INLINE void bundle_soften(GLOBAL const struct rebound *e, int k, const vd r[3], vd u[3])
 {
     for (int i = 0; i < 3; i++) {
         vd soft = vload(e->soft[i > 0] + k);
-        u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
-        u[i] = pick(lt(splat(0), soft), u[i] + soft * vload(c->r[i] + k), u[i]);
+        u[i] = pick(lt(splat(0), soft), u[i] + soft * r[i], u[i]);
     }
 }
 
-/* u~ from the bodies' velocities, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
+/* u~ from the bodies' velocities, without springs, or u where e is NULL; and t1 and t2, which bundle_push() needs again */
 ALWAYS_INLINE void bundle_velocity(GLOBAL const struct bundle *c, GLOBAL const struct beside *t,
                                    GLOBAL const struct rebound *e, int k, const struct twist *a,
                                    const struct twist *b, vd u[3], vd t1[3], vd t2[3])
@@ -157,7 +155,7 @@ ALWAYS_INLINE void bundle_velocity(GLOBAL const struct bundle *c, GLOBAL const s
     // w x (l n) . t1 = l w . t2, and the arm of b is -lb n
     vd un = dot3(n, dv), u1 = dot3(t1, dv) - dot3(t2, m), u2 = dot3(t2, dv) + dot3(t1, m);
     u[0] = un, u[1] = u1, u[2] = u2;
-    if (e) bundle_rebound_of(c, e, k, u);
+    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
 }
 
 /* Adds to the bodies' velocities what a change dr (n, t1, t2) of the reactions makes of them. */
@@ -176,6 +174,7 @@ ALWAYS_INLINE void bundle_push(GLOBAL const struct bundle *c, int k, const vd t1
     bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
 }
 
+#ifndef ON_DEVICE // which has balls alone
 /*
  * Bundles of contacts whose lever arms are any vectors, between bodies of any
  * inertia.
@@ -205,7 +204,7 @@ ALWAYS_INLINE void levers_velocity(const struct bundle *c, const struct beside *
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++)
             u[i] += vload(g->Gb[3 * i + j] + k) * b->w[j] - vload(g->Ga[3 * i + j] + k) * a->w[j];
-    if (e) bundle_rebound_of(c, e, k, u);
+    for (int i = 0; i < 3 && e; i++) u[i] = vload(e->s[i > 0] + k) * u[i] + vload(e->offset[i] + k);
 }
 
 /* As bundle_push() */
@@ -228,4 +227,5 @@ ALWAYS_INLINE void levers_push(const struct bundle *c, const struct levers *g, i
     bodies_add(body, c->a + k, &da), bodies_add(body, c->b + k, &db);
 }
 
+#endif
 #endif

@@ -62,7 +62,6 @@ const char *device_declines(const struct problem *p)
     if (p->exchange) return "several processes share the contacts";
     if (p->kind.rolls) return "contacts have rolling friction";
     if (p->kind.extra) return "contacts have bonds";
-    if (p->kind.soft) return "contacts have a stiffness";
     if (p->kind.levers) return "grains are no balls or discs";
     if (p->W && p->W->common) return "loads push contacts";
     return p->slots > INT32_MAX ? "there are too many contacts" : NULL;
@@ -220,7 +219,8 @@ static void fill_contact(struct problem *p, int64_t i, int64_t c, uint64_t *stat
     x->la[k] = la, x->lb[k] = lb, x->mu[k] = 0.5 + 0.4 * device_number(state);
     for (int j = 0; j < 2; j++) {
         e->s[j][k] = 0.8 + 0.2 * device_number(state);
-        p->w[i / BUNDLE][j][k] = e->s[j][k] * (j ? it : im);
+        e->soft[j][k] = c % 2 ? 0.1 * im : 0; // every other contact has springs
+        p->w[i / BUNDLE][j][k] = e->s[j][k] * (j ? it : im) + e->soft[j][k];
         x->iw[j][k] = 1 / p->w[i / BUNDLE][j][k];
     }
     for (int j = 0; j < 3; j++) e->offset[j][k] = 0.1 * device_number(state);

@@ -221,6 +221,14 @@ ALWAYS_INLINE const struct rebound *bundle_rebound(const struct problem *p, int6
     return p->rebound ? &p->rebound[i] : NULL;
 }
 
+/* As bundle_soften(), with the reactions that the bundle has */
+ALWAYS_INLINE void problem_soften(const struct bundle *c, const struct rebound *e, int k, vd u[3])
+{
+    vd r[3];
+    for (int i = 0; i < 3; i++) r[i] = vload(c->r[i] + k);
+    bundle_soften(e, k, r, u);
+}
+
 /* u~ of lanes k.. of c from the velocities of body[], or u where e is NULL; between balls */
 ALWAYS_INLINE void body_velocity(const struct problem *p, struct body *body, const struct bundle *c,
                                  const struct rebound *e, int k, vd u[3])
@@ -230,6 +238,7 @@ ALWAYS_INLINE void body_velocity(const struct problem *p, struct body *body, con
     vd t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     bundle_velocity(c, bundle_beside(p, c), e, k, &ma, &mb, u, t1, t2);
+    if (e) problem_soften(c, e, k, u);
 }
 
 /* Adds to the velocities of body[] what a change dr of the reactions makes of them. */
@@ -258,6 +267,7 @@ ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body, 
     }
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     levers_velocity(c, bundle_beside(p, c), &p->lever[i], e, k, &ma, &mb, u, t1, t2);
+    if (e) problem_soften(c, e, k, u);
 }
 
 ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, int64_t i, int k,

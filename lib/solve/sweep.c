@@ -69,6 +69,7 @@ ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
         levers_velocity(c, t, &p->lever[bundle], e, k, &a, &b, s->v, t1, s->t2);
     else
         bundle_velocity(c, t, e, k, &a, &b, s->v, t1, s->t2);
+    if (e) problem_soften(c, e, k, s->v);
     for (int i = 0; i < 3 && !IS(kernel, near); i++)
         s->t1[i] = t1[i]; // what can be loaded is not kept
 }

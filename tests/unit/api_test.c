@@ -565,6 +565,24 @@ static void test_endless(void)
     nsd_close(&r);
 }
 
+/* A ball that rests sinks by m g/k as soon as its contact has a stiffness, and rises where it is rigid again. */
+static void test_stiffness(void)
+{
+    struct nsd_run *r =
+        scene("{\"dt\": 1e-3, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}], "
+              "\"bodies\": [{\"x\": [0, 0, 0.01], \"radius\": 0.01, \"mass\": 0.02}]}");
+    must(nsd_set(r, "eps", "1e-9") || nsd_step(r, 20) || nsd_set(r, "stiffness", "1e5") ||
+             nsd_step(r, 400),
+         r);
+    const double sunk = 0.01 - array(r, "position", NULL)[2], wanted = 0.02 * 9.81 / 1e5;
+    ok(fabs(sunk - wanted) < 1e-5 * wanted, "a ball sinks by m g/k: %.6g m", sunk);
+    must(nsd_append(r, path_of("soft.h5")), r);
+    ok(nsd_set(r, "stiffness", "rigid") == NSD_USAGE, "a trajectory has one stiffness: %s",
+       nsd_error(r));
+    must(nsd_finish(r) || nsd_set(r, "stiffness", "rigid") || nsd_step(r, 5), r);
+    nsd_close(&r);
+}
+
 static void test_errors(void)
 {
     struct nsd_run *r = scene(heap), *none = NULL, *twin = scene(heap);
@@ -584,6 +602,7 @@ static void test_errors(void)
         { nsd_set(r, "epsilon", "1"), NSD_USAGE, "no option" },
         { nsd_set(r, NULL, "1"), NSD_USAGE, "no name" },
         { nsd_set(r, "dt", "-1"), NSD_USAGE, "no time step" },
+        { nsd_set(r, "stiffness", "soft"), NSD_USAGE, "no stiffness" },
         { nsd_read(r, "speed", &a), NSD_USAGE, "no array" },
         { nsd_read(r, "position", &small), NSD_USAGE, "an array of another version" },
         { nsd_force(r, 99, f, NULL, NSD_ONCE), NSD_DATA, "no body" },
@@ -1056,8 +1075,8 @@ int main(void)
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
-        test_failure(), test_endless(), test_errors(), test_random(), test_missing(),
-        test_documents(), test_undone(), test_fork();
+        test_failure(), test_endless(), test_stiffness(), test_errors(), test_random(),
+        test_missing(), test_documents(), test_undone(), test_fork();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

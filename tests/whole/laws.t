@@ -469,6 +469,17 @@ jq -n '{ dt: 1e-3, mu: 0.5, gravity: [2, 0, -9], stiffness: { normal: 1e6, tange
 # four springs of 5e5 N/m along the slope, and the turn by its pull at the centre, 5 mm above them
 ok "a brick on a slope stays, displaced by m g sin/(4 k_t)" near "$(last "$tmp/brick.h5" | jq '.x[0]')" "$(jq -n '0.08 / 2e6 + 0.08 * 2.5e-5 / (4e6 * 4e-4)')" 1e-2
 
+# with rolling friction, whose moment stays rigid, and with cohesion
+jq -n '{ dt: 1e-3, mu: 0.6, gravity: [3, 0, -9], stiffness: 1e6, rolling: { mu_r: 1e-3 }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+    bodies: [{ x: [0, 0, 0.01], radius: 0.01 }] }' | nsd-gen - | step --criterion natural --eps 1e-10 -n 100 --every 100 -o "$tmp/down.h5"
+ok "a ball rolls down a slope with 5/7 (g sin - mu_r/R g cos)" near "$(last "$tmp/down.h5" | jq '.v[0]')" 0.15 1e-9
+for f in 1.001 0.999; do
+    jq -n --argjson f "$(jq -n "$f * $weight")" '{ dt: 1e-3, stiffness: 1e6, cohesion: { force: $f },
+        walls: [{ normal: [0, 0, -1], point: [0, 0, 0] }], bodies: [{ x: [0, 0, -0.01], radius: 0.01 }] }' | nsd-gen - |
+        step --eps 1e-9 -n 100 --every 100 | last - | jq '.x[2] > -0.0100001' >>"$tmp/hangs"
+done
+is "a ball hangs from a ceiling by 1.001 of its weight, and falls from 0.999" "$(tr '\n' ' ' <"$tmp/hangs")" "true false "
+
 # a heap: unique reactions, the same bits by every way, and at rest
 nsd-gen 200 | step --stiffness auto -n 1500 --every 1500 -o "$tmp/heap.h5"
 nsd-cat --last "$tmp/heap.h5" >"$tmp/springs.h5"

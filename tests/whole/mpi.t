@@ -52,6 +52,7 @@ after() # STEPS SCENE: its packing then, into $tmp/NAME.h5
 
 nsd-gen 300 | nsd-step -n 900 --every 900 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
 three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
+ok "with a stiffness of contacts" same "$tmp/heap.h5" 3 -n 5 --stiffness auto --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
 ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm

@@ -96,8 +96,9 @@ ALWAYS_INLINE void motion_velocity(__global const struct bundle *bundle,
     struct twist ma, mb;
     double t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
-    bundle_velocity(c, BESIDE(slot), rebound ? &rebound[slot / BUNDLE] : NULL, k, &ma, &mb, u, t1,
-                    t2);
+    __global const struct rebound *e = rebound ? &rebound[slot / BUNDLE] : NULL;
+    bundle_velocity(c, BESIDE(slot), e, k, &ma, &mb, u, t1, t2);
+    if (e) bundle_soften(e, k, r, u);
 #endif
 }
 
@@ -153,9 +154,10 @@ ALWAYS_INLINE void make_local(__global const struct bundle *bundle,
     __global const struct rebound *e = rebound ? &rebound[slot / BUNDLE] : NULL;
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     bundle_velocity(c, BESIDE(slot), e, k, &ma, &mb, l->v, t1, t2);
+    if (e) bundle_soften(e, k, l->r, l->v);
     double im = a.im + b.im, it = im + la * la * a.ii + lb * lb * b.ii;
-    l->w[0] = e ? e->s[0][k] * im : im;
-    l->w[1] = l->w[2] = e ? e->s[1][k] * it : it;
+    l->w[0] = e ? e->s[0][k] * im + e->soft[0][k] : im;
+    l->w[1] = l->w[2] = e ? e->s[1][k] * it + e->soft[1][k] : it;
     for (int i = 0; i < 3; i++) {
         l->iw[i] = c->iw[i > 0][k];
         l->b[i] = l->v[i] - l->w[i] * l->r[i];
