@@ -1,7 +1,7 @@
 /* scene/stiffness.c: a stiffness out of the loads and speeds of a packing [scene/stiffness.h]. */
 #include "scene/stiffness.h"
 
-#include "base/number.h"
+#include "base/text.h"
 #include "contact/spring.h"
 #include "scene/inlet.h"
 #include "scene/time_step.h"
