@@ -197,7 +197,7 @@ static const struct keys *form_of(jnode o, const struct keys *t)
     struct row row[ROWS_MOST] = { 0 };
     struct key first[ROWS_MOST];
     int n = 0;
-    for (; t->forms[n] && n < ROWS_MOST; n++) {
+    for (; n < ROWS_MOST && t->forms[n]; n++) {
         first[n] = (struct key){ .name = t->forms[n]->key->name, .choice = 1 };
         row[n].key = &first[n];
     }
@@ -266,14 +266,15 @@ static void preset_number(const struct key *k, void *member)
 }
 
 #define NUMBER(words, schema, range)                                                               \
-    {                                                                                              \
-        words, "{'type': 'number'" schema "}", read_number, preset_number, NULL, range             \
-    }
+    words, "{'type': 'number'" schema "}", read_number, preset_number, NULL, range
 
-const struct key_type key_number = NUMBER("number", "", J_ANY);
-const struct key_type key_positive = NUMBER("number > 0", ", 'exclusiveMinimum': 0", J_POSITIVE);
-const struct key_type key_not_negative = NUMBER("number >= 0", ", 'minimum': 0", J_NOT_NEGATIVE);
-const struct key_type key_share = NUMBER("number 0 to 1", ", 'minimum': 0, 'maximum': 1", J_UNIT);
+const struct key_type key_number = { NUMBER("number", "", J_ANY) };
+const struct key_type key_positive = { NUMBER("number > 0", ", 'exclusiveMinimum': 0",
+                                              J_POSITIVE) };
+const struct key_type key_not_negative = { NUMBER("number >= 0", ", 'minimum': 0",
+                                                  J_NOT_NEGATIVE) };
+const struct key_type key_share = { NUMBER("number 0 to 1", ", 'minimum': 0, 'maximum': 1",
+                                           J_UNIT) };
 
 static int read_integer(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -391,10 +392,11 @@ int keys_read_rows(jnode list, double *row)
     return 0;
 }
 
-const struct key_type key_lengths = ARRAY("vector", &key_positive, 0, sizeof(double));
-const struct key_type key_two_positive = ARRAY("two numbers > 0", &key_positive, 2, sizeof(double));
-const struct key_type key_min_max = ARRAY("[min, max]", &key_positive, 2, sizeof(double));
-const struct key_type key_matrix = ARRAY("MATRIX", &key_vector, 0, sizeof(vec3));
+const struct key_type key_lengths = { ARRAY("vector", &key_positive, 0, sizeof(double)) };
+const struct key_type key_two_positive = { ARRAY("two numbers > 0", &key_positive, 2,
+                                                 sizeof(double)) };
+const struct key_type key_min_max = { ARRAY("[min, max]", &key_positive, 2, sizeof(double)) };
+const struct key_type key_matrix = { ARRAY("MATRIX", &key_vector, 0, sizeof(vec3)) };
 
 static int read_object(jnode n, const struct key *k, struct scene *s, void *member)
 {

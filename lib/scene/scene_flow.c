@@ -70,7 +70,10 @@ static const struct key pour_key[] = {
       .choice = 1 },
     { "opening", &key_object, 0, "m", REQUIRED, "{\"box\": BOX}", "Region in which centres appear.",
       .object = &opening_keys },
-    GRAIN_ROWS(struct scene_pour),
+    { RADIUS_OF(struct scene_pour) },
+    { SIZE_OF(struct scene_pour) },
+    { SHAPE_OF(struct scene_pour) },
+    { ORIENTATION_OF(struct scene_pour) },
     { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
     { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
     { "name", &key_group, AT(group), "-", "none", "\"charge\"",
@@ -176,8 +179,8 @@ static const struct key removal_key[] = {
       "Remove bodies of this group only. It is the name of a group of bodies or of a pour; "
       "another name is an error.",
       .some = true },
-    FROM_AND_UNTIL("Time of the first removals: steps that begin earlier remove nothing.",
-                   "Time of the last removals."),
+    { FROM("Time of the first removals: steps that begin earlier remove nothing.") },
+    { UNTIL("Time of the last removals.") },
     { "removed", &key_object, AT(removed), "-", "none", "see below",
       "Number and mass of the bodies that were removed before the scene begins, as {\"bodies\": "
       "3, \"mass\": 0.1}.",

@@ -221,7 +221,7 @@ struct pair {
 #undef AT
 #define AT(member) offsetof(struct pair, member)
 
-static const struct key_type key_two_kinds = ARRAY("two kinds", &key_kind, 2, sizeof(int32_t));
+static const struct key_type key_two_kinds = { ARRAY("two kinds", &key_kind, 2, sizeof(int32_t)) };
 
 static const struct key pair_key[] = {
     { "pair", &key_two_kinds, AT(kind), "-", REQUIRED, "[\"steel\", \"ball\"]", "The two kinds." },
@@ -307,7 +307,7 @@ static int read_face(jnode n, const struct key *k, struct scene *s, void *member
 static const struct key_type key_face = {
     "integer", "{'type': 'integer', 'minimum': 0, 'maximum': 2147483646}", read_face
 };
-const struct key_type key_faces = ARRAY("[first, last]", &key_face, 2, sizeof(int64_t));
+const struct key_type key_faces = { ARRAY("[first, last]", &key_face, 2, sizeof(int64_t)) };
 
 int scene_check_faces(jnode o, const int64_t face[2])
 {

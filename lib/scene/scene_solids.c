@@ -434,8 +434,8 @@ struct superquadric {
     int64_t segments;   /* 0: the default */
 };
 
-static const struct key_type key_exponents =
-    ARRAY("[n, m]; 2D: [n]", &key_number, -1, sizeof(double));
+static const struct key_type key_exponents = { ARRAY("[n, m]; 2D: [n]", &key_number, -1,
+                                                     sizeof(double)) };
 
 static const struct key superquadric_key[] = {
     { "radii", &key_lengths, offsetof(struct superquadric, radii), "m", REQUIRED,

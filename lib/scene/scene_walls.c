@@ -192,15 +192,11 @@ static int scene_walls_read_materials(jnode a, struct scene *s, void *out)
 
 /* The row of a shape, for scenes of one dimension or of both (0), whose own keys are of struct wall */
 #define SHAPE(name, help, dim_)                                                                    \
-    {                                                                                              \
-#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                      \
-            .choice = 1, .dim = (dim_), .object = &scene_##name##_keys                             \
-    }
+#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                          \
+        .choice = 1, .dim = (dim_), .object = &scene_##name##_keys
 #define SHAPE_READ(name, help, dim_)                                                               \
-    {                                                                                              \
-#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                      \
-            .choice = 1, .dim = (dim_), .object = &scene_##name##_keys, .read = scene_read_##name  \
-    }
+#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                          \
+        .choice = 1, .dim = (dim_), .object = &scene_##name##_keys, .read = scene_read_##name
 
 static const struct key_type key_drives = { "array",
                                             "{'type': 'array', 'items': {'$ref': 'drive'}}",
@@ -216,15 +212,15 @@ static const struct key wall_key[] = {
       .choice = 1 },
     { "segment", &key_segment, AT(w), "m", "-", "2D", "A segment between two points.", .choice = 1,
       .dim = 2, .read = scene_read_segment },
-    SHAPE_READ(polygon, "A chain of segments.", 2),
-    SHAPE(circle, "A circle.", 2),
-    SHAPE(arc, "An arc of a circle.", 2),
-    SHAPE(rectangle, "A rectangle.", 3),
-    SHAPE(disc, "A disc, perhaps with an orifice.", 3),
-    SHAPE(cylinder, "The lateral surface of a cylinder.", 3),
-    SHAPE(cone, "The lateral surface of a cone.", 3),
-    SHAPE(sphere, "A sphere.", 3),
-    SHAPE_READ(mesh, "The triangles of a file.", 3),
+    { SHAPE_READ(polygon, "A chain of segments.", 2) },
+    { SHAPE(circle, "A circle.", 2) },
+    { SHAPE(arc, "An arc of a circle.", 2) },
+    { SHAPE(rectangle, "A rectangle.", 3) },
+    { SHAPE(disc, "A disc, perhaps with an orifice.", 3) },
+    { SHAPE(cylinder, "The lateral surface of a cylinder.", 3) },
+    { SHAPE(cone, "The lateral surface of a cone.", 3) },
+    { SHAPE(sphere, "A sphere.", 3) },
+    { SHAPE_READ(mesh, "The triangles of a file.", 3) },
     { "name", &key_name, AT(name), "-", "none", "\"floor\"",
       "Name of the wall, for a box that of all of its sides, see Names." },
     { "velocity", &key_vector, AT(w.v), "m/s", "0", "[0, 0, -0.01]", "Constant velocity." },

@@ -107,8 +107,7 @@ static void resolve(struct schema *to, json_t *j, const struct keys *table)
 {
     const char *key;
     json_t *value;
-    size_t i;
-    json_array_foreach(j, i, value) resolve(to, value, table);
+    for (size_t i = 0; i < json_array_size(j); i++) resolve(to, json_array_get(j, i), table);
     json_object_foreach(j, key, value)
     {
         resolve(to, value, table);
