@@ -173,15 +173,18 @@ static json_t *bare_value(struct schema *to, const struct key *k)
 }
 
 /* What stands in the table, where it is JSON */
-static json_t *literal(const char *text)
+static json_t *literal(struct schema *to, const char *text)
 {
-    return text ? json_loads(text, JSON_DECODE_ANY, NULL) : NULL;
+    json_error_t e;
+    json_t *j = text ? json_loads(text, JSON_DECODE_ANY, &e) : NULL;
+    if (text && !j && json_error_code(&e) == json_error_out_of_memory) to->bad = true;
+    return j;
 }
 
 static json_t *value_of(struct schema *to, const struct key *k)
 {
-    json_t *j = bare_value(to, k), *standard = literal(k->otherwise),
-           *example = literal(k->example);
+    json_t *j = bare_value(to, k), *standard = literal(to, k->otherwise),
+           *example = literal(to, k->example);
     const bool unit = k->unit && *k->unit && strcmp(k->unit, "-") != 0;
     if (!k->type->item && (k->least != 0 || k->most != 0 || k->type == &key_integer)) {
         put(to, j, "minimum",

@@ -30,7 +30,7 @@ echo '{ "dt": 1e-3, "shapes": { "stone": { "mesh": { "file": "stone.obj" } } }, 
 jq '.shapes.stone.clump = {balls: 3}' "$tmp/stone.json" >"$tmp/clump.json"
 nsd-export --to data -o "$tmp/four.data" "$tmp/solved.h5"
 nsd-export --to ondem -o "$tmp/four.vtkhdf" "$tmp/solved.h5"
-commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-gen $tmp/clump.json" "nsd-gen --from $tmp/four.data" "nsd-gen --from $tmp/four.vtkhdf"
+commands=("nsd-gen 20" "nsd-gen --schema" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-gen $tmp/clump.json" "nsd-gen --from $tmp/four.data" "nsd-gen --from $tmp/four.vtkhdf"
     "nsd-export --to ondem $tmp/solved.h5" "nsd-export --to gsd $tmp/solved.h5" "nsd-cat --vtk all $tmp/run.h5" "nsd-info $tmp/solved.h5" "nsd-info $tmp/foreign.h5" "nsd-cat $tmp/solved.h5"
     "nsd-cat --steps 402:403 $tmp/run.h5" "nsd-err $tmp/solved.h5" "nsd-move $tmp/solved.h5" "nsd-detect --fclib=local $tmp/solved.h5"
     "nsd-detect --fclib=global $tmp/solved.h5" "nsd-view --size 32x32 $tmp/solved.h5" "nsd-view --network --size 300x300 $tmp/solved.h5"
