@@ -300,7 +300,7 @@ static const struct keys *const forms[] = {
 };
 const struct keys scene_bodies_keys = { "bodies", .forms = forms };
 
-static int read_group(jnode o, struct scene *s, void *out)
+static int scene_bodies_read_group(jnode o, struct scene *s, void *out)
 {
     int64_t *total = out;
     struct scene_bodies *b = &s->bodies[s->groups++];
@@ -316,5 +316,5 @@ int scene_read_bodies(jnode a, struct scene *s, void *out)
     int64_t total = 0;
     (void)out;
     if (!(s->bodies = scene_alloc(a, json_array_size(a.json), sizeof *s->bodies))) return 1;
-    return keys_each(a, s, &total, read_group);
+    return keys_each(a, s, &total, scene_bodies_read_group);
 }

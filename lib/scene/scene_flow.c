@@ -19,7 +19,7 @@ static const struct keys count_keys = { "count", count_key };
 
 #define AT(member) offsetof(struct scene_pour, member)
 
-static const struct key disc_key[] = {
+static const struct key opening_disc_key[] = {
     { "center", &key_vector, AT(center), "m", REQUIRED, "[0, 0, 1]", "Centre." },
     { "normal", &key_direction, AT(normal), "-", REQUIRED, "[0, 0, 1]", "Direction of its axis." },
     { "radius", &key_positive, AT(radius), "m", REQUIRED, "0.1", "Radius." },
@@ -33,12 +33,13 @@ static int finish_disc(jnode o, struct scene *s, void *out)
     return 0;
 }
 
-static const struct keys disc_keys = { "opening_disc", disc_key, .finish = finish_disc };
+static const struct keys opening_disc_keys = { "opening_disc", opening_disc_key,
+                                               .finish = finish_disc };
 
 static const struct key opening_key[] = {
     { "box", &key_box, AT(box), "m", "-", "{\"x\": [0, 1], ...}", "A closed box.", .choice = 1 },
     { "disc", &key_object, 0, "-", "-", "{\"center\": ...}", "A disc; in 2D a segment.",
-      .choice = 1, .object = &disc_keys },
+      .choice = 1, .object = &opening_disc_keys },
     { 0 },
 };
 

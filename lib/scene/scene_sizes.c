@@ -184,7 +184,7 @@ static int finish_size(jnode o, struct scene *s, void *out)
 
 static const struct keys size_keys = { "size", size_key, .finish = finish_size };
 
-static int read_size(jnode n, const struct key *k, struct scene *s, void *member)
+static int scene_sizes_read_size(jnode n, const struct key *k, struct scene *s, void *member)
 {
     struct scene_size *z = member;
     (void)k;
@@ -198,6 +198,6 @@ static int read_size(jnode n, const struct key *k, struct scene *s, void *member
 }
 
 const struct key_type key_size = {
-    "SIZE", "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'size'}]}", read_size,
-    NULL, &size_keys
+    "SIZE", "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'size'}]}",
+    scene_sizes_read_size, NULL, &size_keys
 };

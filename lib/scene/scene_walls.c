@@ -145,14 +145,14 @@ static int add_box(jnode o, struct scene *s, const struct wall_read *r)
 
 /* ---- faces that are of another kind, or move along themselves otherwise ---- */
 
-struct material {
+struct material_read {
     int64_t face[2];
     int32_t kind;
     vec3 belt;
 };
 
 #undef AT
-#define AT(member) offsetof(struct material, member)
+#define AT(member) offsetof(struct material_read, member)
 
 static const struct key material_key[] = {
     { "faces", &key_faces, AT(face), "-", REQUIRED, "[0, 11]",
@@ -167,7 +167,7 @@ static const struct keys material_keys = { "materials", material_key };
 static int read_material(jnode o, struct scene *s, void *out)
 {
     const struct wall *w = out;
-    struct material m = { .kind = w->kind, .belt = w->belt };
+    struct material_read m = { .kind = w->kind, .belt = w->belt };
     if (keys_read(o, &material_keys, s, &m) || scene_check_faces(o, m.face)) return 1;
     struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
     if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for parts of a surface");
