@@ -365,16 +365,30 @@ static bool schema_is_new(struct seen *seen, const struct keys *t)
     return true;
 }
 
+/* As the manual has it: with the range of a number, or with the words if there are two that are short */
+static void type_words(char *out, size_t room, const struct key *k)
+{
+    const char *const *word = k->words, *name = k->type == &key_integer ? "integer" : "number";
+    const bool ranged = !k->type->item && (k->least != 0 || k->most != 0);
+    const bool open = !(k->most < INT32_MAX);
+    snprintf(out, room, "%s", k->type->words);
+    if (word && word[1] && !word[2] && strlen(word[0]) + strlen(word[1]) < 10)
+        snprintf(out, room, "\"%s\" or \"%s\"", word[0], word[1]);
+    else if (ranged && open)
+        snprintf(out, room, "%s >= %g", name, k->least);
+    else if (ranged && k->least > -1e9)
+        snprintf(out, room, k->type == &key_integer ? "%s %.0f to %.0f" : "%s %g to %.3g", name,
+                 k->least, k->most);
+}
+
 static void table_lines(struct seen *seen, const struct keys *t,
                         void (*line)(const char *const field[7]))
 {
     if (!t || !schema_is_new(seen, t)) return;
     for (int i = 0; t->forms && t->forms[i]; i++) table_lines(seen, t->forms[i], line);
     for (const struct key *k = t->key; k && k->name; k++) {
-        char two[60];
-        const char *type = k->type->words, *const *word = k->words;
-        if (word && word[1] && !word[2] && strlen(word[0]) + strlen(word[1]) < 10)
-            snprintf(two, sizeof two, "\"%s\" or \"%s\"", word[0], word[1]), type = two;
+        char type[60];
+        type_words(type, sizeof type, k);
         const char *const field[7] = { t->name,      k->name,    type,   k->unit,
                                        k->otherwise, k->example, k->help };
         if (k->type != &key_include) line(field);
