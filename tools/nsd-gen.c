@@ -376,8 +376,10 @@ static int print_keys(void)
     } else {
         json_t *j = schema_of_scenes(&failure);
         if (!j) die_why(&failure);
-        json_dumpf(j, stdout, JSON_INDENT(2)), putchar('\n');
-        json_decref(j);
+        char *text = json_dumps(j, JSON_INDENT(2));
+        if (!text) die(EX_SOFTWARE, "no memory for the schema");
+        puts(text);
+        free(text), json_decref(j);
     }
     if (fflush(stdout) || ferror(stdout)) die(EX_IOERR, "standard output: %s", strerror(errno));
     return 0;

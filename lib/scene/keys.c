@@ -160,7 +160,7 @@ static int unknown_key(jnode o, const char *key, const struct row *row, int n)
     return json_node_fault(json_node_key(&o, key), "unknown key; known here: %s", names);
 }
 
-static int check_names(jnode o, const struct row *row, int n)
+static int keys_check_names(jnode o, const struct row *row, int n)
 {
     const char *key;
     json_t *value;
@@ -186,7 +186,7 @@ static int check_object(jnode o, const struct row *row, int n)
 {
     if (check_choice(o, row, n, 1) || check_choice(o, row, n, 2)) return 1;
     if (!json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
-    return check_names(o, row, n) || check_some(o, row, n);
+    return keys_check_names(o, row, n) || check_some(o, row, n);
 }
 
 /* ---- reading ---- */
@@ -197,7 +197,7 @@ static const struct keys *form_of(jnode o, const struct keys *t)
     struct row row[ROWS_MOST] = { 0 };
     struct key first[ROWS_MOST];
     int n = 0;
-    for (; t->forms[n] && n < ROWS_MOST; n++) {
+    for (; n < ROWS_MOST && t->forms[n]; n++) {
         first[n] = (struct key){ .name = t->forms[n]->key->name, .choice = 1 };
         row[n].key = &first[n];
     }
@@ -247,7 +247,7 @@ int keys_each(jnode a, struct scene *s, void *out, int (*read)(jnode n, struct s
 
 const struct key_type key_include = { .words = "keys" };
 
-static int read_number(jnode n, const struct key *k, struct scene *s, void *member)
+static int keys_read_number(jnode n, const struct key *k, struct scene *s, void *member)
 {
     double *x = member;
     (void)s;
@@ -266,14 +266,15 @@ static void preset_number(const struct key *k, void *member)
 }
 
 #define NUMBER(words, schema, range)                                                               \
-    {                                                                                              \
-        words, "{'type': 'number'" schema "}", read_number, preset_number, NULL, range             \
-    }
+    words, "{'type': 'number'" schema "}", keys_read_number, preset_number, NULL, range
 
-const struct key_type key_number = NUMBER("number", "", J_ANY);
-const struct key_type key_positive = NUMBER("number > 0", ", 'exclusiveMinimum': 0", J_POSITIVE);
-const struct key_type key_not_negative = NUMBER("number >= 0", ", 'minimum': 0", J_NOT_NEGATIVE);
-const struct key_type key_share = NUMBER("number 0 to 1", ", 'minimum': 0, 'maximum': 1", J_UNIT);
+const struct key_type key_number = { NUMBER("number", "", J_ANY) };
+const struct key_type key_positive = { NUMBER("number > 0", ", 'exclusiveMinimum': 0",
+                                              J_POSITIVE) };
+const struct key_type key_not_negative = { NUMBER("number >= 0", ", 'minimum': 0",
+                                                  J_NOT_NEGATIVE) };
+const struct key_type key_share = { NUMBER("number 0 to 1", ", 'minimum': 0, 'maximum': 1",
+                                           J_UNIT) };
 
 static int read_integer(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -305,13 +306,13 @@ static void preset_bool(const struct key *k, void *member)
 
 const struct key_type key_bool = { "true or false", "{'type': 'boolean'}", read_bool, preset_bool };
 
-static int read_text(jnode n, const struct key *k, struct scene *s, void *member)
+static int keys_read_text(jnode n, const struct key *k, struct scene *s, void *member)
 {
     (void)k, (void)s;
     return json_node_text(n, member);
 }
 
-const struct key_type key_text = { "string", "{'type': 'string'}", read_text, NULL };
+const struct key_type key_text = { "string", "{'type': 'string'}", keys_read_text, NULL };
 
 static int read_file(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -326,15 +327,15 @@ static int read_file(jnode n, const struct key *k, struct scene *s, void *member
 
 const struct key_type key_file = { "string", "{'type': 'string'}", read_file, NULL };
 
-static int read_word(jnode n, const struct key *k, struct scene *s, void *member)
+static int keys_read_word(jnode n, const struct key *k, struct scene *s, void *member)
 {
     (void)s;
     return json_node_word(n, k->words, member);
 }
 
-const struct key_type key_word = { "string", NULL, read_word, NULL };
+const struct key_type key_word = { "string", NULL, keys_read_word, NULL };
 
-static int read_vector(jnode n, const struct key *k, struct scene *s, void *member)
+static int keys_read_vector(jnode n, const struct key *k, struct scene *s, void *member)
 {
     vec3 *v = member;
     if (json_node_vector(n, s->dim, v)) return 1;
@@ -348,13 +349,13 @@ static int read_vector(jnode n, const struct key *k, struct scene *s, void *memb
     return 0;
 }
 
-const struct key_type key_vector = { "vector", "{'$ref': 'vector'}", read_vector, NULL };
-const struct key_type key_direction = { "vector", "{'$ref': 'direction'}", read_vector, NULL };
+const struct key_type key_vector = { "vector", "{'$ref': 'vector'}", keys_read_vector, NULL };
+const struct key_type key_direction = { "vector", "{'$ref': 'direction'}", keys_read_vector, NULL };
 
 static int read_spin(jnode n, const struct key *k, struct scene *s, void *member)
 {
     vec3 *w = member;
-    return s->dim == 2 ? json_node_number(n, J_ANY, &w->z) : read_vector(n, k, s, member);
+    return s->dim == 2 ? json_node_number(n, J_ANY, &w->z) : keys_read_vector(n, k, s, member);
 }
 
 const struct key_type key_spin = { "vector; 2D: number", "{'$ref': 'spin'}", read_spin, NULL };
@@ -391,10 +392,11 @@ int keys_read_rows(jnode list, double *row)
     return 0;
 }
 
-const struct key_type key_lengths = ARRAY("vector", &key_positive, 0, sizeof(double));
-const struct key_type key_two_positive = ARRAY("two numbers > 0", &key_positive, 2, sizeof(double));
-const struct key_type key_min_max = ARRAY("[min, max]", &key_positive, 2, sizeof(double));
-const struct key_type key_matrix = ARRAY("MATRIX", &key_vector, 0, sizeof(vec3));
+const struct key_type key_lengths = { ARRAY("vector", &key_positive, 0, sizeof(double)) };
+const struct key_type key_two_positive = { ARRAY("two numbers > 0", &key_positive, 2,
+                                                 sizeof(double)) };
+const struct key_type key_min_max = { ARRAY("[min, max]", &key_positive, 2, sizeof(double)) };
+const struct key_type key_matrix = { ARRAY("MATRIX", &key_vector, 0, sizeof(vec3)) };
 
 static int read_object(jnode n, const struct key *k, struct scene *s, void *member)
 {

@@ -29,10 +29,9 @@ struct key_type {
     int count;                   /* of items; 0: that of dimensions, below 0: less by so many */
     size_t size;                 /* bytes of an item */
 };
+/* In braces: an initializer of such a type */
 #define ARRAY(words, item, count, size)                                                            \
-    {                                                                                              \
-        words, NULL, keys_read_array, NULL, NULL, J_ANY, item, count, size                         \
-    }
+    words, NULL, keys_read_array, NULL, NULL, J_ANY, item, count, size
 int keys_read_array(jnode n, const struct key *k, struct scene *s, void *member);
 static inline int keys_count(const struct key_type *array, int dim)
 {
@@ -52,12 +51,11 @@ struct key {
     bool some;           /* at least one of the keys with this mark is given */
     const char *with;    /* only beside one of these keys */
     const char *without; /* only beside none of these */
-    const char *
-        why; /* what it is reported with where it is not allowed; NULL: what it goes with, or does not */
-    const char *needed;        /* needed beside one of these keys */
-    const char *unless;        /* REQUIRED: not beside one of these */
-    double least, most;        /* of a number or an integer; both 0: as its type has it */
-    const char *limit;         /* what a number beyond these is reported with; NULL: the range */
+    const char *why;     /* the message where it is not allowed; NULL: what it goes with */
+    const char *needed;  /* needed beside one of these keys */
+    const char *unless;  /* REQUIRED: not beside one of these */
+    double least, most;  /* of a number or an integer; both 0: as its type has it */
+    const char *limit;   /* what a number beyond these is reported with; NULL: the range */
     const char *const *words;  /* of a key_word, NULL ends them */
     const struct keys *object; /* of an object, or of the items of a list or of a map */
     int (*read)(jnode n, struct scene *s, void *member); /* in place of the type's */
@@ -67,11 +65,11 @@ struct key {
 struct keys {
     const char *name;      /* in the schema and in the manual */
     const struct key *key; /* rows; one without a name ends them */
-    const struct keys *const
-        *forms; /* instead of rows: one of these, by the first key of each; NULL ends them */
+    /* instead of rows: one of these, by the first key of each; NULL ends them */
+    const struct keys *const *forms;
     bool keeps; /* a key that is not given leaves what its member has, not the default */
-    int (*finish)(jnode o, struct scene *s,
-                  void *out); /* checks of several keys, and what follows from them; or NULL */
+    /* checks of several keys, and what follows from them; or NULL */
+    int (*finish)(jnode o, struct scene *s, void *out);
 };
 
 /* Reads an object. Returns 0, or not 0 after a fault has been reported. */

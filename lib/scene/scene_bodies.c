@@ -84,7 +84,8 @@ static const struct key one_key[] = {
       "Radius; not required with a shape.", .unless = "shape" },
     { "size", &key_positive, AT(size.min), "-", "1", "2", "Scale factor of the shape.",
       .with = "shape", .without = "radius", .why = "a radius is given too" },
-    SHAPE_ROWS(struct scene_bodies),
+    { SHAPE_OF(struct scene_bodies) },
+    { ORIENTATION_OF(struct scene_bodies) },
     { "", &key_include, 0, .object = &group_keys },
     { 0 },
 };
@@ -116,7 +117,10 @@ static int read_cells(jnode n, struct scene *s, void *member)
 static const struct key lattice_key[] = {
     { "count", &key_integer, AT(count), "-", REQUIRED, "500", "Number of bodies.",
       .most = INT32_MAX },
-    GRAIN_ROWS(struct scene_bodies),
+    { RADIUS_OF(struct scene_bodies) },
+    { SIZE_OF(struct scene_bodies) },
+    { SHAPE_OF(struct scene_bodies) },
+    { ORIENTATION_OF(struct scene_bodies) },
     { "box", &key_box, AT(box), "m", "cell, wall", "{\"x\": [0, 1], ...}",
       "Region to fill; only its last axis may be open above. Default: the periodic cell, in rows "
       "along its edges; otherwise the first wall that is a box." },
@@ -173,7 +177,10 @@ static const struct keys how_keys = { "random", how_key };
 static const struct key random_key[] = {
     { "random", &key_object, 0, "-", REQUIRED, "{\"phi\": 0.5}", "How many bodies.",
       .object = &how_keys },
-    GRAIN_ROWS(struct scene_bodies),
+    { RADIUS_OF(struct scene_bodies) },
+    { SIZE_OF(struct scene_bodies) },
+    { SHAPE_OF(struct scene_bodies) },
+    { ORIENTATION_OF(struct scene_bodies) },
     { "box", &key_box, AT(box), "m", "the cell", "{\"x\": [0, 1], ...}",
       "Closed box. Default: the periodic cell, of any size and shape; bodies and their images "
       "fill it across its border." },
@@ -221,25 +228,17 @@ static int finish_table(jnode o, struct scene *s, void *out)
 
 static const struct keys table_keys = { "table", table_key, .finish = finish_table };
 
-#define FRAME_ROWS                                                                                 \
-    { "frame",                                                                                     \
-      &key_integer,                                                                                \
-      AT(frame),                                                                                   \
-      "-",                                                                                         \
-      "-1",                                                                                        \
-      "10",                                                                                        \
-      "Frame, counted from 0, or from the end: -1 is the last.",                                   \
-      .least = -1000000000,                                                                        \
-      .most = 1000000000 },                                                                        \
-    {                                                                                              \
-        "at_rest", &key_bool, AT(at_rest), "-", "false", "true", "Set all velocities to 0."        \
-    }
+#define FRAME                                                                                      \
+    "frame", &key_integer, AT(frame), "-", "-1", "10",                                             \
+        "Frame, counted from 0, or from the end: -1 is the last.", .least = -1e9, .most = 1e9
+#define AT_REST "at_rest", &key_bool, AT(at_rest), "-", "false", "true", "Set all velocities to 0."
 
 static const struct key document_key[] = {
     { "document", &key_file, AT(file), "-", REQUIRED, "\"settled.h5\"",
       "Document (nsd-format(5)) whose bodies are taken with their motion, radii, masses, ids and "
       "the names of their kinds, which the scene must define, too." },
-    FRAME_ROWS,
+    { FRAME },
+    { AT_REST },
     { "", &key_include, 0, .object = &group_keys },
     { 0 },
 };
@@ -281,7 +280,8 @@ static const struct key_type key_types = { "object", "{'$ref': 'types'}", NULL, 
 static const struct key import_key[] = {
     { "import", &key_file, AT(file), "-", REQUIRED, "\"start.data\"",
       "File, see Files of other programs." },
-    FRAME_ROWS,
+    { FRAME },
+    { AT_REST },
     { "types", &key_types, 0, "-", "by name", "{\"1\": \"glass\"}",
       "Kind for each type of the file. Default: the kind of the same name; ball where the file "
       "has one type.",
@@ -300,7 +300,7 @@ static const struct keys *const forms[] = {
 };
 const struct keys scene_bodies_keys = { "bodies", .forms = forms };
 
-static int read_group(jnode o, struct scene *s, void *out)
+static int scene_bodies_read_group(jnode o, struct scene *s, void *out)
 {
     int64_t *total = out;
     struct scene_bodies *b = &s->bodies[s->groups++];
@@ -316,5 +316,5 @@ int scene_read_bodies(jnode a, struct scene *s, void *out)
     int64_t total = 0;
     (void)out;
     if (!(s->bodies = scene_alloc(a, json_array_size(a.json), sizeof *s->bodies))) return 1;
-    return keys_each(a, s, &total, read_group);
+    return keys_each(a, s, &total, scene_bodies_read_group);
 }

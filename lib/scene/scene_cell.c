@@ -32,7 +32,7 @@ static int read_lengths(jnode n, struct scene *s, void *member)
     return 0;
 }
 
-const struct key_type key_repeats = ARRAY("true or false", &key_bool, 0, sizeof(bool));
+const struct key_type key_repeats = { ARRAY("true or false", &key_bool, 0, sizeof(bool)) };
 
 /* ---- the gradient ---- */
 

@@ -57,24 +57,18 @@ int scene_check_span(jnode o, double from, double until)
 
 static const struct key_type key_rows = { "array of pairs", "{'$ref': 'rows'}", NULL, NULL };
 
-#define SINE(choice_, unit)                                                                        \
-    { "amplitude",                                                                                 \
-      &key_number,                                                                                 \
-      AT(d.value),                                                                                 \
-      unit,                                                                                        \
-      "-",                                                                                         \
-      "1e-3",                                                                                      \
-      "Amplitude of amplitude sin(2 pi frequency t + phase).",                                     \
-      .choice = choice_ },                                                                         \
-        { "frequency", &key_not_negative,      AT(d.frequency),    "Hz", REQUIRED,                 \
-          "20",        "Frequency of a sine.", .with = "amplitude" },                              \
-        { "phase", &key_number, AT(d.phase),        "rad",                                         \
-          "0",     "1.57",      "Phase of a sine.", .with = "amplitude" },                         \
-    {                                                                                              \
-        "table", &key_rows, 0, "s", "-", "[[0, 0], [1, 0.1]]",                                     \
-            "[t, value], linear between the rows and constant before and after.",                  \
-            .choice = choice_, .read = scene_drives_read_table                                     \
-    }
+#define AMPLITUDE(choice_, unit)                                                                   \
+    "amplitude", &key_number, AT(d.value), unit, "-", "1e-3",                                      \
+        "Amplitude of amplitude sin(2 pi frequency t + phase).", .choice = (choice_)
+#define FREQUENCY                                                                                  \
+    "frequency", &key_not_negative, AT(d.frequency), "Hz", REQUIRED, "20", "Frequency of a sine.", \
+        .with = "amplitude"
+#define PHASE                                                                                      \
+    "phase", &key_number, AT(d.phase), "rad", "0", "1.57", "Phase of a sine.", .with = "amplitude"
+#define TABLE(choice_)                                                                             \
+    "table", &key_rows, 0, "s", "-", "[[0, 0], [1, 0.1]]",                                         \
+        "[t, value], linear between the rows and constant before and after.",                      \
+        .choice = (choice_), .read = scene_drives_read_table
 
 /* ---- the motion of a wall ---- */
 
@@ -87,7 +81,10 @@ static const struct key drive_key[] = {
       "Direction of the axis; not in 2D.", .with = "about", .dim = 3 },
     { "speed", &key_number, AT(d.value), "m/s, rad/s", "-", "1.5",
       "Displacement speed (t - from); from is 0 by default.", .choice = 2 },
-    SINE(2, "m, rad"),
+    { AMPLITUDE(2, "m, rad") },
+    { FREQUENCY },
+    { PHASE },
+    { TABLE(2) },
     { "from", &key_number, AT(d.from), "s", "-infinity", "0.3",
       "Start of the drive; before it the displacement has its value of this time." },
     { "until", &key_number, AT(d.until), "s", "infinity", "2",
@@ -141,7 +138,10 @@ int scene_read_drives(jnode a, struct scene *s)
 /* ---- a load in time ---- */
 
 static const struct key signal_key[] = {
-    SINE(1, "N"),
+    { AMPLITUDE(1, "N") },
+    { FREQUENCY },
+    { PHASE },
+    { TABLE(1) },
     { "mean", &key_number, AT(mean), "N", "0", "5", "Is added." },
     { 0 },
 };
@@ -236,8 +236,8 @@ static const struct key force_key[] = {
     { "about", &key_direction, AT(axis), "-", REQUIRED, "[0, 0, 1]",
       "Direction of the axis of the torque, through the centre of mass; not in 2D.",
       .with = "torque", .dim = 3 },
-    FROM_AND_UNTIL("Start; before it the force or torque is 0.",
-                   "End; after it the force or torque is 0."),
+    { FROM("Start; before it the force or torque is 0.") },
+    { UNTIL("End; after it the force or torque is 0.") },
     { 0 },
 };
 

@@ -19,7 +19,7 @@ static const struct keys count_keys = { "count", count_key };
 
 #define AT(member) offsetof(struct scene_pour, member)
 
-static const struct key disc_key[] = {
+static const struct key opening_disc_key[] = {
     { "center", &key_vector, AT(center), "m", REQUIRED, "[0, 0, 1]", "Centre." },
     { "normal", &key_direction, AT(normal), "-", REQUIRED, "[0, 0, 1]", "Direction of its axis." },
     { "radius", &key_positive, AT(radius), "m", REQUIRED, "0.1", "Radius." },
@@ -33,12 +33,13 @@ static int finish_disc(jnode o, struct scene *s, void *out)
     return 0;
 }
 
-static const struct keys disc_keys = { "opening_disc", disc_key, .finish = finish_disc };
+static const struct keys opening_disc_keys = { "opening_disc", opening_disc_key,
+                                               .finish = finish_disc };
 
 static const struct key opening_key[] = {
     { "box", &key_box, AT(box), "m", "-", "{\"x\": [0, 1], ...}", "A closed box.", .choice = 1 },
     { "disc", &key_object, 0, "-", "-", "{\"center\": ...}", "A disc; in 2D a segment.",
-      .choice = 1, .object = &disc_keys },
+      .choice = 1, .object = &opening_disc_keys },
     { 0 },
 };
 
@@ -70,7 +71,10 @@ static const struct key pour_key[] = {
       .choice = 1 },
     { "opening", &key_object, 0, "m", REQUIRED, "{\"box\": BOX}", "Region in which centres appear.",
       .object = &opening_keys },
-    GRAIN_ROWS(struct scene_pour),
+    { RADIUS_OF(struct scene_pour) },
+    { SIZE_OF(struct scene_pour) },
+    { SHAPE_OF(struct scene_pour) },
+    { ORIENTATION_OF(struct scene_pour) },
     { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
     { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
     { "name", &key_group, AT(group), "-", "none", "\"charge\"",
@@ -176,8 +180,8 @@ static const struct key removal_key[] = {
       "Remove bodies of this group only. It is the name of a group of bodies or of a pour; "
       "another name is an error.",
       .some = true },
-    FROM_AND_UNTIL("Time of the first removals: steps that begin earlier remove nothing.",
-                   "Time of the last removals."),
+    { FROM("Time of the first removals: steps that begin earlier remove nothing.") },
+    { UNTIL("Time of the last removals.") },
     { "removed", &key_object, AT(removed), "-", "none", "see below",
       "Number and mass of the bodies that were removed before the scene begins, as {\"bodies\": "
       "3, \"mass\": 0.1}.",

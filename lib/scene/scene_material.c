@@ -13,7 +13,7 @@ static int32_t find_kind(const struct scene *s, const char *name)
     return -1;
 }
 
-static int read_kind(jnode n, const struct key *k, struct scene *s, void *member)
+static int scene_material_read_kind(jnode n, const struct key *k, struct scene *s, void *member)
 {
     const char *name = NULL;
     int32_t *kind = member;
@@ -23,7 +23,7 @@ static int read_kind(jnode n, const struct key *k, struct scene *s, void *member
     return *kind < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
 }
 
-const struct key_type key_kind = { "string", "{'type': 'string'}", read_kind, NULL };
+const struct key_type key_kind = { "string", "{'type': 'string'}", scene_material_read_kind, NULL };
 
 /* "kinds" */
 
@@ -251,16 +251,16 @@ const struct keys scene_law_keys = { "law", law_key, .finish = finish_law };
 
 /* ---- "pairs" ---- */
 
-struct pair {
+struct pair_read {
     int32_t kind[2];
     bool acts;
     struct scene_law law;
 };
 
 #undef AT
-#define AT(member) offsetof(struct pair, member)
+#define AT(member) offsetof(struct pair_read, member)
 
-static const struct key_type key_two_kinds = ARRAY("two kinds", &key_kind, 2, sizeof(int32_t));
+static const struct key_type key_two_kinds = { ARRAY("two kinds", &key_kind, 2, sizeof(int32_t)) };
 
 static const struct key pair_key[] = {
     { "pair", &key_two_kinds, AT(kind), "-", REQUIRED, "[\"steel\", \"ball\"]", "The two kinds." },
@@ -273,7 +273,7 @@ static const struct key pair_key[] = {
 /* A pair that does not act has no law. */
 static int finish_pair(jnode o, struct scene *s, void *out)
 {
-    struct pair *p = out;
+    struct pair_read *p = out;
     (void)s;
     if (p->acts) return 0;
     if (json_object_size(o.json) > 2 + (size_t)keys_has(&o, "comment"))
@@ -287,7 +287,7 @@ const struct keys scene_pair_keys = { "pair", pair_key, .keeps = true, .finish =
 static int read_pair(jnode o, struct scene *s, void *out)
 {
     bool *given = out;
-    struct pair p = { .acts = true, .law = s->common };
+    struct pair_read p = { .acts = true, .law = s->common };
     if (keys_read(o, &scene_pair_keys, s, &p)) return 1;
     const int32_t ab = p.kind[0] * s->kinds + p.kind[1], ba = p.kind[1] * s->kinds + p.kind[0];
     if (given[ab]) return json_node_fault(json_node_key(&o, "pair"), "this pair was given before");
@@ -326,7 +326,7 @@ static int read_name(jnode n, const struct key *k, struct scene *s, void *member
 const struct key_type key_name = { "string", "{'type': 'string'}", read_name, NULL };
 
 /* That of a group, added to the scene's */
-static int read_group(jnode n, const struct key *k, struct scene *s, void *member)
+static int scene_material_read_group(jnode n, const struct key *k, struct scene *s, void *member)
 {
     const char *name = NULL;
     int32_t which = -1;
@@ -335,7 +335,8 @@ static int read_group(jnode n, const struct key *k, struct scene *s, void *membe
     return 0;
 }
 
-const struct key_type key_group = { "string", "{'type': 'string'}", read_group, NULL };
+const struct key_type key_group = { "string", "{'type': 'string'}", scene_material_read_group,
+                                    NULL };
 
 static int read_face(jnode n, const struct key *k, struct scene *s, void *member)
 {
@@ -346,7 +347,7 @@ static int read_face(jnode n, const struct key *k, struct scene *s, void *member
 static const struct key_type key_face = {
     "integer", "{'type': 'integer', 'minimum': 0, 'maximum': 2147483646}", read_face
 };
-const struct key_type key_faces = ARRAY("[first, last]", &key_face, 2, sizeof(int64_t));
+const struct key_type key_faces = { ARRAY("[first, last]", &key_face, 2, sizeof(int64_t)) };
 
 int scene_check_faces(jnode o, const int64_t face[2])
 {

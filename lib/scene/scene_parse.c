@@ -60,10 +60,8 @@ static int read_dim(jnode n, struct scene *s, void *out)
 
 #define AT(member) offsetof(struct scene, member)
 #define LIST(name, keys, help)                                                                     \
-    {                                                                                              \
-#name, &key_list, 0, "-", "none", "see below", help,                                       \
-            .object = &scene_##keys##_keys, .always = true, .read = scene_read_##name              \
-    }
+#name, &key_list, 0, "-", "none", "see below", help, .object = &scene_##keys##_keys,           \
+                                                         .always = true, .read = scene_read_##name
 
 static const struct key_type key_dim = { "2 or 3", "{'enum': [2, 3]}", NULL, NULL };
 static const struct key_type key_dt = {
@@ -96,7 +94,7 @@ static const struct key scene_key[] = {
     { "kinds", &key_map, 0, "-", "none", "{\"steel\": {}}",
       "Kinds of material by name. The kinds ball and wall always exist.",
       .object = &scene_kind_keys, .always = true, .read = scene_read_kinds },
-    LIST(pairs, pair, "Exceptions for pairs of kinds."),
+    { LIST(pairs, pair, "Exceptions for pairs of kinds.") },
     { "overlap", &key_bool, AT(overlap), "-", "false", "true",
       "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "
       "the smaller radius is an error; of a tenth for bodies that come from a document or a "
@@ -107,18 +105,18 @@ static const struct key scene_key[] = {
       "Periodic cell, see Periodic cells. Default: the cell of the first document among the "
       "bodies, in its last state; null: none.",
       .always = true, .read = scene_read_cell },
-    LIST(walls, wall,
-         "Walls, see Walls. Default: the walls of the first document among the bodies, in their "
-         "last position."),
+    { LIST(walls, wall,
+           "Walls, see Walls. Default: the walls of the first document among the bodies, in their "
+           "last position.") },
     { "room", &key_object, 0, "-", "none", "{\"walls\": \"box\"}",
       "Walls that move in proportion under one mean pressure, see Rooms.",
       .object = &scene_room_keys, .read = scene_read_room },
-    LIST(bodies, bodies, "Groups of bodies, see Groups of bodies."),
+    { LIST(bodies, bodies, "Groups of bodies, see Groups of bodies.") },
     { "pour", &key_list, 0, "-", "none", "see below", "Inlets, see Inlets and outlets.",
       .object = &scene_pour_keys, .always = true, .read = scene_read_pours },
     { "remove", &key_list, 0, "-", "none", "see below", "Outlets.", .object = &scene_removal_keys,
       .always = true, .read = scene_read_removals },
-    LIST(forces, force, "Forces and torques on single bodies, see Forces on single bodies."),
+    { LIST(forces, force, "Forces and torques on single bodies, see Forces on single bodies.") },
     { 0 },
 };
 const struct keys scene_keys = { "scene", scene_key };

@@ -54,11 +54,8 @@ int scene_read_forces(jnode n, struct scene *s, void *out);
 extern const struct key_type key_signal; /* which scene_read_push() reads */
 int scene_read_push(jnode force, struct scene *s, int32_t wall, struct load *l);
 /* "from" and "until", of a struct whose members AT() finds */
-#define FROM_AND_UNTIL(from_help, until_help)                                                      \
-    { "from", &key_number, AT(from), "s", "-infinity", "0.3", from_help },                         \
-    {                                                                                              \
-        "until", &key_number, AT(until), "s", "infinity", "2", until_help                          \
-    }
+#define FROM(help)  "from", &key_number, AT(from), "s", "-infinity", "0.3", help
+#define UNTIL(help) "until", &key_number, AT(until), "s", "infinity", "2", help
 int scene_check_span(jnode object, double from, double until);
 
 /* scene/scene_solids.c: "shapes" of grains */
@@ -68,39 +65,20 @@ int scene_read_shapes(jnode n, struct scene *s, void *out);
 /* The shape of the bodies of a group or of a pour, whose struct T has a form and a size; and how large they are.
    scene_finish_grain() scales what is given as the size of a shape. */
 extern const struct key_type key_shape, key_orientation, key_size;
-#define SHAPE_ROWS(T)                                                                              \
-    { "shape",                                                                                     \
-      &key_shape,                                                                                  \
-      offsetof(T, form),                                                                           \
-      "-",                                                                                         \
-      "a ball",                                                                                    \
-      "\"stone\"",                                                                                 \
-      "Name of the shape; without it, a ball, in 2D a disc." },                                    \
-    {                                                                                              \
-        "orientation", &key_orientation, offsetof(T, form), "rad", "0", "\"random\"",              \
-            "Uniformly random orientation, or a rotation vector (2D: an angle) for all bodies.",   \
-            .with = "shape"                                                                        \
-    }
-#define GRAIN_ROWS(T)                                                                              \
-    { "radius",                                                                                    \
-      &key_size,                                                                                   \
-      offsetof(T, size),                                                                           \
-      "m",                                                                                         \
-      REQUIRED,                                                                                    \
-      "1e-3",                                                                                      \
-      "Radii; with a shape, of the circumscribed balls, and not required.",                        \
-      .unless = "shape" },                                                                         \
-        { "size",                                                                                  \
-          &key_size,                                                                               \
-          offsetof(T, size),                                                                       \
-          "-",                                                                                     \
-          "1",                                                                                     \
-          "2",                                                                                     \
-          "Scale factor of the shape; of a sieve curve it is half the aperture.",                  \
-          .with = "shape",                                                                         \
-          .without = "radius",                                                                     \
-          .why = "a radius is given too" },                                                        \
-        SHAPE_ROWS(T)
+#define SHAPE_OF(T)                                                                                \
+    "shape", &key_shape, offsetof(T, form), "-", "a ball", "\"stone\"",                            \
+        "Name of the shape; without it, a ball, in 2D a disc."
+#define ORIENTATION_OF(T)                                                                          \
+    "orientation", &key_orientation, offsetof(T, form), "rad", "0", "\"random\"",                  \
+        "Uniformly random orientation, or a rotation vector (2D: an angle) for all bodies.",       \
+        .with = "shape"
+#define RADIUS_OF(T)                                                                               \
+    "radius", &key_size, offsetof(T, size), "m", REQUIRED, "1e-3",                                 \
+        "Radii; with a shape, of the circumscribed balls, and not required.", .unless = "shape"
+#define SIZE_OF(T)                                                                                 \
+    "size", &key_size, offsetof(T, size), "-", "1", "2",                                           \
+        "Scale factor of the shape; of a sieve curve it is half the aperture.",                    \
+        .with = "shape", .without = "radius", .why = "a radius is given too"
 int scene_finish_grain(jnode object, const struct scene *s, const struct scene_form *form,
                        struct scene_size *z);
 

@@ -14,48 +14,26 @@ static vec3 scene_shapes_across(vec3 n, vec3 wish)
     return length > 1e-9 ? v3_scale(1 / length, e) : v3_across(n);
 }
 
-static const struct key_type key_two =
-    ARRAY("two numbers >= 0", &key_not_negative, 2, sizeof(double));
+static const struct key_type key_two = { ARRAY("two numbers >= 0", &key_not_negative, 2,
+                                               sizeof(double)) };
 
 /* Rows that several shapes have */
-#define CENTER                                                                                     \
-    {                                                                                              \
-        "center", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]", "Centre."                        \
-    }
+#define CENTER "center", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]", "Centre."
 #define POINT                                                                                      \
-    {                                                                                              \
-        "point", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]",                                   \
-            "Point on the axis, where it begins."                                                  \
-    }
-#define AXIS                                                                                       \
-    {                                                                                              \
-        "axis", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Direction of the axis."        \
-    }
-#define NORMAL                                                                                     \
-    {                                                                                              \
-        "normal", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Normal."                     \
-    }
-#define RADIUS(at)                                                                                 \
-    {                                                                                              \
-        "radius", &key_positive, AT(at), "m", REQUIRED, "0.1", "Radius."                           \
-    }
+    "point", &key_vector, AT(x), "m", REQUIRED, "[0, 0, 0]", "Point on the axis, where it begins."
+#define AXIS       "axis", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Direction of the axis."
+#define NORMAL     "normal", &key_direction, AT(n), "-", REQUIRED, "[0, 0, 1]", "Normal."
+#define RADIUS(at) "radius", &key_positive, AT(at), "m", REQUIRED, "0.1", "Radius."
 #define SIDE                                                                                       \
-    {                                                                                              \
-        "side", &key_word, AT(side), "-", "\"inside\"", "\"both\"",                                \
-            "Side on which bodies stay; both: a surface without thickness.",                       \
-            .words = boundary_side_name                                                            \
-    }
-#define ALONG(need, text)                                                                          \
-    {                                                                                              \
-        "along", &key_direction, AT(along), "-", need, "[1, 0, 0]", text                           \
-    }
+    "side", &key_word, AT(side), "-", "\"inside\"", "\"both\"",                                    \
+        "Side on which bodies stay; both: a surface without thickness.",                           \
+        .words = boundary_side_name
+#define ALONG(need, text) "along", &key_direction, AT(along), "-", need, "[1, 0, 0]", text
 #define ARC(need)                                                                                  \
-    {                                                                                              \
-        "arc", &key_positive, AT(arc), "rad", need, "3.14",                                        \
-            "Sector of that angle, counterclockwise about the axis from along; below 2 pi.",       \
-            .most = 6.283185307179585 /* the last double below 2 pi */,                            \
-            .limit = "must be below 2 pi; leave it out for all"                                    \
-    }
+    "arc", &key_positive, AT(arc), "rad", need, "3.14",                                            \
+        "Sector of that angle, counterclockwise about the axis from along; below 2 pi.",           \
+        .most = 6.283185307179585 /* the last double below 2 pi */,                                \
+        .limit = "must be below 2 pi; leave it out for all"
 #define ALL   "all around"
 #define FIRST "Direction in which the sector begins."
 
@@ -76,9 +54,9 @@ static int settle(struct wall *w, enum boundary_shape shape)
     }
 
 static const struct key rectangle_key[] = {
-    CENTER,
-    NORMAL,
-    ALONG("an axis", "Direction of side a."),
+    { CENTER },
+    { NORMAL },
+    { ALONG("an axis", "Direction of side a.") },
     { "sides", &key_two_positive, AT(size), "m", REQUIRED, "[0.2, 0.1]", "Sides [a, b]." },
     { 0 },
 };
@@ -86,9 +64,9 @@ FINISH(rectangle, BOUNDARY_RECTANGLE)
 const struct keys scene_rectangle_keys = { "rectangle", rectangle_key, .finish = finish_rectangle };
 
 static const struct key disc_key[] = {
-    CENTER,
-    NORMAL,
-    RADIUS(size[1]),
+    { CENTER },
+    { NORMAL },
+    { RADIUS(size[1]) },
     { "hole", &key_not_negative, AT(size[0]), "m", "0", "0.02", "Radius of an orifice." },
     { 0 },
 };
@@ -105,29 +83,29 @@ static int scene_shapes_finish_disc(jnode o, struct scene *s, void *out)
 const struct keys scene_disc_keys = { "disc", disc_key, .finish = scene_shapes_finish_disc };
 
 static const struct key cylinder_key[] = {
-    POINT,
-    AXIS,
-    RADIUS(size[0]),
+    { POINT },
+    { AXIS },
+    { RADIUS(size[0]) },
     { "length", &key_positive, AT(size[2]), "m", "infinite", "0.3",
       "Length of the lateral surface, from the point along the axis. Default: infinite in both "
       "directions." },
-    SIDE,
-    ALONG("an axis", FIRST),
-    ARC(ALL),
+    { SIDE },
+    { ALONG("an axis", FIRST) },
+    { ARC(ALL) },
     { 0 },
 };
 FINISH(cylinder, BOUNDARY_CYLINDER)
 const struct keys scene_cylinder_keys = { "cylinder", cylinder_key, .finish = finish_cylinder };
 
 static const struct key cone_key[] = {
-    POINT,
-    AXIS,
+    { POINT },
+    { AXIS },
     { "radii", &key_two, AT(size), "m", REQUIRED, "[0.1, 0.02]",
       "Radius r of [r, s] at the point, s at the other end." },
     { "length", &key_positive, AT(size[2]), "m", REQUIRED, "0.3", "Length along the axis." },
-    SIDE,
-    ALONG("an axis", FIRST),
-    ARC(ALL),
+    { SIDE },
+    { ALONG("an axis", FIRST) },
+    { ARC(ALL) },
     { 0 },
 };
 
@@ -142,7 +120,7 @@ static int finish_cone(jnode o, struct scene *s, void *out)
 
 const struct keys scene_cone_keys = { "cone", cone_key, .finish = finish_cone };
 
-static const struct key sphere_key[] = { CENTER, RADIUS(size[0]), SIDE, { 0 } };
+static const struct key sphere_key[] = { { CENTER }, { RADIUS(size[0]) }, { SIDE }, { 0 } };
 
 static int finish_round(jnode o, struct scene *s, void *out)
 {
@@ -158,11 +136,11 @@ const struct keys scene_sphere_keys = { "sphere", sphere_key, .finish = finish_r
 const struct keys scene_circle_keys = { "circle", sphere_key, .finish = finish_round };
 
 static const struct key arc_key[] = {
-    CENTER, RADIUS(size[0]), ALONG(REQUIRED, FIRST), ARC(REQUIRED), SIDE, { 0 }
+    { CENTER }, { RADIUS(size[0]) }, { ALONG(REQUIRED, FIRST) }, { ARC(REQUIRED) }, { SIDE }, { 0 }
 };
 const struct keys scene_arc_keys = { "arc", arc_key, .finish = finish_cylinder };
 
-const struct key_type key_segment = ARRAY("[[x, y], [x, y]]", &key_vector, 2, sizeof(vec3));
+const struct key_type key_segment = { ARRAY("[[x, y], [x, y]]", &key_vector, 2, sizeof(vec3)) };
 
 int scene_read_segment(jnode a, struct scene *s, void *out)
 {

@@ -30,17 +30,15 @@ static int finish_bell(jnode o, struct scene_size *z)
     return enough ? 0 : json_node_fault(o, "[min, max] keeps less than a thousandth of it");
 }
 
-#define MIN_AND_MAX                                                                                \
-    { "min", &key_positive, AT(min), "m", REQUIRED, "1e-3", "Smallest radius." },                  \
-        { "max", &key_positive, AT(max), "m", REQUIRED, "2e-3", "Largest radius." },               \
-    {                                                                                              \
-        0                                                                                          \
-    }
+#define MIN "min", &key_positive, AT(min), "m", REQUIRED, "1e-3", "Smallest radius."
+#define MAX "max", &key_positive, AT(max), "m", REQUIRED, "2e-3", "Largest radius."
 
 static const struct key gaussian_key[] = {
     { "mean", &key_number, AT(mid), "m", REQUIRED, "1.5e-3", "Mean." },
     { "sd", &key_not_negative, AT(spread), "m", REQUIRED, "2e-4", "Standard deviation." },
-    MIN_AND_MAX,
+    { MIN },
+    { MAX },
+    { 0 },
 };
 
 static int finish_gaussian(jnode o, struct scene *s, void *out)
@@ -57,7 +55,9 @@ static const struct key lognormal_key[] = {
     { "median", &key_positive, AT(mid), "m", REQUIRED, "1.5e-3", "Median." },
     { "sigma", &key_not_negative, AT(spread), "-", REQUIRED, "0.2",
       "Standard deviation of the logarithm." },
-    MIN_AND_MAX,
+    { MIN },
+    { MAX },
+    { 0 },
 };
 
 static int finish_lognormal(jnode o, struct scene *s, void *out)
@@ -75,7 +75,9 @@ static const struct key power_key[] = {
     { "exponent", &key_number, AT(exponent), "-", REQUIRED, "3",
       "The density by number is proportional to r^-exponent; -20 to 20.", .least = -MOST_EXPONENT,
       .most = MOST_EXPONENT },
-    MIN_AND_MAX,
+    { MIN },
+    { MAX },
+    { 0 },
 };
 
 static int finish_power(jnode o, struct scene *s, void *out)
@@ -182,7 +184,7 @@ static int finish_size(jnode o, struct scene *s, void *out)
 
 static const struct keys size_keys = { "size", size_key, .finish = finish_size };
 
-static int read_size(jnode n, const struct key *k, struct scene *s, void *member)
+static int scene_sizes_read_size(jnode n, const struct key *k, struct scene *s, void *member)
 {
     struct scene_size *z = member;
     (void)k;
@@ -196,6 +198,6 @@ static int read_size(jnode n, const struct key *k, struct scene *s, void *member
 }
 
 const struct key_type key_size = {
-    "SIZE", "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'size'}]}", read_size,
-    NULL, &size_keys
+    "SIZE", "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'size'}]}",
+    scene_sizes_read_size, NULL, &size_keys
 };

@@ -371,7 +371,7 @@ struct mesh_file {
     bool hull;
 };
 
-static const struct key mesh_key[] = {
+static const struct key grain_mesh_key[] = {
     { "file", &key_text, offsetof(struct mesh_file, file), "-", REQUIRED, "\"stone.stl\"",
       "Triangles, see Files of surfaces." },
     { "scale", &key_positive, offsetof(struct mesh_file, scale), "m", "1", "0.001",
@@ -380,7 +380,7 @@ static const struct key mesh_key[] = {
       "Take the convex hull of the corners, regardless of the triangles." },
     { 0 },
 };
-static const struct keys grain_mesh_keys = { "grain_mesh", mesh_key };
+static const struct keys grain_mesh_keys = { "grain_mesh", grain_mesh_key };
 
 /* A polyhedron, or a clump, from the triangles of a file */
 static int scene_solids_read_mesh(jnode m, struct scene *scene, void *out)
@@ -434,8 +434,8 @@ struct superquadric {
     int64_t segments;   /* 0: the default */
 };
 
-static const struct key_type key_exponents =
-    ARRAY("[n, m]; 2D: [n]", &key_number, -1, sizeof(double));
+static const struct key_type key_exponents = { ARRAY("[n, m]; 2D: [n]", &key_number, -1,
+                                                     sizeof(double)) };
 
 static const struct key superquadric_key[] = {
     { "radii", &key_lengths, offsetof(struct superquadric, radii), "m", REQUIRED,

@@ -145,14 +145,14 @@ static int add_box(jnode o, struct scene *s, const struct wall_read *r)
 
 /* ---- faces that are of another kind, or move along themselves otherwise ---- */
 
-struct material {
+struct material_read {
     int64_t face[2];
     int32_t kind;
     vec3 belt;
 };
 
 #undef AT
-#define AT(member) offsetof(struct material, member)
+#define AT(member) offsetof(struct material_read, member)
 
 static const struct key material_key[] = {
     { "faces", &key_faces, AT(face), "-", REQUIRED, "[0, 11]",
@@ -167,7 +167,7 @@ static const struct keys material_keys = { "materials", material_key };
 static int read_material(jnode o, struct scene *s, void *out)
 {
     const struct wall *w = out;
-    struct material m = { .kind = w->kind, .belt = w->belt };
+    struct material_read m = { .kind = w->kind, .belt = w->belt };
     if (keys_read(o, &material_keys, s, &m) || scene_check_faces(o, m.face)) return 1;
     struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
     if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for parts of a surface");
@@ -192,15 +192,11 @@ static int scene_walls_read_materials(jnode a, struct scene *s, void *out)
 
 /* The row of a shape, for scenes of one dimension or of both (0), whose own keys are of struct wall */
 #define SHAPE(name, help, dim_)                                                                    \
-    {                                                                                              \
-#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                      \
-            .choice = 1, .dim = (dim_), .object = &scene_##name##_keys                             \
-    }
+#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                          \
+        .choice = 1, .dim = (dim_), .object = &scene_##name##_keys
 #define SHAPE_READ(name, help, dim_)                                                               \
-    {                                                                                              \
-#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                      \
-            .choice = 1, .dim = (dim_), .object = &scene_##name##_keys, .read = scene_read_##name  \
-    }
+#name, &key_object, AT(w), "-", "-", (dim_) == 2 ? "2D" : "3D", help,                          \
+        .choice = 1, .dim = (dim_), .object = &scene_##name##_keys, .read = scene_read_##name
 
 static const struct key_type key_drives = { "array",
                                             "{'type': 'array', 'items': {'$ref': 'drive'}}",
@@ -216,15 +212,15 @@ static const struct key wall_key[] = {
       .choice = 1 },
     { "segment", &key_segment, AT(w), "m", "-", "2D", "A segment between two points.", .choice = 1,
       .dim = 2, .read = scene_read_segment },
-    SHAPE_READ(polygon, "A chain of segments.", 2),
-    SHAPE(circle, "A circle.", 2),
-    SHAPE(arc, "An arc of a circle.", 2),
-    SHAPE(rectangle, "A rectangle.", 3),
-    SHAPE(disc, "A disc, perhaps with an orifice.", 3),
-    SHAPE(cylinder, "The lateral surface of a cylinder.", 3),
-    SHAPE(cone, "The lateral surface of a cone.", 3),
-    SHAPE(sphere, "A sphere.", 3),
-    SHAPE_READ(mesh, "The triangles of a file.", 3),
+    { SHAPE_READ(polygon, "A chain of segments.", 2) },
+    { SHAPE(circle, "A circle.", 2) },
+    { SHAPE(arc, "An arc of a circle.", 2) },
+    { SHAPE(rectangle, "A rectangle.", 3) },
+    { SHAPE(disc, "A disc, perhaps with an orifice.", 3) },
+    { SHAPE(cylinder, "The lateral surface of a cylinder.", 3) },
+    { SHAPE(cone, "The lateral surface of a cone.", 3) },
+    { SHAPE(sphere, "A sphere.", 3) },
+    { SHAPE_READ(mesh, "The triangles of a file.", 3) },
     { "name", &key_name, AT(name), "-", "none", "\"floor\"",
       "Name of the wall, for a box that of all of its sides, see Names." },
     { "velocity", &key_vector, AT(w.v), "m/s", "0", "[0, 0, -0.01]", "Constant velocity." },

@@ -81,45 +81,45 @@ static const struct plain {
       NULL },
 };
 
-static void put(struct schema *to, json_t *object, const char *key, json_t *value)
+static void schema_put(struct schema *to, json_t *object, const char *key, json_t *value)
 {
     if (!value || json_object_set_new(object, key, value)) to->bad = true;
 }
 
-static void append(struct schema *to, json_t *list, json_t *value)
+static void schema_append(struct schema *to, json_t *list, json_t *value)
 {
     if (!value || json_array_append_new(list, value)) to->bad = true;
 }
 
 /* The member of an object, made where it is not there yet */
-static json_t *member(struct schema *to, json_t *object, const char *key, json_t *(*make)(void))
+static json_t *schema_member(struct schema *to, json_t *object, const char *key,
+                             json_t *(*make)(void))
 {
-    if (!json_object_get(object, key)) put(to, object, key, make());
+    if (!json_object_get(object, key)) schema_put(to, object, key, make());
     return json_object_get(object, key);
 }
 
 /* ---- names and texts ---- */
 
-static void define(struct schema *to, const char *name, const struct keys *table);
+static void schema_define(struct schema *to, const char *name, const struct keys *table);
 
 /* In place of each name after $ref where it is defined */
-static void resolve(struct schema *to, json_t *j, const struct keys *table)
+static void schema_resolve(struct schema *to, json_t *j, const struct keys *table)
 {
     const char *key;
     json_t *value;
-    size_t i;
-    json_array_foreach(j, i, value) resolve(to, value, table);
+    for (size_t i = 0; i < json_array_size(j); i++) schema_resolve(to, json_array_get(j, i), table);
     json_object_foreach(j, key, value)
     {
-        resolve(to, value, table);
+        schema_resolve(to, value, table);
         if (strcmp(key, "$ref") != 0) continue;
-        define(to, json_string_value(value), table);
+        schema_define(to, json_string_value(value), table);
         json_t *at = json_sprintf("#/$defs/%s-%dd", json_string_value(value), to->dim);
         if (!at || json_object_set_new(j, key, at)) to->bad = true;
     }
 }
 
-static json_t *parse(struct schema *to, const char *text, const struct keys *table)
+static json_t *schema_parse(struct schema *to, const char *text, const struct keys *table)
 {
     char *copy = malloc(strlen(text) + 1), *o = copy;
     for (const char *t = text; copy && *t;) {
@@ -130,7 +130,7 @@ static json_t *parse(struct schema *to, const char *text, const struct keys *tab
     if (copy) *o = 0;
     json_t *j = copy ? json_loads(copy, 0, NULL) : NULL;
     free(copy);
-    if (j) resolve(to, j, table);
+    if (j) schema_resolve(to, j, table);
     return j;
 }
 
@@ -139,32 +139,32 @@ static json_t *parse(struct schema *to, const char *text, const struct keys *tab
 static json_t *ref(struct schema *to, const struct keys *t)
 {
     json_t *j = json_pack("{s:s}", "$ref", t->name);
-    if (j) resolve(to, j, t);
+    if (j) schema_resolve(to, j, t);
     return j;
 }
 
-static json_t *value_of(struct schema *to, const struct key *k);
+static json_t *schema_value(struct schema *to, const struct key *k);
 
 static json_t *array_of(struct schema *to, const struct key *k)
 {
     const struct key item = { .type = k->type->item, .least = k->least, .most = k->most };
     const int n = keys_count(k->type, to->dim);
-    return json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", value_of(to, &item),
+    return json_pack("{s:s, s:o, s:i, s:i}", "type", "array", "items", schema_value(to, &item),
                      "minItems", n, "maxItems", n);
 }
 
-static json_t *words_of(struct schema *to, const char *const *words)
+static json_t *schema_words(struct schema *to, const char *const *words)
 {
     json_t *list = json_array();
-    for (; *words; words++) append(to, list, json_string(*words));
+    for (; *words; words++) schema_append(to, list, json_string(*words));
     return json_pack("{s:o}", "enum", list);
 }
 
 static json_t *bare_value(struct schema *to, const struct key *k)
 {
-    if (k->type->schema) return parse(to, k->type->schema, k->type->object);
+    if (k->type->schema) return schema_parse(to, k->type->schema, k->type->object);
     if (k->type->item) return array_of(to, k);
-    if (k->words) return words_of(to, k->words);
+    if (k->words) return schema_words(to, k->words);
     if (k->type == &key_list)
         return json_pack("{s:s, s:o}", "type", "array", "items", ref(to, k->object));
     if (k->type == &key_map)
@@ -174,28 +174,33 @@ static json_t *bare_value(struct schema *to, const struct key *k)
 }
 
 /* What stands in the table, where it is JSON */
-static json_t *literal(const char *text)
+static json_t *literal(struct schema *to, const char *text)
 {
-    return text ? json_loads(text, JSON_DECODE_ANY, NULL) : NULL;
+    json_error_t e;
+    json_t *j = text ? json_loads(text, JSON_DECODE_ANY, &e) : NULL;
+    if (text && !j && json_error_code(&e) == json_error_out_of_memory) to->bad = true;
+    return j;
 }
 
-static json_t *value_of(struct schema *to, const struct key *k)
+static json_t *schema_value(struct schema *to, const struct key *k)
 {
-    json_t *j = bare_value(to, k), *standard = literal(k->otherwise),
-           *example = literal(k->example);
+    json_t *j = bare_value(to, k), *standard = literal(to, k->otherwise),
+           *example = literal(to, k->example);
     const bool unit = k->unit && *k->unit && strcmp(k->unit, "-") != 0;
     if (!k->type->item && (k->least != 0 || k->most != 0 || k->type == &key_integer)) {
-        put(to, j, "minimum",
-            k->type == &key_integer ? json_integer((json_int_t)k->least) : json_real(k->least));
+        schema_put(to, j, "minimum",
+                   k->type == &key_integer ? json_integer((json_int_t)k->least)
+                                           : json_real(k->least));
         if (isfinite(k->most))
-            put(to, j, "maximum",
-                k->type == &key_integer ? json_integer((json_int_t)k->most) : json_real(k->most));
+            schema_put(to, j, "maximum",
+                       k->type == &key_integer ? json_integer((json_int_t)k->most)
+                                               : json_real(k->most));
     }
     if (!k->help) return j; // an item of an array
-    put(to, j, "description",
-        unit ? json_sprintf("%s [%s]", k->help, k->unit) : json_string(k->help));
-    if (standard) put(to, j, "default", standard);
-    if (example) put(to, j, "examples", json_pack("[o]", example));
+    schema_put(to, j, "description",
+               unit ? json_sprintf("%s [%s]", k->help, k->unit) : json_string(k->help));
+    if (standard) schema_put(to, j, "default", standard);
+    if (example) schema_put(to, j, "examples", json_pack("[o]", example));
     return j;
 }
 
@@ -204,7 +209,7 @@ static json_t *value_of(struct schema *to, const struct key *k)
 /* [{"required": [name]}, ...] of names with blanks between, or of the rows with a choice or a mark */
 static void append_required(struct schema *to, json_t *list, const char *name, size_t n)
 {
-    append(to, list, json_pack("{s:[o]}", "required", json_stringn(name, n)));
+    schema_append(to, list, json_pack("{s:[o]}", "required", json_stringn(name, n)));
 }
 
 static json_t *any_of(struct schema *to, const char *names)
@@ -221,12 +226,12 @@ static json_t *any_of(struct schema *to, const char *names)
 static void require_beside(struct schema *to, json_t *object, const char *names,
                            const struct key *k)
 {
-    json_t *all = member(to, object, "dependentRequired", json_object);
+    json_t *all = schema_member(to, object, "dependentRequired", json_object);
     for (const char *s = names; *s; s += strcspn(s, " ")) {
         char name[40];
         s += strspn(s, " ");
         snprintf(name, sizeof name, "%.*s", (int)strcspn(s, " "), s);
-        append(to, member(to, all, name, json_array), json_string(k->name));
+        schema_append(to, schema_member(to, all, name, json_array), json_string(k->name));
     }
 }
 
@@ -236,16 +241,16 @@ static void add_conditions(struct schema *to, json_t *object, const struct key *
     if (k->needed) require_beside(to, object, k->needed, k);
     if (required && k->with) require_beside(to, object, k->with, k);
     if (required && !k->with && !k->unless)
-        append(to, member(to, object, "required", json_array), json_string(k->name));
+        schema_append(to, schema_member(to, object, "required", json_array), json_string(k->name));
     if (required && k->unless) {
         json_t *either = any_of(to, k->unless);
         append_required(to, json_object_get(either, "anyOf"), k->name, strlen(k->name));
-        append(to, member(to, object, "allOf", json_array), either);
+        schema_append(to, schema_member(to, object, "allOf", json_array), either);
     }
     if (!k->with && !k->without) return;
     json_t *beside = k->with ? any_of(to, k->with) : json_object();
-    if (k->without) put(to, beside, "not", any_of(to, k->without));
-    put(to, member(to, object, "dependentSchemas", json_object), k->name, beside);
+    if (k->without) schema_put(to, beside, "not", any_of(to, k->without));
+    schema_put(to, schema_member(to, object, "dependentSchemas", json_object), k->name, beside);
 }
 
 /* Rows of one choice, exactly one of which is given, or at most one; of choice 0, at least one of those that are
@@ -264,31 +269,32 @@ static void add_choice(struct schema *to, json_t *object, const struct key *cons
         json_decref(list);
         return;
     }
-    if (maybe) append(to, list, json_pack("{s:{s:o}}", "not", "anyOf", json_deep_copy(list)));
-    append(to, member(to, object, "allOf", json_array),
-           json_pack("{s:o}", choice ? "oneOf" : "anyOf", list));
+    if (maybe)
+        schema_append(to, list, json_pack("{s:{s:o}}", "not", "anyOf", json_deep_copy(list)));
+    schema_append(to, schema_member(to, object, "allOf", json_array),
+                  json_pack("{s:o}", choice ? "oneOf" : "anyOf", list));
 }
 
 /* ---- a table ---- */
 
-static int rows_of(const struct keys *t, int dim, const struct key **row, int n)
+static int schema_rows(const struct keys *t, int dim, const struct key **row, int n)
 {
     for (const struct key *k = t->key; k->name; k++)
         if (k->type == &key_include)
-            n = rows_of(k->object, dim, row, n);
+            n = schema_rows(k->object, dim, row, n);
         else if ((!k->dim || !dim || k->dim == dim) && n < TABLES_MOST)
             row[n++] = k;
     return n;
 }
 
-static void describe(struct schema *to, json_t *object, const struct keys *t)
+static void schema_describe(struct schema *to, json_t *object, const struct keys *t)
 {
     const struct key *row[TABLES_MOST];
-    const int n = rows_of(t, to->dim, row, 0);
-    json_t *properties = member(to, object, "properties", json_object);
-    put(to, properties, "comment", json_true());
-    for (int i = 0; i < n; i++) put(to, properties, row[i]->name, value_of(to, row[i]));
-    put(to, object, "additionalProperties", json_false());
+    const int n = schema_rows(t, to->dim, row, 0);
+    json_t *properties = schema_member(to, object, "properties", json_object);
+    schema_put(to, properties, "comment", json_true());
+    for (int i = 0; i < n; i++) schema_put(to, properties, row[i]->name, schema_value(to, row[i]));
+    schema_put(to, object, "additionalProperties", json_false());
     for (int i = 0; i < n; i++) add_conditions(to, object, row[i]);
     for (int choice = 0; choice < 3; choice++) add_choice(to, object, row, n, choice);
 }
@@ -296,18 +302,18 @@ static void describe(struct schema *to, json_t *object, const struct keys *t)
 /* One of several tables, by the first key of each */
 static void describe_forms(struct schema *to, json_t *object, const struct keys *t)
 {
-    json_t *one = member(to, object, "oneOf", json_array),
-           *all = member(to, object, "allOf", json_array);
+    json_t *one = schema_member(to, object, "oneOf", json_array),
+           *all = schema_member(to, object, "allOf", json_array);
     for (int i = 0; t->forms[i]; i++) {
         const char *first = t->forms[i]->key->name;
         append_required(to, one, first, strlen(first));
-        append(
+        schema_append(
             to, all,
             json_pack("{s:{s:[s]}, s:o}", "if", "required", first, "then", ref(to, t->forms[i])));
     }
 }
 
-static void define(struct schema *to, const char *name, const struct keys *table)
+static void schema_define(struct schema *to, const char *name, const struct keys *table)
 {
     char full[60];
     snprintf(full, sizeof full, "%s-%dd", name, to->dim);
@@ -315,22 +321,22 @@ static void define(struct schema *to, const char *name, const struct keys *table
     for (size_t i = 0; i < sizeof plain / sizeof *plain; i++) {
         if (strcmp(plain[i].name, name) != 0) continue;
         const char *text = to->dim == 2 && plain[i].plane ? plain[i].plane : plain[i].text;
-        put(to, to->defs, full, parse(to, text, table));
+        schema_put(to, to->defs, full, schema_parse(to, text, table));
         return;
     }
     json_t *object = json_pack("{s:s}", "type", "object");
-    put(to, to->defs, full, object);
+    schema_put(to, to->defs, full, object);
     if (!object || !table) return;
     if (table->forms)
         describe_forms(to, object, table);
     else
-        describe(to, object, table);
+        schema_describe(to, object, table);
 }
 
 json_t *schema_of_scenes(struct failure *failure)
 {
     struct schema to = { .defs = json_object() };
-    for (to.dim = 3; to.dim >= 2; to.dim--) define(&to, scene_keys.name, &scene_keys);
+    for (to.dim = 3; to.dim >= 2; to.dim--) schema_define(&to, scene_keys.name, &scene_keys);
     json_t *j =
         json_pack("{s:s, s:s, s:s, s:{s:{s:{s:i}}, s:[s]}, s:{s:s}, s:{s:s}, s:O}", "$schema",
                   "https://json-schema.org/draft/2020-12/schema", "title", "A scene of nsd", "type",
@@ -350,7 +356,7 @@ struct seen {
     int n;
 };
 
-static bool is_new(struct seen *seen, const struct keys *t)
+static bool schema_is_new(struct seen *seen, const struct keys *t)
 {
     for (int i = 0; i < seen->n; i++)
         if (seen->table[i] == t) return false;
@@ -359,16 +365,30 @@ static bool is_new(struct seen *seen, const struct keys *t)
     return true;
 }
 
+/* As the manual has it: with the range of a number, or with the words if there are two that are short */
+static void type_words(char *out, size_t room, const struct key *k)
+{
+    const char *const *word = k->words, *name = k->type == &key_integer ? "integer" : "number";
+    const bool ranged = !k->type->item && (k->least != 0 || k->most != 0);
+    const bool open = !(k->most < INT32_MAX);
+    snprintf(out, room, "%s", k->type->words);
+    if (word && word[1] && !word[2] && strlen(word[0]) + strlen(word[1]) < 10)
+        snprintf(out, room, "\"%s\" or \"%s\"", word[0], word[1]);
+    else if (ranged && open)
+        snprintf(out, room, "%s >= %g", name, k->least);
+    else if (ranged && k->least > -1e9)
+        snprintf(out, room, k->type == &key_integer ? "%s %.0f to %.0f" : "%s %g to %.3g", name,
+                 k->least, k->most);
+}
+
 static void table_lines(struct seen *seen, const struct keys *t,
                         void (*line)(const char *const field[7]))
 {
-    if (!t || !is_new(seen, t)) return;
+    if (!t || !schema_is_new(seen, t)) return;
     for (int i = 0; t->forms && t->forms[i]; i++) table_lines(seen, t->forms[i], line);
     for (const struct key *k = t->key; k && k->name; k++) {
-        char two[60];
-        const char *type = k->type->words, *const *word = k->words;
-        if (word && word[1] && !word[2] && strlen(word[0]) + strlen(word[1]) < 10)
-            snprintf(two, sizeof two, "\"%s\" or \"%s\"", word[0], word[1]), type = two;
+        char type[60];
+        type_words(type, sizeof type, k);
         const char *const field[7] = { t->name,      k->name,    type,   k->unit,
                                        k->otherwise, k->example, k->help };
         if (k->type != &key_include) line(field);
