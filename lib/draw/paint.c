@@ -2,6 +2,7 @@
 #include "draw/paint.h"
 
 #include "base/json.h"
+#include "base/text.h"
 
 #include <errno.h>
 #include <float.h>
@@ -225,7 +226,7 @@ static int read_row(struct values *v, char *line, const char *path, int64_t numb
     for (char *word = strtok(line, blank); word; word = strtok(NULL, blank), k++) {
         char *end;
         if (k != c->id && k != c->step && k != c->x) continue;
-        double x = strtod(word, &end);
+        double x = number_read(word, &end);
         bool none = k == c->x && (!strcmp(word, "null") || !strcmp(word, "nan"));
         if ((*end || (k != c->x && !(fabs(x) < 1e15))) && !none)
             return failure_set(failure, EX_DATAERR, "%s:%lld: '%s' is no number", path,

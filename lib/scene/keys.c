@@ -1,6 +1,8 @@
 /* scene/keys.c: objects of a scene by their tables. */
 #include "scene/keys.h"
 
+#include "base/text.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -261,7 +263,7 @@ static int keys_read_number(jnode n, const struct key *k, struct scene *s, void 
 static void preset_number(const struct key *k, void *member)
 {
     char *end;
-    const double x = strtod(k->otherwise, &end);
+    const double x = number_read(k->otherwise, &end);
     if (end != k->otherwise && !*end) *(double *)member = x;
 }
 
