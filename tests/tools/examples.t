@@ -231,6 +231,9 @@ claim()
     'jq '*'-o fast.h5') frames fast.h5 'length == 2' ;;
     '{ "title": "A drum half full'*) bodies stdout 500 ;;
     '{ "dt": 1e-3, "mu": 0.5, "shapes": '*) bodies stdout 300 ;;
+    # nsd-fit(1)
+    '{ "scene": "drum.json"'*) bodies stdout 500 ;;
+    'nsd-fit '*) jq -e '.parameters.mu | .value > 0.05 and .value < 1' slope.fit/result.json && nsd-info out.h5 | grep -q '"step":10[,}]' ;;
     # without a prompt: a scene, and Python
     '{ "title": "A steel ball'*) bodies stdout 801 && nsd-info -p stdout | jq -s -e 'map(.kind) | unique == ["ball", "steel"]' ;;
     *'with h5py.File("out.h5")'*) grep -q '^100 frames, the last is step 1000' stdout && grep -q '^[1-9][0-9]* contacts, at most [0-9.]* N' stdout ;;
@@ -267,12 +270,20 @@ example() # SOURCE COMMAND SHOWN: in $tmp/run
     'gnuplot '* | 'ffmpeg '*) command -v "${command%% *}" >/dev/null || { skip "$name" "no ${command%% *}"; return; } ;;
     *import*MDAnalysis*) has MDAnalysis || { skip "$name" "no MDAnalysis"; return; } ;;
     *import*h5py* | *nsd.ondem*) have_h5py || { skip "$name" "no h5py"; return; } ;;
+    'nsd-fit '*) { has sklearn && has scipy; } || { skip "$name" "no scikit-learn"; return; } ;;
     esac
     cd "$tmp/run" || return
     # shellcheck disable=SC2086 # a target, and variables
     case $command in
     'make '*) make -C "$repository" --no-print-directory -n ${command#make } >stdout 2>stderr || s=$? ;;
+    '{ "scene": "'*) # kept for the next block, and the scene that it names is made
+        printf '%s\n' "$command" >"$tmp/stock/slope.json"
+        nsd-gen "$(jq -r .scene <<<"$command")" >stdout 2>stderr || s=$? ;;
     '{ "'*) nsd-gen - <<<"$command" >stdout 2>stderr || s=$? ;;
+    'nsd-fit '*) # two evaluations, after which the intervals still change
+        command=${command/ -j 2 slope.json &&/ -j 2 --quiet -n 2 slope.json >fitted || [ \$? = 1 ];}
+        bash -c "${command/ --until 5 > drum.h5/ -n 10 >out.h5}" >stdout 2>stderr || s=$?
+        command=$2 ;;
     *import*nsd*) PYTHONPATH=$repository/python py -c "$command" >stdout 2>stderr || s=$? ;;
     *nsd.ondem*) PYTHONPATH=$repository/python bash -c "${command/#python3/\/usr\/bin\/python3}" >stdout 2>stderr || s=$? ;;
     import*sys.stdin*) cat a.h5 packing.h5 | py -c "$command" >stdout 2>stderr || s=$? ;;
