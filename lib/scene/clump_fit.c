@@ -115,13 +115,9 @@ static void find_depths(struct clump_grid *g, double extent)
 
 static int clump_grid_init(struct clump_grid *g, const struct mesh *m, struct failure *failure)
 {
-    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
+    vec3 lo, hi;
     *g = (struct clump_grid){ .mesh = m };
-    for (int32_t i = 0; i < m->elements; i++)
-        for (int k = 0; k < 3; k++) {
-            lo = v3_min(lo, m->vertex[m->element[i][k]]);
-            hi = v3_max(hi, m->vertex[m->element[i][k]]);
-        }
+    mesh_box(m, &lo, &hi);
     const vec3 d = v3_sub(hi, lo);
     const double extent = fmax(d.x, fmax(d.y, d.z));
     if (!(extent > 0 && isfinite(extent))) return failure_set(failure, EX_DATAERR, "has no extent");

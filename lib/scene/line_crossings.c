@@ -162,12 +162,8 @@ static int line_crossings_judge(const struct windings *w, struct failure *failur
 
 int crossings_judge(const struct mesh *m, struct failure *failure)
 {
-    vec3 lo = v3(INFINITY, INFINITY, INFINITY), hi = v3_scale(-1, lo);
-    for (int32_t i = 0; i < m->elements; i++)
-        for (int k = 0; k < 3; k++) {
-            lo = v3_min(lo, m->vertex[m->element[i][k]]);
-            hi = v3_max(hi, m->vertex[m->element[i][k]]);
-        }
+    vec3 lo, hi;
+    mesh_box(m, &lo, &hi);
     const vec3 d = v3_sub(hi, lo);
     const double extent = fmax(d.x, fmax(d.y, d.z));
     for (int axis = 0; axis < 3 && !failure->status; axis++) {

@@ -400,3 +400,13 @@ int surface_touches(const struct surface *s, vec3 c, double most, struct touch t
     qsort(touch, (size_t)n, sizeof *touch, by_feature);
     return leave_one(s, touch, n);
 }
+
+void mesh_box(const struct mesh *m, vec3 *lo, vec3 *hi)
+{
+    *lo = v3(INFINITY, INFINITY, INFINITY), *hi = v3_scale(-1, *lo);
+    for (int32_t i = 0; i < m->elements; i++)
+        for (int k = 0; k < 3; k++) {
+            *lo = v3_min(*lo, m->vertex[m->element[i][k]]);
+            *hi = v3_max(*hi, m->vertex[m->element[i][k]]);
+        }
+}

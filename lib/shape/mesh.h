@@ -113,6 +113,9 @@ struct surface {
     int64_t seen_most;       /* beyond it there are no touches */
 };
 
+/* m: the box around the elements of a mesh of triangles; without any, from infinity to minus infinity */
+void mesh_box(const struct mesh *m, vec3 *lo, vec3 *hi);
+
 /* weld: m; 0: WELD_USUAL. Returns 0, EX_SOFTWARE, or EX_DATAERR: too many elements at a corner;
    surface_free() in any case. */
 int surface_init(struct surface *s, const struct mesh *m, int32_t first, int32_t n, double weld,
