@@ -1,5 +1,4 @@
 /* nsd-step: makes many steps: detects, solves and moves in a loop. */
-#include "scene/stiffness.h"
 #include "file/background_writer.h"
 #include "file/reader.h"
 #include "file/writer.h"
@@ -10,6 +9,7 @@
 #include "run/processes.h"
 #include "run/tool_filter.h"
 #include "scene/inlet.h"
+#include "scene/stiffness.h"
 #include "step/adapt.h"
 
 #include <float.h>

@@ -237,7 +237,9 @@ static int32_t place_in_chain(int i)
 static bool make_balls(struct problem *p, int32_t contact[CHAIN], int64_t group[3], uint64_t *state)
 {
     for (int i = 0; i < CHAIN; i++) contact[i] = place_in_chain(i);
-    *p = (struct problem){ .kind = kind_FAR_BALLS,
+    struct problem_kind kind = kind_FAR_BALLS;
+    kind.soft = true;
+    *p = (struct problem){ .kind = kind,
                            .d = 3,
                            .n = CHAIN,
                            .bundles = CHAIN / BUNDLE,

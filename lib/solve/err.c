@@ -105,6 +105,7 @@ static void judge_unbonded(const struct problem *p, int64_t bundle, bool believe
 {
     struct problem unbonded = *p;
     unbonded.kind = *problem_kinds[p->kind.plain];
+    unbonded.kind.soft = p->kind.soft;
     backend_widest()->judge->judge(&unbonded, bundle, bundle + 1, believes, which, s);
 }
 

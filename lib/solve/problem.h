@@ -238,7 +238,7 @@ ALWAYS_INLINE void body_velocity(const struct problem *p, struct body *body, con
     vd t1[3], t2[3];
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     bundle_velocity(c, bundle_beside(p, c), e, k, &ma, &mb, u, t1, t2);
-    if (e) problem_soften(c, e, k, u);
+    if (e && p->kind.soft) problem_soften(c, e, k, u);
 }
 
 /* Adds to the velocities of body[] what a change dr of the reactions makes of them. */
@@ -267,7 +267,7 @@ ALWAYS_INLINE void problem_velocity(const struct problem *p, struct body *body, 
     }
     bodies_load(&a, body, c->a + k, &ma), bodies_load(&b, body, c->b + k, &mb);
     levers_velocity(c, bundle_beside(p, c), &p->lever[i], e, k, &ma, &mb, u, t1, t2);
-    if (e) problem_soften(c, e, k, u);
+    if (e && p->kind.soft) problem_soften(c, e, k, u);
 }
 
 ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, int64_t i, int k,

@@ -69,7 +69,7 @@ ALWAYS_INLINE void load_slots(const struct problem *p, int64_t bundle, int k,
         levers_velocity(c, t, &p->lever[bundle], e, k, &a, &b, s->v, t1, s->t2);
     else
         bundle_velocity(c, t, e, k, &a, &b, s->v, t1, s->t2);
-    if (e) problem_soften(c, e, k, s->v);
+    if (p->kind.soft) problem_soften(c, e, k, s->v);
     for (int i = 0; i < 3 && !IS(kernel, near); i++)
         s->t1[i] = t1[i]; // what can be loaded is not kept
 }
@@ -81,8 +81,11 @@ ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct b
     const struct rebound *e = bundle_rebound(p, bundle);
     vd la = vload(c->la + k), lb = vload(c->lb + k), im = s->a.im + s->b.im;
     vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
-    w[0] = e ? vload(e->s[0] + k) * im + vload(e->soft[0] + k) : im;
-    w[1] = w[2] = e ? vload(e->s[1] + k) * it + vload(e->soft[1] + k) : it;
+    w[0] = e ? vload(e->s[0] + k) * im : im;
+    w[1] = w[2] = e ? vload(e->s[1] + k) * it : it;
+    if (!p->kind.soft) return;
+    w[0] += vload(e->soft[0] + k);
+    w[1] = w[2] = w[1] + vload(e->soft[1] + k);
 }
 
 /* The local problems of LANES slots; l->W points to W[9]. exact has no use for rho. */
