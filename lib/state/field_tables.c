@@ -363,15 +363,20 @@ const struct field velocity_fields[] = {
 
 /* The same where there are bodies */
 const struct field balance_fields[] = {
-    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES),
-    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES),
-    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES),
-    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES),
-    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES),
-    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES),
+    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES,
+          .key = "kinetic"),
+    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES,
+          .key = "change"),
+    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES,
+          .key = "potential"),
+    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES,
+          .key = "gravity"),
+    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES, .key = "drives"),
+    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES, .key = "loads"),
     FIELD(struct report, balance.dissipation, F64, 1, "dissipation", "J", FIELD_MOVES),
     FIELD(struct report, balance.momentum, F64, 3, "momentum", "N s", FIELD_MOVES),
-    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES),
+    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES,
+          .key = "impulse"),
     { 0 },
 };
 
@@ -385,20 +390,30 @@ const struct field bond_balance_fields[] = {
 
 /* The same where impacts may gain energy */
 const struct field gain_balance_fields[] = {
-    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES),
+    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES, .key = "gained"),
     { 0 },
 };
 
 /* The same where the cell moves */
 const struct field peculiar_balance_fields[] = {
-    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES,
+          .key = "peculiar"),
     FIELD(struct report, balance.peculiar_change, F64, 1, "peculiar_change", "J", FIELD_MOVES),
     { 0 },
 };
 
 /* The same where bodies that overlap are moved apart */
 const struct field projection_balance_fields[] = {
-    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES),
+    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES,
+          .key = "projection"),
     FIELD(struct report, balance.spun, F64, 3, "projection_angular_momentum", "N m s", FIELD_MOVES),
     { 0 },
+};
+
+const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
+    { bond_balance_fields, offsetof(struct report, tied) },
+    { gain_balance_fields, offsetof(struct report, may_gain) },
+    { projection_balance_fields, offsetof(struct report, projected) },
+    { peculiar_balance_fields, offsetof(struct report, sheared) },
+    { NULL, 0 },
 };
