@@ -42,17 +42,13 @@ int report_rows_open(struct report_rows *r, struct source *source, struct failur
     return failure->status;
 }
 
-/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+/* Counts that are counts, a flag that is one */
 static int check_report(const struct report *rep, const char *group, struct failure *failure)
 {
-    uint8_t converged;
-    memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
-        rep->safeguarded < 0 || rep->gave_up < 0)
-        return failure_set(failure, EX_DATAERR, "%s: a number of things is negative", group);
-    if (converged > 1)
-        return failure_set(failure, EX_DATAERR, "%s/converged: is %d", group, converged);
-    if (converged && !isfinite(rep->err.paper.eps_glob))
+    if (records_check(RECORDS(report_fields, 1, rep), group, failure) ||
+        records_check(RECORDS(velocity_fields, 1, rep), group, failure))
+        return failure->status;
+    if (rep->converged && !isfinite(rep->err.paper.eps_glob))
         return failure_set(failure, EX_DATAERR, "%s: has converged with errors that are not finite",
                            group);
     return 0;

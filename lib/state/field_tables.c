@@ -335,9 +335,10 @@ const struct field found_fields[] = {
  * eps_glob, motion, proj, bipotential, penetration.
  */
 const struct field report_fields[] = {
-    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES),
-    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES),
-    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES),
+    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES, .range = FIELD_FLAG),
     FIELD(struct report, err.paper, F64, 5, "eps", "1", FIELD_MOVES),
     FIELD(struct report, err.scaled, F64, 5, "eps_scaled", "1", FIELD_MOVES),
     FIELD(struct report, err.natural, F64, 1, "natural", "1", FIELD_MOVES),
@@ -347,9 +348,10 @@ const struct field report_fields[] = {
     FIELD(struct report, err.max_penetration_true, F64, 1, "max_penetration_true", "m s-1",
           FIELD_MOVES),
     FIELD(struct report, err.max_overlap, F64, 1, "max_overlap", "m", FIELD_MOVES),
-    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES),
-    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES),
-    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES),
+    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
     { 0 },
 };
 
@@ -357,7 +359,8 @@ const struct field report_fields[] = {
 const struct field velocity_fields[] = {
     FIELD(struct report, err.velocity, F64, 1, "velocity", "1", FIELD_MOVES),
     FIELD(struct report, err.velocity_error, F64, 1, "velocity_error", "m s-1", FIELD_MOVES),
-    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES),
+    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
     { 0 },
 };
 
