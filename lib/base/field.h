@@ -45,8 +45,9 @@ struct field {
     /* Does a document have it, and the fields after it that have the same predicate? Of what the table belongs to: a
        packing, a report. NULL: it does; or, where it is optional, if any row is not 0. */
     bool (*when)(const void *of);
+    const char *key; /* in JSON; NULL: the name */
 };
-/* FIELD(owner, member, type, width, name, units, traits, .range = ..., .when = ...) */
+/* FIELD(owner, member, type, width, name, units, traits, .range = ..., .when = ..., .key = ...) */
 #define FIELD(owner, member, kind, wide, called, unit, ...)                                        \
     {                                                                                              \
         .name = (called), .units = (unit), .type = COLUMN_##kind, .width = (wide),                 \

@@ -1,5 +1,7 @@
 #include "file/report_json.h"
 
+#include "state/fields.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdio_ext.h>
@@ -39,34 +41,26 @@ json_t *json_err(const struct err *e)
     return j;
 }
 
+/* The numbers of a report in these fields, of which a row has least .. most */
+static void set_fields(json_t *j, const struct field *f, const struct report *r, int least,
+                       int most)
+{
+    for (; f->name; f++) {
+        const double *x = (const double *)(const void *)((const char *)r + f->offset);
+        if (f->width < least || f->width > most) continue;
+        json_object_set_new(j, f->key ? f->key : f->name,
+                            f->width > 1 ? json_numbers(x, f->width) : json_number(*x));
+    }
+}
+
+/* Vectors come last. */
 static json_t *balance(const struct report *r)
 {
-    const struct balance *b = &r->balance;
     json_t *j = json_object();
-    json_object_set_new(j, "kinetic", json_number(b->kinetic));
-    json_object_set_new(j, "change", json_number(b->change));
-    json_object_set_new(j, "potential", json_number(b->potential));
-    json_object_set_new(j, "gravity", json_number(b->gravity));
-    json_object_set_new(j, "drives", json_number(b->drives));
-    json_object_set_new(j, "loads", json_number(b->loads));
-    json_object_set_new(j, "dissipation", json_number(b->dissipation));
-    if (r->tied) {
-        json_object_set_new(j, "bond_change", json_number(b->bond_change));
-        json_object_set_new(j, "bond_energy", json_number(b->bond_energy));
-        json_object_set_new(j, "broken", json_number(b->broken));
-    }
-    if (r->soft) json_object_set_new(j, "implicit", json_number(b->implicit));
-    if (r->may_gain) json_object_set_new(j, "gained", json_number(b->gained));
-    if (r->projected) {
-        json_object_set_new(j, "projection", json_number(b->projection));
-        json_object_set_new(j, "projection_angular_momentum", json_numbers(b->spun, 3));
-    }
-    if (r->sheared) {
-        json_object_set_new(j, "peculiar", json_number(b->peculiar));
-        json_object_set_new(j, "peculiar_change", json_number(b->peculiar_change));
-    }
-    json_object_set_new(j, "momentum", json_numbers(b->momentum, 3));
-    json_object_set_new(j, "impulse", json_numbers(b->impulse, 3));
+    set_fields(j, balance_fields, r, 1, 1);
+    for (const struct balance_part *part = balance_parts; part->fields; part++)
+        if (balance_part_has(part, r)) set_fields(j, part->fields, r, 1, 3);
+    set_fields(j, balance_fields, r, 2, 3);
     return j;
 }
 

@@ -9,29 +9,6 @@
 
 enum { AHEAD = 256 }; /* reports read at once: 64 KiB */
 
-/* Terms that the balances of some packings have, and where a report says that it has them */
-static const struct {
-    const struct field *columns;
-    size_t flag; /* of a bool in struct report */
-} parts[] = {
-    { bond_balance_fields, offsetof(struct report, tied) },
-    { spring_balance_fields, offsetof(struct report, soft) },
-    { gain_balance_fields, offsetof(struct report, may_gain) },
-    { projection_balance_fields, offsetof(struct report, projected) },
-    { peculiar_balance_fields, offsetof(struct report, sheared) },
-};
-enum { PARTS = sizeof parts / sizeof parts[0] };
-
-static bool *part_flag(struct report *rep, int k)
-{
-    return (bool *)((char *)rep + parts[k].flag);
-}
-
-static bool part_is_there(const struct report *rep, int k)
-{
-    return *(const bool *)((const char *)rep + parts[k].flag);
-}
-
 /* The reports whose numbers in these columns are there: a killed writer's may differ. */
 static void report_rows_count_rows(struct report_rows *r, const struct field *columns)
 {
@@ -59,23 +36,19 @@ int report_rows_open(struct report_rows *r, struct source *source, struct failur
     report_rows_count_rows(r, report_fields);
     report_rows_count_rows(r, velocity_fields);
     report_rows_count_rows(r, balance_fields);
-    for (int k = 0; k < PARTS; k++) report_rows_count_rows(r, parts[k].columns);
+    for (int k = 0; k < BALANCE_PARTS; k++) report_rows_count_rows(r, balance_parts[k].fields);
     r->solves = account_rows_count(source, r->solves);
     if (!failure->status) r->solves = table_read_rising(r->solved, r->solves);
     return failure->status;
 }
 
-/* Counts that are counts, a flag that is one: looked at as a byte, for a bool may not be 5. */
+/* Counts that are counts, a flag that is one */
 static int check_report(const struct report *rep, const char *group, struct failure *failure)
 {
-    uint8_t converged;
-    memcpy(&converged, &rep->converged, 1);
-    if (rep->sweeps < 0 || rep->err.contacts < 0 || rep->err.jammed < 0 || rep->newton < 0 ||
-        rep->safeguarded < 0 || rep->gave_up < 0)
-        return failure_set(failure, EX_DATAERR, "%s: a number of things is negative", group);
-    if (converged > 1)
-        return failure_set(failure, EX_DATAERR, "%s/converged: is %d", group, converged);
-    if (converged && !isfinite(rep->err.paper.eps_glob))
+    if (records_check(RECORDS(report_fields, 1, rep), group, failure) ||
+        records_check(RECORDS(velocity_fields, 1, rep), group, failure))
+        return failure->status;
+    if (rep->converged && !isfinite(rep->err.paper.eps_glob))
         return failure_set(failure, EX_DATAERR, "%s: has converged with errors that are not finite",
                            group);
     return 0;
@@ -137,17 +110,18 @@ static int read_ahead(struct report_rows *r, int64_t at, struct failure *failure
     if (balanced &&
         report_rows_read_table(r, at, RECORDS(balance_fields, n, r->ahead.row), failure))
         return failure->status;
-    bool has[PARTS];
-    for (int k = 0; k < PARTS; k++) {
-        snprintf(time, sizeof time, "%s/%s/value", r->group, parts[k].columns[0].name);
+    bool has[BALANCE_PARTS];
+    for (int k = 0; k < BALANCE_PARTS; k++) {
+        snprintf(time, sizeof time, "%s/%s/value", r->group, balance_parts[k].fields[0].name);
         has[k] = balanced && source_has(r->source, time);
-        if (has[k] &&
-            report_rows_read_table(r, at, RECORDS(parts[k].columns, n, r->ahead.row), failure))
+        if (has[k] && report_rows_read_table(
+                          r, at, RECORDS(balance_parts[k].fields, n, r->ahead.row), failure))
             return failure->status;
     }
     for (int64_t i = 0; i < n; i++) {
         r->ahead.row[i].balanced = balanced;
-        for (int k = 0; k < PARTS; k++) *part_flag(&r->ahead.row[i], k) = has[k];
+        for (int k = 0; k < BALANCE_PARTS; k++)
+            *balance_part_flag(&balance_parts[k], &r->ahead.row[i]) = has[k];
     }
     r->ahead.n = n;
     return 0;
@@ -206,12 +180,13 @@ static int write_balance(struct table_write *s, const struct report *rep, bool f
                          struct failure *failure)
 {
     if (write_table(s, balance_fields, rep, first, failure)) return failure->status;
-    for (int k = 0; k < PARTS; k++) {
+    for (int k = 0; k < BALANCE_PARTS; k++) {
         char path[80];
-        snprintf(path, sizeof path, "%s/%s/value", LAYOUT_REPORT, parts[k].columns[0].name);
+        snprintf(path, sizeof path, "%s/%s/value", LAYOUT_REPORT, balance_parts[k].fields[0].name);
         // a trajectory has the terms of its first report in all of them, 0 where there is no such term
-        bool has = first ? part_is_there(rep, k) : table_write_grows(s, path);
-        if (has && write_table(s, parts[k].columns, rep, first, failure)) return failure->status;
+        bool has = first ? balance_part_has(&balance_parts[k], rep) : table_write_grows(s, path);
+        if (has && write_table(s, balance_parts[k].fields, rep, first, failure))
+            return failure->status;
     }
     return 0;
 }

@@ -52,7 +52,7 @@ static int roster_grow(struct roster *r, struct failure *failure)
     size_t room = r->room ? 2 * (size_t)r->room : 256;
     int32_t *id = realloc(r->id, room * sizeof *id);
     if (id) r->id = id;
-    char *fixed = realloc(r->fixed, room * r->bytes);
+    char *fixed = realloc(r->fixed, room * r->bytes + 1);
     if (fixed) r->fixed = fixed;
     if (!id || !fixed) return failure_set(failure, EX_SOFTWARE, "no memory for the roster");
     r->room = (int64_t)room;

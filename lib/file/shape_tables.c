@@ -16,7 +16,7 @@ struct shape_tables_row {
     double round, volume, moment[3];
 };
 
-static const struct field layout_rows[] = {
+static const struct field shape_fields[] = {
     FIELD(struct shape_tables_row, form, I32, 1, "form", "1", 0),
     FIELD(struct shape_tables_row, vertices, I32, 1, "vertices", "1", 0),
     FIELD(struct shape_tables_row, faces, I32, 1, "faces", "1", 0),
@@ -147,7 +147,7 @@ int shape_tables_read(struct source *r, struct packing *p, struct failure *failu
         failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     t.n = (int32_t)n[0], t.row = row, t.names = names;
     if (!failure->status &&
-        !table_read_columns(r, SHAPE, "", 0, RECORDS(layout_rows, t.n, row), failure) &&
+        !table_read_columns(r, SHAPE, "", 0, RECORDS(shape_fields, t.n, row), failure) &&
         !read_lists(r, &t.lists, failure))
         make_shapes(r, p, &t, failure);
     listing_drop(&t.lists);
@@ -159,11 +159,10 @@ int shape_tables_read(struct source *r, struct packing *p, struct failure *failu
 
 static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct failure *failure)
 {
-    const hsize_t n = (hsize_t)t->n - 1, wide[2] = { n, 3 };
-    struct shape_tables_row *row = calloc((size_t)n + 1, sizeof *row);
-    double *out = calloc((size_t)n + 1, sizeof row->moment);
-    if (!row || !out) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
-    for (int32_t k = 1; k < t->n && row && out; k++) {
+    struct table_write w = { .file = file };
+    struct shape_tables_row *row = calloc((size_t)t->n, sizeof *row);
+    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    for (int32_t k = 1; k < t->n; k++) {
         const struct shape *s = &t->s[k];
         row[k - 1] = (struct shape_tables_row){ s->form,
                                                 s->vertices,
@@ -173,14 +172,8 @@ static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct fa
                                                 s->volume,
                                                 { s->moment[0], s->moment[1], s->moment[2] } };
     }
-    for (const struct field *c = layout_rows; c->name && !failure->status; c++) {
-        char path[80];
-        snprintf(path, sizeof path, SHAPE "/%s", c->name);
-        field_gather(c, (int64_t)n, row, sizeof *row, out);
-        h5_write(file, path, h5_array(column_native(c->type), c->width > 1 ? 2 : 1, wide, out),
-                 c->units, failure);
-    }
-    free(row), free(out);
+    table_write_once(&w, SHAPE, RECORDS(shape_fields, t->n - 1, row), failure);
+    free(row);
     return failure->status;
 }
 

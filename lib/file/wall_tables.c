@@ -62,26 +62,31 @@ static const struct signals signals_drive = { BOUNDARY "/drive", offsetof(struct
                                              offsetof(struct wall, first_push),
                                              offsetof(struct wall, pushes) };
 
+int signal_tables_read(struct source *r, const char *group, const struct field *fields,
+                       struct drives *d, struct failure *failure)
+{
+    char first[60], rows[60];
+    int32_t n = 0, m = 0;
+    snprintf(first, sizeof first, "%s/%s", group, fields[0].name);
+    snprintf(rows, sizeof rows, "%s/row", group);
+    if (!source_has(r, group)) return 0;
+    if (wall_tables_count_rows(r, first, 1, &n, failure) ||
+        wall_tables_count_rows(r, rows, 2, &m, failure) || drives_alloc(d, n, m, failure) ||
+        table_read_columns(r, group, "", 0, RECORDS(fields, n, d->drive), failure))
+        return failure->status;
+    return source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, failure);
+}
+
 static int read_signals(struct source *r, const struct signals *of, struct packing *p,
                         struct failure *failure)
 {
-    const char *group = of->group;
     struct drives *d = (struct drives *)(void *)((char *)p + of->drives);
-    char boundary[60], rows[60];
-    int32_t n = 0, m = 0;
-    snprintf(boundary, sizeof boundary, "%s/boundary", group);
-    snprintf(rows, sizeof rows, "%s/row", group);
-    if (!source_has(r, group)) return 0;
-    if (wall_tables_count_rows(r, boundary, 1, &n, failure) ||
-        wall_tables_count_rows(r, rows, 2, &m, failure) || drives_alloc(d, n, m, failure) ||
-        table_read_columns(r, group, "", 0, RECORDS(drive_fields, n, d->drive), failure) ||
-        source_rows(r, rows, (struct slab){ COLUMN_F64, 0, m, 2 }, d->row, failure))
-        return failure->status;
-    for (int32_t k = 0; k < n; k++) {
+    if (signal_tables_read(r, of->group, drive_fields, d, failure)) return failure->status;
+    for (int32_t k = 0; k < d->n; k++) {
         int32_t w = d->drive[k].boundary;
         if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
-            return failure_set(failure, EX_DATAERR, "%s: not in the order of the boundaries",
-                               boundary);
+            return failure_set(failure, EX_DATAERR,
+                               "%s/boundary: not in the order of the boundaries", of->group);
         int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
         if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + of->first) = k;
     }
@@ -170,23 +175,22 @@ static struct boundary_motion *motions(const struct packing *p, struct failure *
     return m;
 }
 
-static int write_signals(struct table_write *s, const char *group, const struct drives *d,
-                         const char *units, struct failure *failure)
+int signal_tables_write(struct table_write *s, const char *group, const struct field *fields,
+                        const struct drives *d, const char *units, struct failure *failure)
 {
     const hsize_t shape[2] = { (hsize_t)d->rows, 2 };
     char rows[60];
     snprintf(rows, sizeof rows, "%s/row", group);
-    if (!d->n) return 0;
-    if (table_write_once(s, group, RECORDS(drive_fields, d->n, d->drive), failure))
+    if (!d->n || table_write_once(s, group, RECORDS(fields, d->n, d->drive), failure))
         return failure->status;
     return h5_write(s->file, rows, h5_array(H5T_NATIVE_DOUBLE, 2, shape, d->row), units, failure);
 }
 
 static int write_drives(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (write_signals(s, BOUNDARY "/drive", &p->drives, "s; m, rad", failure))
+    if (signal_tables_write(s, BOUNDARY "/drive", drive_fields, &p->drives, "s; m, rad", failure))
         return failure->status;
-    return write_signals(s, BOUNDARY "/push", &p->pushes, "s; N, N m", failure);
+    return signal_tables_write(s, BOUNDARY "/push", drive_fields, &p->pushes, "s; N, N m", failure);
 }
 
 static int write_mesh(struct table_write *s, const struct packing *p, struct failure *failure)

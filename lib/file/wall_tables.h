@@ -31,4 +31,10 @@ int name_tables_read(struct source *source, struct packing *p, struct failure *f
 /* What all frames share */
 int name_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
+/* Signals in time, and the rows of their tables in group/row. Each returns 0, EX_DATAERR, EX_SOFTWARE or EX_IOERR. */
+int signal_tables_read(struct source *source, const char *group, const struct field *fields,
+                       struct drives *drives, struct failure *failure);
+int signal_tables_write(struct table_write *tables, const char *group, const struct field *fields,
+                        const struct drives *drives, const char *units, struct failure *failure);
+
 #endif

@@ -348,9 +348,10 @@ const struct field found_fields[] = {
  * eps_glob, motion, proj, bipotential, penetration.
  */
 const struct field report_fields[] = {
-    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES),
-    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES),
-    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES),
+    FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, sweeps, I32, 1, "sweeps", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, converged, I8, 1, "converged", "1", FIELD_MOVES, .range = FIELD_FLAG),
     FIELD(struct report, err.paper, F64, 5, "eps", "1", FIELD_MOVES),
     FIELD(struct report, err.scaled, F64, 5, "eps_scaled", "1", FIELD_MOVES),
     FIELD(struct report, err.natural, F64, 1, "natural", "1", FIELD_MOVES),
@@ -360,9 +361,10 @@ const struct field report_fields[] = {
     FIELD(struct report, err.max_penetration_true, F64, 1, "max_penetration_true", "m s-1",
           FIELD_MOVES),
     FIELD(struct report, err.max_overlap, F64, 1, "max_overlap", "m", FIELD_MOVES),
-    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES),
-    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES),
-    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES),
+    FIELD(struct report, newton, I64, 1, "newton", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
     { 0 },
 };
 
@@ -370,21 +372,27 @@ const struct field report_fields[] = {
 const struct field velocity_fields[] = {
     FIELD(struct report, err.velocity, F64, 1, "velocity", "1", FIELD_MOVES),
     FIELD(struct report, err.velocity_error, F64, 1, "velocity_error", "m s-1", FIELD_MOVES),
-    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES),
+    FIELD(struct report, err.jammed, I64, 1, "jammed", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
     { 0 },
 };
 
 /* The same where there are bodies */
 const struct field balance_fields[] = {
-    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES),
-    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES),
-    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES),
-    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES),
-    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES),
-    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES),
+    FIELD(struct report, balance.kinetic, F64, 1, "kinetic_energy", "J", FIELD_MOVES,
+          .key = "kinetic"),
+    FIELD(struct report, balance.change, F64, 1, "kinetic_change", "J", FIELD_MOVES,
+          .key = "change"),
+    FIELD(struct report, balance.potential, F64, 1, "potential_energy", "J", FIELD_MOVES,
+          .key = "potential"),
+    FIELD(struct report, balance.gravity, F64, 1, "work_gravity", "J", FIELD_MOVES,
+          .key = "gravity"),
+    FIELD(struct report, balance.drives, F64, 1, "work_drives", "J", FIELD_MOVES, .key = "drives"),
+    FIELD(struct report, balance.loads, F64, 1, "work_loads", "J", FIELD_MOVES, .key = "loads"),
     FIELD(struct report, balance.dissipation, F64, 1, "dissipation", "J", FIELD_MOVES),
     FIELD(struct report, balance.momentum, F64, 3, "momentum", "N s", FIELD_MOVES),
-    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES),
+    FIELD(struct report, balance.impulse, F64, 3, "boundary_impulse", "N s", FIELD_MOVES,
+          .key = "impulse"),
     { 0 },
 };
 
@@ -404,20 +412,31 @@ const struct field spring_balance_fields[] = {
 
 /* The same where impacts may gain energy */
 const struct field gain_balance_fields[] = {
-    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES),
+    FIELD(struct report, balance.gained, F64, 1, "impact_gain", "J", FIELD_MOVES, .key = "gained"),
     { 0 },
 };
 
 /* The same where the cell moves */
 const struct field peculiar_balance_fields[] = {
-    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES),
+    FIELD(struct report, balance.peculiar, F64, 1, "peculiar_energy", "J", FIELD_MOVES,
+          .key = "peculiar"),
     FIELD(struct report, balance.peculiar_change, F64, 1, "peculiar_change", "J", FIELD_MOVES),
     { 0 },
 };
 
 /* The same where bodies that overlap are moved apart */
 const struct field projection_balance_fields[] = {
-    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES),
+    FIELD(struct report, balance.projection, F64, 1, "projection_work", "J", FIELD_MOVES,
+          .key = "projection"),
     FIELD(struct report, balance.spun, F64, 3, "projection_angular_momentum", "N m s", FIELD_MOVES),
     { 0 },
+};
+
+const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
+    { bond_balance_fields, offsetof(struct report, tied) },
+    { spring_balance_fields, offsetof(struct report, soft) },
+    { gain_balance_fields, offsetof(struct report, may_gain) },
+    { projection_balance_fields, offsetof(struct report, projected) },
+    { peculiar_balance_fields, offsetof(struct report, sheared) },
+    { NULL, 0 },
 };

@@ -49,8 +49,8 @@
 const struct part packing_parts[] = {
     EACH_BODY_COLUMN(BODY) // rows of macros end with commas
     TEXTS("kind", "kinds", PART_SETTING, kind_name, PART_I32, kinds),
-    EVERY_PAIR_COLUMN(PAIR) ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE,
-                                  kinds, 0, law_fields),
+    EVERY_PAIR_COLUMN(PAIR) // these, too
+    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE, kinds, 0, law_fields),
     SETTING("wall", "walls", wall, walls, wall_fields),
     ARRAY("load", "walls", PART_SETTING | PART_AGAIN, wall, PART_I32, walls, 0, load_fields),
     SETTING("drive", "drives", drives.drive, drives.n, drive_fields),

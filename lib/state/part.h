@@ -1,7 +1,7 @@
 /*
- * state/part.h: the parts of a packing: each of its arrays, with the fields of a row. A row of packing_parts[] is all that free,
- * copy, compare, send to other processes and restore know of an array; a field of its table is all that they know of a
- * member. What a packing has without an array is in packing_fields[]; shapes are copied and compared by state/part.c.
+ * state/part.h: the parts of a packing: each of its arrays, with the fields of a row. free, copy, compare and send to other
+ * ranks are loops over packing_parts[], and over the fields of a part where members count. What a packing has without an
+ * array is in packing_fields[] and cell_fields[]; shapes, which own arrays themselves, are copied and compared apart.
  */
 #ifndef NSD_PART_H
 #define NSD_PART_H
@@ -10,11 +10,10 @@
 #include "state/packing.h"
 
 enum part_trait {
-    PART_SETTING =
-        1, /* the step of another rank needs it, and all frames of a trajectory share what is FIELD_SAME */
-    PART_BODY = 2, /* a row for each body */
-    PART_TEXT = 4, /* rows are strings */
-    PART_AGAIN = 8 /* other fields of an array that has a row of its own */
+    PART_SETTING = 1, /* ranks need it, and all frames of a trajectory share its FIELD_SAME */
+    PART_BODY = 2,    /* a row for each body */
+    PART_TEXT = 4,    /* rows are strings */
+    PART_AGAIN = 8    /* other fields of an array that has a row of its own */
 };
 
 /* How many rows there are: as a member of struct packing says, its square, or one if there is a text */
