@@ -199,7 +199,7 @@ int contact_rows_write(struct table_write *s, const struct frame *f, struct fail
         (t->found && table_write_columns(s, "/contacts", "", RECORDS(found_fields, t->n, t->found),
                                          CHUNK_CONTACTS, failure)) ||
         (t->found && packing_rolls(&f->packing) && write_moments(s, t, failure)) ||
-        (forces && contact_rows_write_forces(s, t, f->packing.dt, failure)) ||
+        (t->found && forces && contact_rows_write_forces(s, t, f->packing.dt, failure)) ||
         table_write_number(s, "/contacts/step", COLUMN_I64, &f->packing.step, NULL, failure))
         return failure->status;
     if (s->growing) s->contacts += t->n;
