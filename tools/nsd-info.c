@@ -52,9 +52,12 @@ static void add_law(json_t *j, const struct pair_law *l)
         json_object_set_new(j, "capillary",
                             json_pack("{s:f, s:f, s:f}", "volume", l->volume, "tension", l->tension,
                                       "wetting", l->wetting));
-    if (pair_law_rolls(l))
-        json_object_set_new(j, "rolling",
-                            json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p));
+    if (pair_law_rolls(l)) {
+        json_t *rolling = json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p);
+        if (l->mu_r_ratio > 0) json_object_set_new(rolling, "mu_r_ratio", json_real(l->mu_r_ratio));
+        if (l->mu_p_ratio > 0) json_object_set_new(rolling, "mu_p_ratio", json_real(l->mu_p_ratio));
+        json_object_set_new(j, "rolling", rolling);
+    }
     if (pair_law_springs(l))
         json_object_set_new(j, "stiffness",
                             json_pack("{s:f, s:f}", "normal", l->kn, "tangential", l->kt));

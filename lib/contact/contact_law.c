@@ -140,6 +140,13 @@ static bool is_wet(const struct packing *p, const struct contact *c, const struc
     return pair_law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
 }
 
+/* m: r1 r2/(r1 + r2) of the balls around the bodies; r at a wall */
+static double effective_radius(const struct packing *p, const struct contact *c)
+{
+    const double r = p->radius[c->b];
+    return c->a < 0 ? r : r * p->radius[c->a] / (r + p->radius[c->a]);
+}
+
 static void set_tie(struct contact_law *t, const struct packing *p, struct contact *c,
                     const struct bond *old, const struct attraction *of)
 {
@@ -147,6 +154,8 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
     bool wet = is_wet(p, c, l, old);
     t->jump[0] = fmax(0, c->gap);
     t->mu_r = l->mu_r, t->mu_p = l->mu_p;
+    if (l->mu_r_ratio > 0) t->mu_r += l->mu_r_ratio * effective_radius(p, c);
+    if (l->mu_p_ratio > 0) t->mu_p += l->mu_p_ratio * effective_radius(p, c);
     if (wet)
         t->state |=
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;

@@ -97,6 +97,11 @@ static const struct key rolling_key[] = {
       "Rolling friction: the moment against rolling is at most mu_r times the normal force." },
     { "mu_p", &key_not_negative, AT(mu_p), "m", "0", "1e-5",
       "Pivoting friction: the moment about the normal is at most mu_p times the normal force." },
+    { "mu_r_ratio", &key_not_negative, AT(mu_r_ratio), "-", "0", "0.2",
+      "Rolling friction over the effective radius r1 r2/(r1 + r2), r at a wall; it is added to "
+      "mu_r." },
+    { "mu_p_ratio", &key_not_negative, AT(mu_p_ratio), "-", "0", "0.05",
+      "Pivoting friction over the effective radius; it is added to mu_p." },
     { 0 },
 };
 static const struct keys rolling_keys = { "rolling", rolling_key };

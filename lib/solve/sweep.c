@@ -83,7 +83,7 @@ ALWAYS_INLINE void weigh(const struct problem *p, int64_t bundle, const struct b
     vd it = im + la * la * s->a.ii + lb * lb * s->b.ii;
     w[0] = e ? vload(e->s[0] + k) * im : im;
     w[1] = w[2] = e ? vload(e->s[1] + k) * it : it;
-    if (!p->kind.soft) return;
+    if (!p->kind.soft || !e) return;
     w[0] += vload(e->soft[0] + k);
     w[1] = w[2] = w[1] + vload(e->soft[1] + k);
 }

@@ -187,6 +187,8 @@ const struct field law_fields[] = {
     LAW(made, "made", "s", FINITE),
     LAW(forever, "forever", "1", FLAG),
     LAW(impact, "impact", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
+    LAW(mu_r_ratio, "mu_r_ratio", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
+    LAW(mu_p_ratio, "mu_p_ratio", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
     LAW(kn, "k_n", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
     LAW(kt, "k_t", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
     { 0 },

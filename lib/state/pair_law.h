@@ -29,7 +29,8 @@ struct pair_law {
 
     double volume, tension, wetting; /* m^3, N/m, rad: of a liquid bridge */
 
-    double mu_r, mu_p; /* m */
+    double mu_r, mu_p;             /* m */
+    double mu_r_ratio, mu_p_ratio; /* in addition, over the effective radius of the pair */
 
     double cn, ct;  /* N/m^3: stiffness of a bond, per area */
     double w;       /* J/m^2: its energy; 0: there is no adhesion */
@@ -63,7 +64,7 @@ static inline bool pair_law_springs(const struct pair_law *l)
 }
 static inline bool pair_law_rolls(const struct pair_law *l)
 {
-    return l->mu_r > 0 || l->mu_p > 0;
+    return l->mu_r > 0 || l->mu_p > 0 || l->mu_r_ratio > 0 || l->mu_p_ratio > 0;
 }
 /* Does the pair hold together over a gap? */
 static inline bool pair_law_attracts(const struct pair_law *l)

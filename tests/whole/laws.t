@@ -277,6 +277,14 @@ for m in sbp sal ebp eal exact auto; do
         "$(nsd-info --last -p "$tmp/rolled.h5" | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
     rm "$tmp/stayed.h5" "$tmp/rolled.h5"
 done
+# over the effective radius: r at a wall, r1 r2/(r1 + r2) of two balls
+nsd-info --scene "$tmp/rolls.h5" | jq '.rolling = { mu_r_ratio: 0.03, mu_r: 1e-4 }' | nsd-gen - >"$tmp/ratio.h5"
+is "mu_r_ratio at a wall is mu_r/R" \
+    "$(step -m exact --criterion natural --eps 1e-10 -n 100 "$tmp/ratio.h5" | nsd-info --last -p | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
+jq -n '{ dt: 1e-3, mu: 0.6, rolling: { mu_r_ratio: 0.3, mu_p_ratio: 0.06, mu_p: 1e-3 },
+    bodies: [{ x: [0, 0, 0], radius: 0.01 }, { x: [0.03, 0, 0], radius: 0.02 }] }' | nsd-gen - | nsd-detect >"$tmp/two.h5"
+is "of two balls it is of r1 r2/(r1 + r2), and added" "$(nsd-info -c "$tmp/two.h5" | jq -c '[.mu_r, .mu_p] | map(. * 1e9 | round)')" '[2000000,1400000]'
+is "documents keep it" "$(nsd-cat "$tmp/two.h5" | nsd-info | jq -c 'select(.material).material[0].rolling | [.mu_r, .mu_p, .mu_r_ratio, .mu_p_ratio]')" '[0,0.001,0.3,0.06]'
 for how in '{ v: [0.1, 0, 0], w: [0, 10, 0] }|.x[0] / (7 * 0.1 * 0.1 / (10 * 0.02 * 9.81))|1e-2' \
     '{ v: [0, 0, 0], w: [0, 0, 10] }|.w[2] / (10 - 0.1 * 2e-4 * 9.81 / (0.4 * 1e-4))|1e-9'; do
     IFS='|' read -r motion what tolerance <<<"$how"
