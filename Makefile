@@ -398,7 +398,7 @@ build/man/style.css: scripts/man/style.css
 	cp $< $@
 
 # Completion in bash and zsh, out of each tool's table of options
-COMPLETIONS := $(foreach t,$(notdir $(TOOLS)),$B/completion/bash/$t $B/completion/zsh/_$t)
+COMPLETIONS := $(foreach t,$(notdir $(TOOLS)) nsd-fit,$B/completion/bash/$t $B/completion/zsh/_$t)
 
 completions: $(COMPLETIONS)
 
@@ -463,7 +463,7 @@ install-python:
 uninstall:
 	cd $(TO)/bin && rm -f $(notdir $(TOOLS)) nsd-step-mpi nsd-fit
 	for m in $(MANUALS); do rm -f $(TO)/share/man/man$${m##*.}/$${m##*/}; done
-	for t in $(notdir $(TOOLS)); do \
+	for t in $(notdir $(TOOLS)) nsd-fit; do \
 	    rm -f $(TO)/share/bash-completion/completions/$$t $(TO)/share/zsh/site-functions/_$$t; \
 	done
 	rm -rf $(TO)/share/nsd $(TO)/share/doc/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import signal
 import sys
 import time
@@ -36,6 +37,24 @@ Examples:
 
 The manual: man nsd-fit, man 7 nsd
 """
+
+
+def completion(shell: str) -> str:
+    """For bash or zsh, made from HELP."""
+    found = re.findall(r"^ {2}(?:-(\w), |    )--([a-z]+)(?: ([A-Z]+))? +(.*)$", HELP, re.M)
+    if shell == "bash":
+        words = " ".join(f"--{name}" for _, name, _, _ in found)
+        return ("# bash completion of nsd-fit, made by nsd-fit --completion bash\n_nsd_fit()\n{\n"
+                f"    local word=${{COMP_WORDS[COMP_CWORD]}} words=' {words}'\n    COMPREPLY=()\n    [[ $word = -* ]] || return\n"
+                "    mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$word\")\n}\ncomplete -o default -F _nsd_fit nsd-fit\n")
+    rows = []
+    for letter, name, value, text in found:
+        action = ":folder:_files -/" if value == "FOLDER" else f":{value}:" if value else ""
+        text = re.sub(r" *\[.*\]", "", text)
+        rows += [f"    '-{letter}[{text}]{action}' \\\n"] if letter else []
+        rows.append(f"    '--{name}{'=' if value else ''}[{text}]{action}' \\\n")
+    return ("#compdef nsd-fit\n# zsh completion, made by nsd-fit --completion zsh\n_arguments -s -S \\\n" + "".join(rows)
+            + "    '*:file:_files'\n")
 
 
 class Options(argparse.ArgumentParser):
@@ -166,6 +185,9 @@ def fit(problem: Problem, folder: str, a: argparse.Namespace) -> int:
 
 
 def main(version: str) -> int:
+    if sys.argv[1:2] == ["--completion"] and sys.argv[2:] in (["bash"], ["zsh"]):
+        sys.stdout.write(completion(sys.argv[2]))
+        return 0
     a = read_options(version)
     try:
         import scipy.stats  # noqa: F401
