@@ -9,7 +9,8 @@ def total(f): map(f) | add;
 | { run: $run, scene: $scene, example: $scene[7:8], dim: (if $scene | endswith("-2d") then 2 else 3 end),
     settings: $newton, alpha: ($alpha // null), method: $method,
     seed: ($seed // null | if . then tonumber else null end), box: ($box // null | if . then tonumber else null end),
-    steps: length, asked: $steps, diverged: ($last.eps_glob == null), # the last logged solve
+    # the step after which a number would not be finite is not made, and ends the run
+    steps: length, asked: $steps, diverged: (length < $steps),
     # without restitution nothing gets faster than it was thrown or fell
     blew_up: ($frame.max_speed > 1.5 + 9.81 * $frame.time), max_speed: $frame.max_speed }
 + ($last | { contacts, sweeps, eps_glob, motion, proj, bipotential, penetration,
