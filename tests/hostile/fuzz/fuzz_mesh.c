@@ -16,7 +16,8 @@ static void make_grain(const struct mesh *m, bool hull)
     struct shape s = { .form = SHAPE_HULL };
     struct failure failure = { 0 };
     struct solid_frame was;
-    if (!mesh_shape(&s, m, hull, &failure) && !solid_settle(&s, 3, &was, &failure))
+    bool by_hull = false;
+    if (!mesh_shape(&s, m, hull, &by_hull, &failure) && !solid_settle(&s, 3, &was, &failure))
         shape_finish(&s, 3, &failure);
     if (failure.status && (!failure.text[0] || strchr(failure.text, '\n'))) abort();
     shape_free(&s);
