@@ -195,9 +195,9 @@ test: tests
 	$(PROVE) $(filter-out $(NARROW) $(if $(SAN),$(PLAIN)),$(TESTS) $(if $(SAN),$(REST)))
 	$(if $(NARROW),NSD_LANES=2 $(PROVE) $(NARROW))
 
-# The whole of a test of which make check runs a part is there, too.
+# The whole of a test of which make check runs a part is there, too; and one that needs a package of setup-all.
 test-rest: tests
-	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t $B/tests/unit/api_test
+	NSD_DEEP=1 $(PROVE) $(REST) tests/hostile/wrong_input.t $B/tests/unit/api_test tests/tools/fit.t
 
 check: setup-check
 	$(MAKE) -j2 tests
