@@ -14,6 +14,9 @@ import warnings
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import qmc
+from sklearn.gaussian_process import GaussianProcessRegressor
+from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
 from .problem import Problem
 
@@ -25,12 +28,10 @@ NEGLIGIBLE = 15.0  # the logarithm of a density below the largest one
 class Surrogate:
     def __init__(self, problem: Problem, x: np.ndarray, measures: np.ndarray):
         """x [n][d] from 0 to 1, measures [n][targets]"""
-        from sklearn.gaussian_process import GaussianProcessRegressor
-        from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
         self.targets = problem.targets
         self.process, self.scatter = [], []
         for k in range(len(problem.targets)):
-            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * RBF(np.full(x.shape[1], 0.5), (0.05, 20.0))
+            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * RBF(np.full(x.shape[1], 0.5), (0.15, 20.0))
                       + WhiteKernel(0.1, (1e-8, 1.0)))
             y, size = measures[:, k], measures[:, k].std() or 1.0
             process = GaussianProcessRegressor(kernel, n_restarts_optimizer=3, random_state=0)
@@ -87,7 +88,6 @@ class Posterior:
 
 
 def sobol(d: int, n: int, seed: int) -> np.ndarray:
-    from scipy.stats import qmc
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return qmc.Sobol(d, seed=seed).random(n)
