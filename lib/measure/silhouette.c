@@ -11,6 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { CLOSED = 7, BODIES_CUT = 10, PHOTO_CUT = 30 };
+
 static const struct quantity quantities[] = {
     { "frames", "1", 1, "number of frames that are laid over each other" },
     { "area", "m2", 1, "area that bodies cover" },
@@ -164,7 +166,9 @@ static int cover_frame(uint32_t *cover, const struct canvas *c, const struct sna
     return failure->status;
 }
 
-int silhouette_keep(struct frame_memory *now, const struct snapshot *s, struct failure *failure)
+/* now->cover = that of s->before, and this frame's. Returns 0 or EX_SOFTWARE. */
+static int silhouette_keep(struct frame_memory *now, const struct snapshot *s,
+                           struct failure *failure)
 {
     if (!(s->asked->window[1] > s->asked->window[0])) return 0;
     const struct canvas c = canvas_of(s->asked, s->p->dim);
@@ -182,10 +186,10 @@ int silhouette_keep(struct frame_memory *now, const struct snapshot *s, struct f
 
 /* ---- what is covered ---- */
 
-/* to[n] = the largest, or smallest, of the SILHOUETTE_CLOSED values around each of from[n], `step` apart */
+/* to[n] = the largest, or smallest, of the CLOSED values around each of from[n], `step` apart */
 static void extreme(uint8_t *to, const uint8_t *from, int64_t n, int64_t step, bool largest)
 {
-    const int64_t half = SILHOUETTE_CLOSED / 2;
+    const int64_t half = CLOSED / 2;
     for (int64_t i = 0; i < n; i++) {
         uint8_t e = from[i * step];
         for (int64_t k = i > half ? i - half : 0; k <= i + half && k < n; k++) {
@@ -243,7 +247,7 @@ static int silhouette_of(struct silhouette *s, const struct canvas *c, const str
         close_gaps(s->body, other, c->w, c->h), close_gaps(s->photo, other, c->w, c->h);
     for (int64_t k = 0; k < n && !failure->status; k++) {
         const bool counts = counts_pixel(c, a, k % c->w, k / c->w);
-        s->body[k] = counts && s->body[k] > SILHOUETTE_CUT;
+        s->body[k] = counts && s->body[k] > BODIES_CUT;
         s->photo[k] = counts && s->photo[k] > PHOTO_CUT;
     }
     free(other);

@@ -2,8 +2,8 @@
  * measure/silhouette.h: the area that bodies cover in a projection, compared with a photograph.
  *
  * Every pixel counts the bodies in front of its centre, added over the frames. The counts, as bytes of which 255 is the
- * largest count, are closed by squares of SILHOUETTE_CLOSED pixels (gaps between grains through which one sees the
- * background), and what is above SILHOUETTE_CUT is covered. Of a photograph, dark on a bright ground and perhaps a mean of
+ * largest count, are closed by squares of CLOSED x CLOSED pixels (gaps between grains through which one sees the
+ * background), and what is above BODIES_CUT is covered. Of a photograph, dark on a bright ground and perhaps a mean of
  * several, the same is made with 255 minus its grey and PHOTO_CUT. Only pixels in the disc that is asked for count.
  */
 #ifndef NSD_SILHOUETTE_H
@@ -11,10 +11,6 @@
 
 #include "measure/snapshot.h"
 
-enum { SILHOUETTE_CLOSED = 7, SILHOUETTE_CUT = 10, PHOTO_CUT = 30 };
-
-/* now->cover = that of s->before, and this frame's. Returns 0 or EX_SOFTWARE. */
-int silhouette_keep(struct frame_memory *now, const struct snapshot *s, struct failure *failure);
 /* Writes what is kept as a picture, PNG: grey where both are covered, blue the simulation alone, red the photograph alone.
    Returns 0, EX_SOFTWARE or EX_IOERR. */
 int silhouette_write(const char *file, const struct frame_memory *kept, const struct asked *asked,
