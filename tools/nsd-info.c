@@ -328,6 +328,10 @@ static void add_tie(json_t *j, const struct contact_law *t)
     if (t->mu_r > 0 || t->mu_p > 0) {
         json_object_set_new(j, "mu_r", json_number(t->mu_r));
         json_object_set_new(j, "mu_p", json_number(t->mu_p));
+        if (t->roll > 0) {
+            json_object_set_new(j, "rolling_stiffness", json_number(t->roll));
+            json_object_set_new(j, "turn", json_numbers(t->turn, 3));
+        }
     }
 }
 

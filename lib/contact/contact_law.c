@@ -161,7 +161,8 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->among;
     if (pair_law_adheres(l)) contact_law_set_bond(t, p, c, old, of);
-    if (contact_law_holds(t) && c->gap > 0 && !pair_law_springs(l)) t->offset = offset_apart(p, c);
+    const bool soft = pair_law_springs(l) && !(t->beta > 0);
+    if (contact_law_holds(t) && c->gap > 0 && !soft) t->offset = offset_apart(p, c);
     if (t->beta > 0 || t->offset > 0) c->en = c->et = 0;
     c->mu *= 1 - t->beta;
     spring_set(t, p, c, old);
@@ -222,7 +223,7 @@ static double opening_after(const struct packing *p, const struct contact *c,
 {
     if (t->offset > 0) return found->u[0] - t->offset;
     double before = opening_of(p, c, step_ahead(p));
-    return (1 + c->en) * found->u[0] - c->en * before - offset_of(p, c, before);
+    return (1 + c->en) * found->u[0] - c->en * before - offset_of(p, c, t, before);
 }
 
 static double damage(double h, const struct pair_law *l, double beta, double q)
@@ -233,7 +234,8 @@ static double damage(double h, const struct pair_law *l, double beta, double q)
 }
 
 struct contact_law_end contact_law_end(const struct packing *p, const struct contact *c,
-                                       const struct contact_law *t, const struct found *found)
+                                       const struct contact_law *t, const struct found *found,
+                                       const double *moment)
 {
     const struct pair_law *l = law_of(p, c);
     struct contact_law_end e = { .beta = t->beta };
@@ -241,6 +243,7 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
         struct spring_end s = spring_end(p->dt, c, t, found, opening_of(p, c, step_ahead(p)));
         e.gap = c->gap + p->dt * s.un;
         for (int k = 0; k < 3; k++) e.stretch[k] = s.stretch[k];
+        if (moment) spring_turn_end(p->dt, t, moment, e.turn);
     } else {
         e.gap = c->gap + p->dt * opening_after(p, c, t, found);
     }
@@ -300,8 +303,9 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
         a.broken += (1 - left * left) * stretched;
     }
     if (t->spring[0] > 0) {
-        before += spring_energy(t, t->jump), after += spring_energy(t, end->stretch);
-        a.implicit = spring_implicit(t, end->stretch);
+        before += spring_energy(t, t->jump, t->turn);
+        after += spring_energy(t, end->stretch, end->turn);
+        a.implicit = spring_implicit(t, end->stretch, end->turn);
     }
     a.change = after - before, a.stored = after;
     return a;
@@ -351,7 +355,8 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
 {
     const struct contact *c = &s->c[i];
     const struct contact_law *t = &s->law[i];
-    struct contact_law_end e = contact_law_end(p, c, t, &s->found[i]);
+    struct contact_law_end e =
+        contact_law_end(p, c, t, &s->found[i], s->moment ? s->moment[i] : NULL);
     // A broken bond is remembered while the pair touches, for it is not made anew. An anchored one has no
     // contact of its own in the next step: remember_broken() sees whether its pair has parted.
     bool bonded = t->state & CONTACT_LAW_BONDED;
@@ -365,8 +370,9 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     if (!b->wet && !(b->beta > 0) && !rests && !b->pressed) return false;
     const double *across = b->pressed ? e.stretch + 1 : e.slip;
     vec3 slip = v3_axpy(v3_scale(across[0], c->t1), across[1], contact_t2(c));
-    if (e.beta > 0 || b->pressed)
-        b->slip = quat_turn(quat_rotation(v3_scale(spin_about(p, c), c->n)), slip);
+    const quat spin = quat_rotation(v3_scale(spin_about(p, c), c->n));
+    if (e.beta > 0 || b->pressed) b->slip = quat_turn(spin, slip);
+    if (b->pressed && t->roll > 0) b->turn = quat_turn(spin, contact_in_space(c, e.turn));
     return true;
 }
 

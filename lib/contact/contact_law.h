@@ -81,11 +81,14 @@ static inline void contact_law_push(double dt, const struct contact_law *t, cons
 struct contact_law_end {
     double gap, slip[2]; /* m */
     double stretch[3];   /* m: of the contact's springs; 0: rigid */
+    double turn[3];      /* rad: of the spring of its moment; 0: rigid */
     double beta;
     bool wet;
 };
+/* moment (N m s): of the contact; NULL: it has none */
 struct contact_law_end contact_law_end(const struct packing *p, const struct contact *c,
-                                       const struct contact_law *t, const struct found *found);
+                                       const struct contact_law *t, const struct found *found,
+                                       const double *moment);
 
 /* J: what the step has changed of the energy that is stored at the contact, what is stored then, and
    what was given up by bonds that broke and by liquid that joined */

@@ -89,23 +89,36 @@ static bool spring_meets(struct contact_law *t, const struct packing *p, const s
     return meets;
 }
 
+/* t->turn, out of what is remembered, within the limits of the moment that n allows */
+static void spring_turned(struct contact_law *t, const struct contact *c, const struct bond *old)
+{
+    const vec3 turn = v3_turn_along(old->n, c->n, old->turn);
+    const double push = t->spring[0] * fmax(0, -t->jump[0]), most = t->mu_p * push / t->roll;
+    t->turn[0] = fmax(-most, fmin(most, v3_dot(turn, c->n)));
+    t->turn[1] = v3_dot(turn, c->t1), t->turn[2] = v3_dot(turn, contact_t2(c));
+    spring_cut(t->mu_r * push / t->roll, t->turn + 1);
+}
+
 void spring_set(struct contact_law *t, const struct packing *p, struct contact *c,
                 const struct bond *old)
 {
     const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
     const bool pressed = old && old->pressed;
-    if (!pair_law_springs(l)) return;
+    if (!pair_law_springs(l) || t->beta > 0) return;
     t->spring[0] = l->kn, t->spring[1] = l->kt;
+    const double R = packing_smaller_radius(p, c);
+    if (t->mu_r > 0 || t->mu_p > 0) t->roll = l->kt * R * R;
     const double rest = fmin(0, pressed ? fmax(old->rest, c->gap) : c->gap);
     t->jump[0] = c->gap - rest;
     if (pressed) {
         vec3 slip = v3_turn_along(old->n, c->n, old->slip);
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
         spring_cut(c->mu * l->kn * fmax(0, -t->jump[0]) / l->kt, t->jump + 1);
+        if (t->roll > 0) spring_turned(t, c, old);
     }
     if (pressed) c->en = c->et = 0;
     if (spring_meets(t, p, c))
-        t->state |= CONTACT_LAW_MEETS;
+        t->state |= CONTACT_LAW_MEETS, t->turn[0] = t->turn[1] = t->turn[2] = 0;
     else
         c->en = c->et = 0;
 }
@@ -135,18 +148,37 @@ struct spring_end spring_end(double dt, const struct contact *c, const struct co
     return e;
 }
 
-double spring_energy(const struct contact_law *t, const double x[3])
+double spring_turn_seen(double dt, const struct contact_law *t, double law[3])
 {
-    const double n = fmin(0, x[0]);
-    return 0.5 * (t->spring[0] * n * n + t->spring[1] * (x[1] * x[1] + x[2] * x[2]));
+    for (int k = 0; k < 3; k++) law[k] = t->turn[k] / dt;
+    return t->roll > 0 && !(t->state & CONTACT_LAW_MEETS) ? 1 / (t->roll * dt * dt) : 0;
 }
 
-double spring_implicit(const struct contact_law *t, const double end[3])
+void spring_turn_end(double dt, const struct contact_law *t, const double moment[3], double turn[3])
 {
-    double d[3];
-    for (int k = 0; k < 3; k++) d[k] = end[k] - t->jump[k];
+    const bool rolls = t->roll > 0 && !(t->state & CONTACT_LAW_MEETS);
+    for (int k = 0; k < 3; k++) turn[k] = rolls ? -moment[k] / (dt * t->roll) : 0;
+}
+
+static double square_of(const double x[3])
+{
+    return x[0] * x[0] + x[1] * x[1] + x[2] * x[2];
+}
+
+double spring_energy(const struct contact_law *t, const double x[3], const double phi[3])
+{
+    const double n = fmin(0, x[0]);
+    const double across = t->spring[1] * (x[1] * x[1] + x[2] * x[2]);
+    return 0.5 * (t->spring[0] * n * n + across + t->roll * square_of(phi));
+}
+
+double spring_implicit(const struct contact_law *t, const double end[3], const double phi[3])
+{
+    double d[3], turn[3];
+    for (int k = 0; k < 3; k++) d[k] = end[k] - t->jump[k], turn[k] = phi[k] - t->turn[k];
     d[0] = fmin(0, end[0]) - fmin(0, t->jump[0]);
-    return 0.5 * (t->spring[0] * d[0] * d[0] + t->spring[1] * (d[1] * d[1] + d[2] * d[2]));
+    return 0.5 * (t->spring[0] * d[0] * d[0] + t->spring[1] * (d[1] * d[1] + d[2] * d[2]) +
+                  t->roll * square_of(turn));
 }
 
 double spring_rest_after(const struct packing *p, const struct contact *c,

@@ -17,15 +17,25 @@
  * Mindlin's solution has for elastic balls, 2/3 to 1, where n and t of the sphere are as stiff as its mass lets them
  * oscillate alike [Schaefer, Dippel & Wolf 1996].
  *
+ * The moments of rolling and pivoting friction have springs of the same kind, with the angle phi (rad) by which b is
+ * turned against a,
+ *
+ *     phi = -M/k_r of the step before,   phi + h omega + M/k_r = 0 within |m_t| < mu_r r_n and |m_n| < mu_p r_n.
+ *
+ * k_r = k_t R^2 (N m), R the smaller radius: the moment is that of a spring k_t at the rim. For balls of one size
+ * its compliance is then 7/5 of what it is along n and across, in units of W_cc.
+ *
+ * A bonded contact has the springs of its bond and no others; it has these once the bond has broken.
+ *
  * What is remembered of a contact that pushes is in struct bond: x_t, a vector in space that turns with n and with the
- * mean spin of the pair about n, and is cut to the disc of the force that n has; and g_0. It is the gap, if that is an
+ * mean spin of the pair about n, and is cut to the disc of the force that n has; phi, likewise; and g_0. It is the gap, if that is an
  * overlap, with which a pair is first seen: bodies that overlap in a scene, or that others push into each other within a
  * step, push nothing by that. It rises with the gap, and by g h^2 in a step, so that such bodies part at g h, to 0.
  *
  * An impact is a pair whose springs do not push and that approaches faster than gravity and loads make it in a step
  * [state/freedom.h]. Its law is Newton's, of u + E u^-, or where e_n = 0 that of u_n + g/h. With springs alone it would
  * rebound with a part of about c/W of its speed. Instead of C r it has C (r - r^): r^, the impulse of the impact, were
- * the pair alone. A pair alone then has Newton's law exactly, and where others hold it C bounds r. e is 0
+ * the pair alone. A pair alone then has Newton's law exactly, and where others hold it C bounds r. Its moment has no spring. e is 0
  * unless the pair is new: it has not pushed in the step before.
  */
 #ifndef NSD_SPRING_H
@@ -53,10 +63,16 @@ struct spring_end {
 struct spring_end spring_end(double dt, const struct contact *c, const struct contact_law *t,
                              const struct found *found, double before);
 
-/* J: of springs stretched by x; one that is pulled along n has none */
-double spring_energy(const struct contact_law *t, const double x[3]);
+/* The same of a moment, in rad/s; returns 1/(kg m^2), 0: rigid */
+double spring_turn_seen(double dt, const struct contact_law *t, double law[3]);
+/* turn (rad): of its spring when the step is over; moment: N m s */
+void spring_turn_end(double dt, const struct contact_law *t, const double moment[3],
+                     double turn[3]);
+
+/* J: of springs stretched by x and turned by phi; one that is pulled along n has none */
+double spring_energy(const struct contact_law *t, const double x[3], const double phi[3]);
 /* J, at least 0: what an implicit step loses of it, k/2 times the square of what the stretch changes by */
-double spring_implicit(const struct contact_law *t, const double end[3]);
+double spring_implicit(const struct contact_law *t, const double end[3], const double phi[3]);
 
 /* m, at most 0: g_0 when the step is over */
 double spring_rest_after(const struct packing *p, const struct contact *c,

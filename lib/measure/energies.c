@@ -72,7 +72,8 @@ static int energies_add_step(double **at, const struct snapshot *s, double *stor
         int times = region_holds(&s->region, c->x);
         if (!times) continue;
         if (s->s->law) {
-            struct contact_law_end end = contact_law_end(m.p, c, &s->s->law[i], &s->s->found[i]);
+            struct contact_law_end end =
+                contact_law_end(m.p, c, &s->s->law[i], &s->s->found[i], moment);
             struct contact_law_account a = contact_law_account(m.p, c, &s->s->law[i], &end);
             *stored += times * a.stored, kept += times * (a.change + a.broken);
         }

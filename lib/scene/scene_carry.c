@@ -76,7 +76,7 @@ static int carry_bonds(const struct carried *y, struct failure *failure)
         b.b += (int32_t)y->row;
         const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
         if (!pair_law_wets(l)) b.wet = 0;
-        if (!pair_law_springs(l)) b.pressed = 0, b.rest = 0;
+        if (!pair_law_springs(l)) b.pressed = 0, b.rest = 0, b.turn = v3(0, 0, 0);
         bool bonds = pair_law_adheres(l);
         if (!has_images(y, b.shift) || (!bonds && !b.wet && !b.pressed)) continue;
         if (!bonds) b.beta = 0;

@@ -88,14 +88,10 @@ int stiffness_set(struct packing *p, double k, struct failure *failure)
     const int32_t pairs = p->kinds * p->kinds;
     if (!p->law && !(k > 0)) return 0;
     if (!p->law && packing_alloc_laws(p, failure)) return failure->status;
-    for (int32_t i = 0; i < pairs; i++)
-        if (k > 0 && pair_law_adheres(&p->law[i]))
-            return failure_set(failure, EX_DATAERR,
-                               "%s and %s adhere: such contacts have no stiffness",
-                               p->kind_name[i / p->kinds], p->kind_name[i % p->kinds]);
     for (int32_t i = 0; i < pairs; i++) p->law[i].kn = k, p->law[i].kt = SPRING_ACROSS * k;
     for (int64_t i = 0; !(k > 0) && i < p->bonds.n; i++)
-        p->bonds.bond[i].pressed = 0, p->bonds.bond[i].rest = 0;
+        p->bonds.bond[i].pressed = 0, p->bonds.bond[i].rest = 0,
+        p->bonds.bond[i].turn = v3(0, 0, 0);
     return 0;
 }
 

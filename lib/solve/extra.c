@@ -5,16 +5,18 @@
 
 #include <string.h>
 
-/* The bodies' angular velocity relative to each other, in (n, t1, t2) */
+/* The bodies' angular velocity relative to each other as the law has it, in (n, t1, t2) */
 static void extra_spin(const struct extra_lane *at, double omega[3])
 {
     const double *wa = body_at(at->body, at->c->a[at->i]) + 3;
     const double *wb = body_at(at->body, at->c->b[at->i]) + 3;
     double basis[3][3];
     bundle_basis(at->c, at->t, at->i, basis[0], basis[1], basis[2]);
+    const struct extra *x = at->x;
     for (int j = 0; j < 3; j++) {
         omega[j] = 0;
         for (int l = 0; l < 3; l++) omega[j] += basis[j][l] * (wb[l] - wa[l]);
+        if (x->soft[at->i] > 0) omega[j] += x->law[j][at->i] + x->soft[at->i] * x->m[j][at->i];
     }
 }
 
@@ -38,11 +40,11 @@ void extra_push(const struct extra_lane *at, const double dm[3])
 static void extra_set_operator(const struct bundle *c, const struct extra *x, int i,
                                const double w[2], const double s[2], struct rolling *q)
 {
-    double l = x->length[i];
+    double l = x->length[i], turns = x->wr[i] + x->soft[i];
     *q = (struct rolling){ .wn = w[0] / s[0], .wt = w[1] / s[1] };
     q->k = l * x->s[1][i] * x->k[i];
-    q->wp = l * l * x->wr[i];
-    q->wr = l * l * (x->wr[i] - x->k[i] * x->k[i] * x->K[1][i] * x->s[1][i]);
+    q->wp = l * l * turns;
+    q->wr = l * l * (turns - x->k[i] * x->k[i] * x->K[1][i] * x->s[1][i]);
     q->mu[0] = c->mu[i], q->mu[1] = x->mu_p[i] / l, q->mu[2] = x->mu_r[i] / l;
     q->rho = x->rho[i];
 }
@@ -109,7 +111,7 @@ void extra_roll(const struct extra_lane *at, enum method_id method, const struct
     for (int j = 0; j < 2; j++) { // what is there without r* and m
         double turned_m = length * q.x[4 + j], bt = l->b[1 + j] / l->s[1] - k * turned_m;
         double felt = l->r[1 + j] + x->z[1 + j][i] + x->K[1][i] * bt;
-        double spun = turned[j] - x->k[i] * felt - x->wr[i] * turned_m;
+        double spun = turned[j] - x->k[i] * felt - (x->wr[i] + x->soft[i]) * turned_m;
         q.b[1 + j] = bt, q.b[4 + j] = length * spun;
     }
     extra_solve(x, i, method, &q, opt, l);
@@ -166,8 +168,10 @@ double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct
         y->Ra[j][i] *= length, y->Rb[j][i] *= length;
         Z[j] *= length * length;
     }
-    for (int j = 0; j < 9; j += 4)
+    for (int j = 0; j < 9; j += 4) {
+        Z[j] += length * length * t->soft;
         if (!(Z[j] > 0)) Z[j] = wt;
+    }
     for (int j = 0; j < 9; j++)
         y->V[j][i] = iia * dot_rows(y->Ra, arm.Ga, j / 3, j % 3, i) +
                      iib * dot_rows(y->Rb, arm.Gb, j / 3, j % 3, i);
@@ -204,6 +208,12 @@ static void extra_levers_spin(const struct extra_lane *at, double omega[3])
         for (int l = 0; l < 3; l++)
             omega[j] += y->Rb[3 * j + l][i] * wb[l] - y->Ra[3 * j + l][i] * wa[l];
     }
+    const struct extra *x = at->x;
+    const double soft = x->soft[i], l = x->length[i];
+    if (!(soft > 0)) return;
+    omega[0] += l * (x->law[0][i] + soft * x->m[0][i]);
+    omega[1] -= l * (x->law[2][i] + soft * x->m[2][i]);
+    omega[2] += l * (x->law[1][i] + soft * x->m[1][i]);
 }
 
 /* The contact without its b and x: W and limits */

@@ -12,7 +12,8 @@
  * visited often enough p is - a - K u~, and u~ that of M + H K H^T.
  *
  * Rolling friction adds a moment, and the relative angular velocity of the bodies, which is coupled
- * to u_t by k = l_b/I_b - l_a/I_a [solve/rolling.h].
+ * to u_t by k = l_b/I_b - l_a/I_a [solve/rolling.h]. With a stiffness the law has omega + law + soft m in place of
+ * omega [contact/spring.h].
  */
 #ifndef NSD_EXTRA_H
 #define NSD_EXTRA_H
@@ -31,7 +32,9 @@ struct extra {
     double k[BUNDLE], wr[BUNDLE];      /* m/(kg m^2), 1/(kg m^2) */
     double length[BUNDLE];             /* m: of solve/rolling.h */
     double rho[BUNDLE];                /* kg: its step */
-    double m[3][BUNDLE];               /* N m s: on b, in (n, t1, t2) */
+    double soft[BUNDLE];               /* 1/(kg m^2): compliance of the moment; 0: rigid */
+    double law[3][BUNDLE]; /* rad/s: what its spring adds to omega besides, in (n, t1, t2) */
+    double m[3][BUNDLE];   /* N m s: on b, in (n, t1, t2) */
 };
 
 /*
@@ -109,7 +112,8 @@ struct turning {
     double W[9]; /* kg^-1: without the bond */
     double K[2]; /* kg: of the bond, which has made W^ of the block */
     double iia,
-        iib; /* 1/inertia of both bodies in the problem's unknowns, 0 where one cannot move */
+        iib;     /* 1/inertia of both bodies in the problem's unknowns, 0 where one cannot move */
+    double soft; /* 1/(kg m^2): of the moment's spring */
 };
 /* Sets the rest of lane i, which rolls, after its bond. On entry R_a and R_b are those of length 1. Returns the
    length (m). */

@@ -17,9 +17,9 @@ static struct body lighter(const struct problem *p, int32_t place, double times)
 
 /* un: u^-_n, m/s */
 static void add_offset(struct rebound *e, int k, const struct packing *pack,
-                       const struct contact *c, double un)
+                       const struct contact *c, const struct contact_law *t, double un)
 {
-    e->offset[0][k] += offset_of(pack, c, un) / (1 + c->en);
+    e->offset[0][k] += offset_of(pack, c, t, un) / (1 + c->en);
 }
 
 struct lattice lattice_of(const struct packing *pack)
@@ -39,6 +39,15 @@ static void add_springs(const struct slot_filling *f, struct rebound *e, const d
     spring_seen(f->of->p->dt, f->c, f->law, law, c);
     for (int j = 0; j < 3; j++) e->offset[j][k] += s[j > 0] * law[j];
     for (int j = 0; j < 2; j++) e->soft[j][k] = s[j] * c[j];
+}
+
+/* The same of the springs of its moment, in rad/s and 1/(kg m^2) */
+static void add_turning(const struct slot_filling *f, struct extra *x)
+{
+    double law[3];
+    const int k = slot_lane(f->i);
+    x->soft[k] = spring_turn_seen(f->of->p->dt, f->law, law);
+    for (int j = 0; j < 3; j++) x->law[j][k] = law[j];
 }
 
 /* What the image of b is faster than b, in the basis of the contact */
@@ -90,8 +99,8 @@ void fill_ball(const struct slot_filling *f)
     for (int j = 0; j < 3 && e && contact_shifted(c); j++) e->offset[j][k] += s[j > 0] * after[j];
     if (e && law && law->offset > 0)
         e->offset[0][k] += law->offset;
-    else if (e && offset_in(pack, c))
-        add_offset(e, k, pack, c, u[0]);
+    else if (e && offset_in(pack, c, law))
+        add_offset(e, k, pack, c, law, u[0]);
     for (int j = 0; j < 2 && e; j++) e->s[j][k] = s[j], e->soft[j][k] = 0;
     w[0][k] = s[0] * im, w[1][k] = s[1] * it;
     if (e && law && law->spring[0] > 0) {
@@ -165,8 +174,8 @@ void fill_lever(const struct slot_filling *f)
     }
     if (law && law->offset > 0)
         e->offset[0][k] += (1 + en[0]) * law->offset;
-    else if (offset_in(pack, c))
-        e->offset[0][k] += offset_of(pack, c, u[0]);
+    else if (offset_in(pack, c, law))
+        e->offset[0][k] += offset_of(pack, c, law, u[0]);
     for (int j = 0; j < 2; j++) e->s[j][k] = 1;
 }
 
@@ -185,7 +194,7 @@ void fill_bond(const struct slot_filling *f)
     struct extra *x = &p->extra[i / BUNDLE];
     const struct rebound *e = slot_rebound(p, i);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
-    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
+    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, t, 0);
     double(*w)[BUNDLE] = p->w[i / BUNDLE], wt = w[1][k] / (e ? e->s[1][k] : 1);
     for (int j = 0; j < 2; j++) {
         x->K[j][k] = h * h * t->stiff[j], x->s[j][k] = 1 / (1 + w[j][k] * x->K[j][k]);
@@ -198,6 +207,7 @@ void fill_bond(const struct slot_filling *f)
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!extra_rolls(x, k)) return;
+    add_turning(f, x);
     x->k[k] = r->lb[k] * b.ii - r->la[k] * a.ii, x->wr[k] = a.ii + b.ii;
     x->length[k] = x->wr[k] > 0 ? sqrt(wt / x->wr[k]) : 1;
     struct rolling q;
@@ -237,7 +247,7 @@ void fill_lever_bond(const struct slot_filling *f)
     struct extra *x = &p->extra[i / BUNDLE];
     struct extra_levers *y = slot_turn(p, i);
     const struct body a = lighter(p, r->a[k], f->slower), b = lighter(p, r->b[k], f->slower);
-    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, 0);
+    double h = p->dt, seen = t->offset > 0 ? t->offset : offset_of(p->packing, c, t, 0);
     double(*block)[BUNDLE] = p->block[i / BUNDLE], (*w)[BUNDLE] = p->w[i / BUNDLE];
     struct turning turning = { .K = { h * h * t->stiff[0], h * h * t->stiff[1] } };
     double *rho = &p->rho[i / BUNDLE][k], *K = turning.K;
@@ -256,9 +266,10 @@ void fill_lever_bond(const struct slot_filling *f)
     for (int j = 0; j < 3; j++) x->z[j][k] = x->a[j][k]; // p = 0
     x->mu_r[k] = t->mu_r, x->mu_p[k] = t->mu_p;
     if (!extra_rolls(x, k)) return;
+    add_turning(f, x);
     set_turning(y->Ra, k, p->packing, c->a, c, half);
     set_turning(y->Rb, k, p->packing, c->b, c, half);
-    turning.iia = a.ii, turning.iib = b.ii;
+    turning.iia = a.ii, turning.iib = b.ii, turning.soft = x->soft[k];
     x->length[k] = extra_levers_turn(&p->lever[i / BUNDLE], block, y, k, &turning);
     x->rho[k] = *rho * w[0][k] / y->lambda[k];
 }

@@ -205,10 +205,9 @@ static void survey_some(void *arg, int64_t first, int64_t end)
         struct contact made = { 0 };
         if (!turned)
             contact_basis(&made, 3, c->n), turned = !problem_of_bodies_same(made.t1, c->t1);
-        rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c) ||
-                    (y->s->law && y->s->law[i].offset > 0) ||
-                    (y->moving_images && contact_shifted(c));
         const struct contact_law *t = y->s->law ? &y->s->law[i] : NULL;
+        rebounds |= c->en > 0 || c->et > 0 || offset_in(y->p, c, t) || (t && t->offset > 0) ||
+                    (y->moving_images && contact_shifted(c));
         bonds |= t && (t->stiff[0] > 0 || t->stiff[1] > 0);
         rolls |= t && (t->mu_r > 0 || t->mu_p > 0);
         soft |= t && t->spring[0] > 0;

@@ -183,6 +183,9 @@ static const char *contact_law_trouble(const struct contact_law *t)
         return "its spring is out of range";
     for (int k = 0; k < 3; k++)
         if (!isfinite(t->hit[k])) return "its impulse of impact is not finite";
+    for (int k = 0; k < 3; k++)
+        if (!isfinite(t->turn[k])) return "the turn of its spring is not finite";
+    if (!contact_not_negative(t->roll)) return "the stiffness of its moment is out of range";
     if (!contact_not_negative(t->mu_r) || !contact_not_negative(t->mu_p))
         return "mu_r and mu_p must not be negative";
     const int states = t->spring[0] > 0 ? CONTACT_LAW_STATES : CONTACT_LAW_MEETS;

@@ -51,6 +51,8 @@ struct contact_law {
     double mu_r, mu_p; /* m: rolling and pivoting friction */
     double spring[2];  /* N/m: k_n, k_t of the contact; 0: rigid */
     double hit[3];     /* N s: the impulse of the impact, were the pair alone */
+    double roll;       /* N m: stiffness of the contact's moment; 0: rigid */
+    double turn[3];    /* rad: how far its spring is turned, b against a, in the contact's basis */
     int8_t state;      /* TIE_... */
 };
 

@@ -223,6 +223,12 @@ static bool has_rolling(const void *of)
     return packing_rolls(of);
 }
 
+/* Springs of moments */
+static bool has_turning_springs(const void *of)
+{
+    return packing_has_springs(of) && packing_rolls(of);
+}
+
 /* /nsd/bonds/NAME [bonds][width], of each frame `count` rows from `start` on. Places where there are shapes */
 const struct field bond_fields[] = {
     FIELD(struct bond, a, I32, 2, "body", "1", FIELD_MOVES),
@@ -236,6 +242,8 @@ const struct field bond_fields[] = {
     FIELD(struct bond, pressed, I8, 1, "pressed", "1", FIELD_MOVES, .when = has_springs,
           .range = FIELD_FLAG),
     FIELD(struct bond, rest, F64, 1, "rest", "m", FIELD_MOVES, .when = has_springs,
+          .range = FIELD_FINITE),
+    FIELD(struct bond, turn, F64, 3, "turn", "rad", FIELD_MOVES, .when = has_turning_springs,
           .range = FIELD_FINITE),
     FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes,
           .range = FIELD_NOT_NEGATIVE),
@@ -333,6 +341,10 @@ const struct field contact_law_fields[] = {
     FIELD(struct contact_law, state, I8, 1, "tie", "1", FIELD_MOVES),
     FIELD(struct contact_law, spring, F64, 2, "spring", "N m-1", FIELD_MOVES, .when = has_springs),
     FIELD(struct contact_law, hit, F64, 3, "hit", "N s", FIELD_MOVES, .when = has_springs),
+    FIELD(struct contact_law, roll, F64, 1, "rolling_stiffness", "N m", FIELD_MOVES,
+          .when = has_turning_springs),
+    FIELD(struct contact_law, turn, F64, 3, "turn", "rad", FIELD_MOVES,
+          .when = has_turning_springs),
     { 0 },
 };
 

@@ -36,9 +36,9 @@ static double bend_of(const struct packing *p, const struct contact *c)
     return fmin(fmax(0, bend), BEND_MOST * r);
 }
 
-bool offset_in(const struct packing *pack, const struct contact *c)
+bool offset_in(const struct packing *pack, const struct contact *c, const struct contact_law *t)
 {
-    if (packing_springs(pack, c)) return false; // its springs see the gap
+    if (t && t->spring[0] > 0) return false;
     return (overlap_sees_gaps(pack->overlap) && (c->gap > 0 || overlap_pushes(pack->overlap))) ||
            may_bend(pack, c);
 }
@@ -48,9 +48,10 @@ bool offset_in(const struct packing *pack, const struct contact *c)
  * that rebounds: its velocities are Newton's, wherever in the step it falls. Newton's law is one of
  * u_n - bend/dt, so that a ball that goes round neither bounces nor gains.
  */
-double offset_of(const struct packing *pack, const struct contact *c, double un)
+double offset_of(const struct packing *pack, const struct contact *c, const struct contact_law *t,
+                 double un)
 {
-    if (!offset_in(pack, c)) return 0;
+    if (!offset_in(pack, c, t)) return 0;
     double bend = may_bend(pack, c) ? bend_of(pack, c) / pack->dt : 0;
     bool gap = c->gap > 0 || overlap_pushes(pack->overlap);
     bool impact = c->en > 0 && -(un + bend) > freedoms_calm(pack);

@@ -12,9 +12,10 @@
 #include "state/contact.h"
 #include "state/packing.h"
 
-/* Whether the contact may have an offset; where not, offset_of() is 0. */
-bool offset_in(const struct packing *pack, const struct contact *c);
+/* Whether the contact may have an offset; where not, offset_of() is 0. t: its law, or NULL. Springs see the gap themselves. */
+bool offset_in(const struct packing *pack, const struct contact *c, const struct contact_law *t);
 /* m/s; un: u_n before the step, m/s */
-double offset_of(const struct packing *pack, const struct contact *c, double un);
+double offset_of(const struct packing *pack, const struct contact *c, const struct contact_law *t,
+                 double un);
 
 #endif

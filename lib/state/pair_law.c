@@ -14,8 +14,6 @@ const char *pair_law_trouble(const struct pair_law *l)
         return "an impact is Newton's or bounded: 0, 1 or 2";
     if ((l->kn > 0) != (l->kt > 0))
         return "the stiffness of a contact must be positive along n and across, or 0 for both";
-    if (l->kn > 0 && l->w > 0)
-        return "a pair has adhesion or a stiffness of its contacts: not both";
     return NULL;
 }
 

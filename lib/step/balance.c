@@ -106,7 +106,8 @@ static void add_ties(struct balance *b, const struct packing *p, const struct co
     for (int64_t i = 0; s->law && i < s->n; i++) {
         const struct contact_law *t = &s->law[i];
         if (!t->state && !(t->pull > 0) && !(t->spring[0] > 0)) continue;
-        struct contact_law_end end = contact_law_end(p, &s->c[i], t, &s->found[i]);
+        struct contact_law_end end =
+            contact_law_end(p, &s->c[i], t, &s->found[i], s->moment ? s->moment[i] : NULL);
         struct contact_law_account a = contact_law_account(p, &s->c[i], t, &end);
         b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
         b->implicit += a.implicit;
@@ -312,7 +313,7 @@ static void balance_set(const struct packing *p, struct contacts *s, int64_t i, 
 {
     for (; i < end; i++) {
         const double mu = s->c[i].mu;
-        if (packing_springs(p, &s->c[i]) && !(s->law[i].state & CONTACT_LAW_MEETS)) continue;
+        if (s->law && s->law[i].spring[0] > 0 && !(s->law[i].state & CONTACT_LAW_MEETS)) continue;
         packing_set_law(p, &s->c[i]);
         if (p->mu_s[packing_pair(p, s->c[i].a, s->c[i].b)] > 0) s->c[i].mu = mu;
         s->c[i].en *= times, s->c[i].et *= times;

@@ -163,7 +163,8 @@ static void make_some(void *arg, int64_t first, int64_t end)
             double J = opens(o, k, m->p, c);
             m->part[i].w += J * J / o->freedoms.f[k].mass;
         }
-        if (packing_springs(m->p, c)) m->part[i].gap = m->part[i].w = 0; // its springs part them
+        if (m->s->law && m->s->law[i].spring[0] > 0)
+            m->part[i].gap = m->part[i].w = 0; // its springs part them
         any |= m->part[i].gap < 0;
     }
     if (any) m->any = true;

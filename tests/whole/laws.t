@@ -477,10 +477,34 @@ jq -n '{ dt: 1e-3, mu: 0.5, gravity: [2, 0, -9], stiffness: { normal: 1e6, tange
 # four springs of 5e5 N/m along the slope, and the turn by its pull at the centre, 5 mm above them
 ok "a brick on a slope stays, displaced by m g sin/(4 k_t)" near "$(last "$tmp/brick.h5" | jq '.x[0]')" "$(jq -n '0.08 / 2e6 + 0.08 * 2.5e-5 / (4e6 * 4e-4)')" 1e-2
 
-# with rolling friction, whose moment stays rigid, and with cohesion
+# with rolling friction: beyond its limit, and below it with springs of k_t R^2; and with cohesion
 jq -n '{ dt: 1e-3, mu: 0.6, gravity: [3, 0, -9], stiffness: 1e6, rolling: { mu_r: 1e-3 }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: [{ x: [0, 0, 0.01], radius: 0.01 }] }' | nsd-gen - | step --criterion natural --eps 1e-10 -n 100 --every 100 -o "$tmp/down.h5"
 ok "a ball rolls down a slope with 5/7 (g sin - mu_r/R g cos)" near "$(last "$tmp/down.h5" | jq '.v[0]')" 0.15 1e-9
+# slope KEYS BODY: below the angle of rolling friction
+slope()
+{
+    jq -n --argjson more "$1" --argjson body "$2" '{ dt: 1e-3, mu: 0.6, gravity: [1, 0, -9], stiffness: 1e6, rolling: { mu_r: 2e-3 },
+        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.01] } + $body] } + $more' | nsd-gen -
+}
+for m in sbp sal ebp eal exact; do
+    slope '{}' '{ "radius": 0.01 }' | step -m $m --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5"
+    # F/k_t by the slip, and F R/(k_t R^2) R by the turn
+    ok "-m $m: a ball is held on a slope, displaced by 2 F/k_t" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
+        "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 7 / 1e6')" 1e-6
+    rm "$tmp/down.h5"
+done
+# two balls as one grain, whose bounding ball has a radius of 16 mm: two contacts, each with k_t (16 mm)^2
+slope '{ "shapes": { "pair": { "balls": [[0, 0.006, 0, 0.01], [0, -0.006, 0, 0.01]] } } }' \
+    '{ "shape": "pair", "size": 1 }' >"$tmp/pair.h5"
+step --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5" "$tmp/pair.h5"
+ok "two balls as one grain are held by 2 k_t and 2 k_t R^2" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
+    "$(nsd-info -p "$tmp/pair.h5" | jq '.mass * (1 + (1 / 1.6) * (1 / 1.6)) / (2 * 2e6 / 7)')" 1e-5
+# k_r h^2/I of a spinning ball in one step
+slope '{ "gravity": [0, 0, -9], "rolling": { "mu_p": 100 } }' '{ "radius": 0.01, "w": [0, 0, 1] }' |
+    step --criterion natural --eps 1e-12 -n 1 -o "$tmp/spun.h5"
+ok "a spring against pivoting: an implicit step of k_t R^2" near "$(last "$tmp/spun.h5" | jq '.w[2]')" \
+    "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 0.4 | 1 / (1 + 2 / 7 / .)')" 1e-9
 for f in 1.001 0.999; do
     jq -n --argjson f "$(jq -n "$f * $weight")" '{ dt: 1e-3, stiffness: 1e6, cohesion: { force: $f },
         walls: [{ normal: [0, 0, -1], point: [0, 0, 0] }], bodies: [{ x: [0, 0, -0.01], radius: 0.01 }] }' | nsd-gen - |
@@ -522,7 +546,19 @@ rm "$tmp"/vee.h5
 jq -n '{ dt: 1e-3, stiffness: 1e6, overlap: true, walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
     bodies: [{ x: [0, 0, 0.0095], radius: 0.01 }] }' | nsd-gen - | step -n 100 -o "$tmp/deep.h5"
 like "a ball that is in a floor rises at g dt" "$(nsd-info -p "$tmp/deep.h5" | jq -s '(map(.v[2]) | max) < 0.01 and (.[-1].x[2] | . > 0.00999)')" true
-refuses 65 "adhesion with a stiffness is refused" nsd-gen - <<<'{ "dt": 1e-3, "stiffness": 1e6, "adhesion": { "c_n": 1e9, "w": 1 }, "bodies": [{ "x": [0, 0, 0], "radius": 0.01 }] }'
+
+# with rolling friction, and with bonds, which have no springs besides
+jq '.stiffness = 1e5 | .rolling = { mu_r: 1e-4, mu_p: 1e-4 } | .walls = .walls[:1]' scenes/press.json | nsd-gen - | step -n 600 --every 600 --contacts --log "$tmp/press.log" -o "$tmp/press.h5"
+like "a heap with a stiffness and rolling friction: energy is balanced" "$(misfit "$tmp/press.log" | jq '. < 1e-9')" true
+like "and what the springs of moments store is positive" "$(nsd-info --last -c "$tmp/press.h5" | jq -s 'map(select(.turn) | .rolling_stiffness * (.turn | map(. * .) | add)) | add > 0')" true
+nsd-cat --last "$tmp/press.h5" >"$tmp/rolls.h5"
+whole rolls.h5
+jq '.stiffness = 1e5 | .adhesion = { c_n: 1e11, w: 0.1, forever: true }' scenes/press.json | nsd-gen - | step -n 600 --every 600 --contacts --log "$tmp/press.log" -o "$tmp/press.h5"
+like "with a stiffness and bonds under a piston, energy is balanced" "$(misfit "$tmp/press.log" | jq '. < 1e-9')" true
+like "all steps converge, and contacts have one or the other" \
+    "$(jq -s 'all(.converged)' "$tmp/press.log") $(nsd-info --last -c "$tmp/press.h5" | jq -s 'map(select(.mu)) | length > 50 and all((.beta > 0) != (.spring[0] > 0)) and any(.beta > 0)')" 'true true'
+nsd-cat --last "$tmp/press.h5" >"$tmp/bonds.h5"
+whole bonds.h5
 refuses 64 "and no word for a stiffness" nsd-step --stiffness soft "$tmp/springs.h5"
 
 # ---- grains that are no balls ----

@@ -75,6 +75,8 @@ done <<'END'
 50 press 2 5 5 a piston under a load
 500 pour 3 20 0 grains that pour and are taken away
 END
+ok "rolling friction with a stiffness" same "$tmp/rolling.h5" 2 -n 20 --stiffness 1e5 --contacts
+ok "bonds with a stiffness" same "$tmp/bonded.h5" 2 -n 5 --stiffness 1e5 --contacts
 
 unset alone
 
