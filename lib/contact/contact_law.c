@@ -306,6 +306,7 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
         before += spring_energy(t, t->jump, t->turn);
         after += spring_energy(t, end->stretch, end->turn);
         a.implicit = spring_implicit(t, end->stretch, end->turn);
+        a.rise = spring_rise(p, c, t, end->stretch[0]), after += a.rise;
     }
     a.change = after - before, a.stored = after;
     return a;

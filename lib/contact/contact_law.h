@@ -95,6 +95,7 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
 struct contact_law_account {
     double change, stored, broken;
     double implicit; /* lost by the implicit step of springs, at least 0 [contact/spring.h] */
+    double rise;     /* what the rise of g_0 has given to the spring, part of change */
 };
 struct contact_law_account contact_law_account(const struct packing *p, const struct contact *c,
                                                const struct contact_law *t,

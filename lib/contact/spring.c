@@ -187,6 +187,15 @@ double spring_rest_after(const struct packing *p, const struct contact *c,
     return fmin(0, c->gap - t->jump[0] + p->dt * packing_most_fall(p));
 }
 
+double spring_rise(const struct packing *p, const struct contact *c, const struct contact_law *t,
+                   double x)
+{
+    const double rest = c->gap - t->jump[0], gap = rest + x;
+    const double risen = gap - fmin(0, fmax(spring_rest_after(p, c, t), gap));
+    const double before = fmin(0, x), after = fmin(0, risen);
+    return rest < 0 ? 0.5 * t->spring[0] * (after * after - before * before) : 0;
+}
+
 double spring_unloaded_gap(const struct contact *c, const struct contact_law *t)
 {
     return t->spring[0] > 0 ? c->gap - fmin(0, t->jump[0]) : c->gap;

@@ -78,6 +78,10 @@ double spring_implicit(const struct contact_law *t, const double end[3], const d
 double spring_rest_after(const struct packing *p, const struct contact *c,
                          const struct contact_law *t);
 
+/* J: what the rise of g_0 gives to the spring, whose stretch x_n (m) was when the step was over */
+double spring_rise(const struct packing *p, const struct contact *c, const struct contact_law *t,
+                   double x);
+
 /* m, at most 0: the gap that a contact has but for its spring, which carries the rest */
 double spring_unloaded_gap(const struct contact *c, const struct contact_law *t);
 

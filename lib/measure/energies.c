@@ -75,7 +75,7 @@ static int energies_add_step(double **at, const struct snapshot *s, double *stor
             struct contact_law_end end =
                 contact_law_end(m.p, c, &s->s->law[i], &s->s->found[i], moment);
             struct contact_law_account a = contact_law_account(m.p, c, &s->s->law[i], &end);
-            *stored += times * a.stored, kept += times * (a.change + a.broken);
+            *stored += times * a.stored, kept += times * (a.change + a.broken - a.rise);
         }
         const struct contact_motion motion = contact_motion(m.p, &m.sum, c);
         const struct contact_loss loss = contact_loss(&motion, c, r, moment);

@@ -421,6 +421,7 @@ const struct field bond_balance_fields[] = {
 /* The same where contacts have a stiffness */
 const struct field spring_balance_fields[] = {
     FIELD(struct report, balance.implicit, F64, 1, "implicit", "J", FIELD_MOVES),
+    FIELD(struct report, balance.rise, F64, 1, "rise", "J", FIELD_MOVES),
     { 0 },
 };
 

@@ -67,6 +67,7 @@ struct balance {
     double bond_change, bond_energy, broken;
     double
         implicit;  /* J: lost by the implicit step of springs, in the step; a part of dissipation */
+    double rise;   /* J: given in the step by initial overlaps that rise [contact/spring.h] */
     double gained; /* J: by impacts, in the step; a part of -dissipation */
     double
         projection; /* J: against gravity, by moving bodies apart after the step; where that is done */

@@ -110,9 +110,9 @@ static void add_ties(struct balance *b, const struct packing *p, const struct co
             contact_law_end(p, &s->c[i], t, &s->found[i], s->moment ? s->moment[i] : NULL);
         struct contact_law_account a = contact_law_account(p, &s->c[i], t, &end);
         b->bond_change += a.change, b->bond_energy += a.stored, b->broken += a.broken;
-        b->implicit += a.implicit;
+        b->implicit += a.implicit, b->rise += a.rise;
     }
-    b->dissipation -= b->bond_change + b->broken;
+    b->dissipation -= b->bond_change + b->broken - b->rise;
 }
 
 /* The moment on b turns it, and the other way round a. */

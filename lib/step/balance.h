@@ -17,7 +17,9 @@
  *
  * and where pairs are tied [contact/contact_law.h] what their energy takes is no dissipation:
  *
- *     T+ - T- = gravity + loads + drives - dissipation - bond_change - broken
+ *     T+ - T- = gravity + loads + drives + rise - dissipation - bond_change - broken
+ *
+ * rise: what overlaps that a packing starts with give to springs as they rise [contact/spring.h].
  *
  * Bodies that are moved apart after the step [step/project.h] are lifted without a velocity, which gravity is not:
  *

@@ -145,7 +145,7 @@ static void add_balance(struct balance *to, const struct balance *b)
     to->change += b->change, to->gravity += b->gravity, to->drives += b->drives;
     to->loads += b->loads, to->dissipation += b->dissipation;
     to->bond_change += b->bond_change, to->broken += b->broken, to->gained += b->gained;
-    to->implicit += b->implicit;
+    to->implicit += b->implicit, to->rise += b->rise;
     to->projection += b->projection;
     to->peculiar = b->peculiar, to->peculiar_change += b->peculiar_change;
     for (int k = 0; k < 3; k++) to->impulse[k] += b->impulse[k], to->spun[k] += b->spun[k];

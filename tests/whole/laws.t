@@ -8,7 +8,7 @@ solve() { nsd-solve "$@" 2>/dev/null; }
 # The energy that is missing from the balance of a log's worst step, in parts of what there is
 misfit()
 {
-    jq -s 'map(.balance | ((.change - (.gravity + .loads + .drives - .dissipation - .bond_change - .broken)) | fabs) /
+    jq -s 'map(.balance | ((.change - (.gravity + .loads + .drives + (.rise // 0) - .dissipation - .bond_change - .broken)) | fabs) /
         (.kinetic + (.gravity | fabs) + (.loads | fabs) + (.drives | fabs) + (.dissipation | fabs) +
          (.bond_change | fabs) + 1e-300)) | max // 1' "$1"
 }
@@ -544,7 +544,9 @@ rm "$tmp"/vee.h5
 
 # bodies that overlap in a scene part slowly
 jq -n '{ dt: 1e-3, stiffness: 1e6, overlap: true, walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
-    bodies: [{ x: [0, 0, 0.0095], radius: 0.01 }] }' | nsd-gen - | step -n 100 -o "$tmp/deep.h5"
+    bodies: [{ x: [0, 0, 0.0095], radius: 0.01 }] }' | nsd-gen - | step -n 100 --log "$tmp/deep.log" -o "$tmp/deep.h5"
+like "its energy is balanced with what the rise gives, and in the sum of all steps" "$(misfit "$tmp/deep.log" | jq '. < 1e-12') \
+    $(jq -s 'map(.balance) | (map(.bond_change) | add) / .[-1].bond_energy - 1 | fabs < 1e-6' "$tmp/deep.log")" 'true +true'
 like "a ball that is in a floor rises at g dt" "$(nsd-info -p "$tmp/deep.h5" | jq -s '(map(.v[2]) | max) < 0.01 and (.[-1].x[2] | . > 0.00999)')" true
 
 # with rolling friction, and with bonds, which have no springs besides
