@@ -29,6 +29,10 @@ static int set_choice(const struct cli_option *o, int *to, const char *text,
     char words[200];
     for (int k = 0; o->choice(k).name; k++)
         if (!strcmp(o->choice(k).name, text)) return *to = k, 0;
+    for (const struct cli_choice *g = o->gone; g && g->name; g++)
+        if (!strcmp(g->name, text))
+            return failure_set(failure, EX_USAGE, "--%s: %s is no longer available: %s", o->name,
+                               text, g->help);
     option_words(o, words, sizeof words);
     return failure_set(failure, EX_USAGE, "--%s: '%s' is none of %s", o->name, text, words);
 }

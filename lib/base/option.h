@@ -44,7 +44,9 @@ struct cli_option {
     const char *help; /* one line */
     double min, max;
     struct cli_choice (*choice)(int index); /* of a CLI_CHOICE; past the last, a name of NULL */
-    const char *(*usual)(const void *to);   /* its default for --help; NULL: help has it in [] */
+    const struct cli_choice
+        *gone; /* words that it took once, and what to use instead; a name of NULL ends them */
+    const char *(*usual)(const void *to); /* its default for --help; NULL: help has it in [] */
     bool silent; /* leaves the result as it is (-j, --log): not in a document's history */
 };
 

@@ -89,8 +89,7 @@ static const char no_solution[] = "no solution: reactions grow without end";
 #define PACE 1e-9 /* s on the wall per priced ns, before any Newton step was timed */
 
 const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson,
-                                         &solver_cg,   &solver_prox, &solver_ipm,
-                                         NULL };
+                                         &solver_prox, &solver_ipm,  NULL };
 
 enum {
     SLOTS_PER_THREAD = 16384, /* the fewest slots that are worth a thread: 100 us of copying */
@@ -298,7 +297,7 @@ static int choose_device(const struct problem *p, const struct solve_opt *o, str
     *device = NULL;
     rep->on_cpu = NULL, rep->bus_to = rep->bus_from = 0, rep->kernels = 0;
     if (!o->device || !p->n) return 0;
-    rep->on_cpu = o->global == &solver_cg ? "cg makes no sweeps" : device_declines(p);
+    rep->on_cpu = device_declines(p);
     if (rep->on_cpu) return 0;
     *device = o->device, o->device->account = (struct device_account){ 0 };
     return device_check(o->device, &p->kind, o->method->id, &failure) ? -1 : 0;

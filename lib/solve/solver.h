@@ -60,7 +60,7 @@ struct solve_opt {
     struct local_opt local;
     enum criterion criterion;
     double eps;         /* the criterion is met at this value or below */
-    int32_t max_sweeps; /* sweeps, or steps of cg, at most */
+    int32_t max_sweeps; /* sweeps, at most */
     double max_seconds; /* s on the wall; 0: no limit */
     double relax; /* omega: r + omega (r_new - r), back onto the cone; 0: the solver's choice */
     int threads;
@@ -98,8 +98,7 @@ struct solver {
 
 /* NULL ends it; the first is the default. */
 extern const struct solver *const solvers[];
-extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_cg, solver_prox,
-    solver_ipm;
+extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_prox, solver_ipm;
 
 /*
  * Solves a problem, starting from the r in its slots; afterwards they hold r and u. Fills method,

@@ -110,7 +110,7 @@ struct report {
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
     double eps;     /* what was asked */
-    int32_t sweeps; /* or steps of cg */
+    int32_t sweeps;
     bool converged;
     int32_t unsolved
         [2]; /* where it has not converged: the ids of the bodies of the contact that is farthest

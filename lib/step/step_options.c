@@ -115,6 +115,10 @@ static struct cli_choice solver_choice(int k)
     return (struct cli_choice){ solvers[k] ? solvers[k]->name : NULL, NULL };
 }
 
+/* Solvers that solved nothing that auto does not [nsd-methods(7)] */
+static const struct cli_choice solvers_gone[] = { { "cg", "auto solves all that it solved" },
+                                                  { NULL, NULL } };
+
 static struct cli_choice criterion_choice(int k)
 {
     return (struct cli_choice){ k < CRITERION_COUNT ? criterion_name[k] : NULL, NULL };
@@ -142,7 +146,7 @@ const struct cli_option options_solve[] = {
       .help = "use the protocol of the paper instead of the defaults; requires -m" },
     { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
       .help = "solve by Gauss-Seidel with this local method [auto]" },
-    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice,
+    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice, .gone = solvers_gone,
       .help = "solve all contacts with this solver [nlgs with -m, else auto]" },
     { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
       .help = "stop when the criterion is at most EPS", .usual = options_usual },

@@ -112,7 +112,7 @@ nsd-cat --last "$tmp/wetted.h5" >"$tmp/wet.h5"
 like "wet grains: energy is balanced in every step" "$(misfit "$tmp/wet.log" | jq '. < 1e-13')" true
 like "wet grains: nothing dissipates less than nothing" "$(jq -s 'map(.balance.dissipation) | min > -1e-12' "$tmp/wet.log")" true
 whole wet.h5
-for g in auto nlgs anderson cg prox ipm; do
+for g in auto nlgs anderson prox ipm; do
     nsd-detect "$tmp/wet.h5" | solve --global $g --criterion natural --eps 1e-6 >"$tmp/g.h5"
     like "wet grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
 done
@@ -312,7 +312,7 @@ for m in sbp sal ebp eal exact; do
     like "rolling grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 2e-8')" true
 done
 nsd-detect "$tmp/rolling.h5" >"$tmp/contacts.h5"
-for g in cg prox ipm; do
+for g in prox ipm; do
     refuses 65 "rolling grains: --global $g says that it cannot" nsd-solve --global $g "$tmp/contacts.h5"
     like "and who can" "$(cat "$tmp/err")" "auto, anderson and nlgs"
 done
@@ -426,7 +426,7 @@ for m in sbp sal ebp eal exact; do
     solve -m $m --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
     like "bonded grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-7')" true
 done
-for g in auto anderson cg prox ipm; do
+for g in auto anderson prox ipm; do
     solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
     like "bonded grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
@@ -625,7 +625,7 @@ whole shaped.h5
 shaped '{ adhesion: { c_n: 1e9, c_t: 5e8, w: 5e-4, forever: true }, rolling: { mu_r: 1e-4, mu_p: 5e-5 } }' 500
 like "bonds have been made, and some have broken" "$(jq -s '(map(.balance.broken) | add) > 1e-7 and .[-1].contacts > 30' "$tmp/shaped.log")" true
 whole shaped.h5
-for g in cg prox; do
+for g in prox; do
     refuses 65 "--global $g says that it does not roll" nsd-solve --global $g "$tmp/contacts.h5"
 done
 # A brick that stands far away makes all contacts of a problem be taken by matrices: the balls move as they do by numbers.

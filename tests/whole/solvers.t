@@ -4,7 +4,7 @@
 # shellcheck source=tests/support/tap.sh
 . tests/support/tap.sh
 
-solvers=(auto nlgs anderson cg prox ipm)
+solvers=(auto nlgs anderson prox ipm)
 
 # A settled heap, and what of it is to be solved
 nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --criterion glob --eps 1e-8 2>/dev/null |
@@ -25,7 +25,6 @@ nsd-solve -m exact --criterion glob --eps 1e-13 --max-sweeps 200000 "$tmp/contac
 velocities() { nsd-info --contacts "$1" | jq -r '.u | @tsv'; }
 for g in "${solvers[@]}"; do
     eps=1e-12
-    [ "$g" != cg ] || eps=1e-9
     status 0 "--global $g converges" nsd-solve -e --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
     cp "$tmp/out" "$tmp/$g.h5"
     ok "--global $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
@@ -195,6 +194,10 @@ ok "and no small map of reactions that grow passes for a solution" \
 status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
 refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
 refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"
+for g in cg; do
+    refuses 64 "--global $g is refused" nsd-solve --global $g "$tmp/contacts.h5"
+    like "with what to use instead" "$(cat "$tmp/err")" "$g is no longer available: auto solves"
+done
 nsd-gen 0 | nsd-detect >"$tmp/none.h5"
 for g in "${solvers[@]}"; do
     status 0 "--global $g of no contacts" nsd-solve -e --global "$g" "$tmp/none.h5"
