@@ -88,8 +88,8 @@ static const char no_solution[] = "no solution: reactions grow without end";
 
 #define PACE 1e-9 /* s on the wall per priced ns, before any Newton step was timed */
 
-const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson,
-                                         &solver_prox, &solver_ipm,  NULL };
+const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson, &solver_ipm,
+                                         NULL };
 
 enum {
     SLOTS_PER_THREAD = 16384, /* the fewest slots that are worth a thread: 100 us of copying */

@@ -98,7 +98,7 @@ struct solver {
 
 /* NULL ends it; the first is the default. */
 extern const struct solver *const solvers[];
-extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_prox, solver_ipm;
+extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_ipm;
 
 /*
  * Solves a problem, starting from the r in its slots; afterwards they hold r and u. Fills method,

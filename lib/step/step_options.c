@@ -117,6 +117,7 @@ static struct cli_choice solver_choice(int k)
 
 /* Solvers that solved nothing that auto does not [nsd-methods(7)] */
 static const struct cli_choice solvers_gone[] = { { "cg", "auto solves all that it solved" },
+                                                  { "prox", "auto solves all that it solved" },
                                                   { NULL, NULL } };
 
 static struct cli_choice criterion_choice(int k)

@@ -20,7 +20,7 @@ jq -n '{dt: 5e-5, gravity: [0, 0, -9.8], density: 2500, mu: 0.3, e_n: 0.4, overl
         [{x: [2e-4, 1e-4, 0.0134], radius: 0.01, v: [0, 0, -2], kind: "steel"}])}' | nsd-gen - >"$tmp/bed.h5"
 rebound() { nsd-step "$@" -n 60 "$tmp/bed.h5" 2>/dev/null | bodies | jq 'select(.radius > 0.009).v[2]'; }
 exact=$(rebound --cold --criterion natural --eps 1e-9)
-for o in "" --cold "--order natural" "--global prox"; do
+for o in "" --cold "--order natural"; do
     up=$(rebound $o)
     ok "a ball on a bed rebounds with $exact m/s, with ${o:-the defaults} $up" near "$up" "$exact" "0.02 * $exact"
 done
@@ -118,7 +118,7 @@ is "in every step" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.converged == f
 if command -v h5copy >/dev/null; then
     nsd-detect --fclib=local "$tmp/wedge.h5" >"$tmp/both.h5"
     h5copy -i "$tmp/both.h5" -o "$tmp/fclib.h5" -s fclib_local -d fclib_local
-    for g in auto anderson prox; do
+    for g in auto anderson; do
         status 1 "$g: so does an FCLIB problem without a solution" nsd-solve -e --global $g "$tmp/fclib.h5"
         like "and it says why" "$(cat "$tmp/err")" 'no solution: reactions grow without end'
     done
