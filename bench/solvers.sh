@@ -16,7 +16,7 @@ cd "$(dirname "$0")/.."
 problems=${PROBLEMS:-../shared/problems}
 problems=${problems%/}
 name=solvers${PROBLEMS:+-$(basename "$problems")}
-solvers=${SOLVERS:-auto nlgs anderson ipm sbp}
+solvers=${SOLVERS:-auto nlgs anderson sbp}
 limit=${LIMIT:-10}
 if [ ! -d "$problems" ] && [ "${ONLY:-}" != draw ]; then
     echo "solvers.sh: no $problems, skipped"

@@ -20,8 +20,8 @@ const struct cli_tool tool = {
 static int prepare_own(struct problem *p, struct frame *f, struct failure *failure)
 {
     if (f->moved && move_back(&f->packing, &f->contacts, failure)) return failure->status;
-    if (prepare_packing(p, &f->packing, &f->contacts, true,
-                        &(struct prepare_opt){ .rho_factor = 1 }, failure))
+    if (prepare_packing(p, &f->packing, &f->contacts, &(struct prepare_opt){ .rho_factor = 1 },
+                        failure))
         return failure->status;
     f->report.err.max_overlap = contacts_max_overlap(&f->contacts);
     return 0;

@@ -50,7 +50,7 @@ static struct {
 static void count(const char *where, const struct report *r)
 {
     double error = err_of(&r->err, r->criterion);
-    total.said = verbose || !r->converged || r->fallback || r->given_up;
+    total.said = verbose || !r->converged || r->given_up;
     if (total.said) options_summary(where, r);
     if (!total.documents) total.criterion = r->criterion;
     if (!total.documents++) total.only = *r, snprintf(total.where, sizeof total.where, "%s", where);

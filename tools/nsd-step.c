@@ -91,7 +91,6 @@ static struct {
     double eps;                   /* and what was asked of it */
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
-    int64_t fell_back;            /* steps that were solved otherwise than asked */
     int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
@@ -162,8 +161,8 @@ static void count(const struct report *r)
 {
     char where[40];
     snprintf(where, sizeof where, "step %lld", (long long)r->step);
-    bool news = (r->fallback && !total.fell_back) || (r->given_up && !total.abandoned);
-    total.fell_back += r->fallback != NULL, total.abandoned += r->given_up != NULL;
+    bool news = r->given_up && !total.abandoned;
+    total.abandoned += r->given_up != NULL;
     if (news) options_warn(where, r); // of all steps, mostly
     total.sweeps += r->sweeps;
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
@@ -192,8 +191,6 @@ static void summary(int64_t made)
     if (total.divided)
         warn("%lld steps were divided into %lld substeps, because fast bodies met in them",
              (long long)total.divided, (long long)total.substeps);
-    if (total.fell_back)
-        warn("%lld steps were solved by sweeps alone, not as asked", (long long)total.fell_back);
     if (total.abandoned)
         warn("%lld steps were given up before their limits", (long long)total.abandoned);
     if (total.missed)

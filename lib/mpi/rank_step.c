@@ -312,12 +312,6 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
     problem_free(&p);
 }
 
-/* Can ranks solve it together? */
-static bool rank_step_is_shared(const struct packing *p, const struct step_opt *o)
-{
-    return step_sweeps(o->solve.global) && !freedoms_in(p);
-}
-
 /* May impacts be bounded, by the first rank, which then has all contacts? */
 static bool bounds_impacts(const struct packing *p)
 {
@@ -329,7 +323,7 @@ static bool bounds_impacts(const struct packing *p)
 
 bool rank_step_scatters(const struct packing *p, const struct step_opt *o)
 {
-    return o->order == ORDER_BLOCK && rank_step_is_shared(p, o) && !p->law && !o->warm &&
+    return o->order == ORDER_BLOCK && !freedoms_in(p) && !p->law && !o->warm &&
            !packing_varies(p) && !bounds_impacts(p) && !p->sums.n;
 }
 
@@ -404,7 +398,7 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
     struct by_first *f = (struct by_first *)m;
     struct rank_step *y = f->y;
     struct blocks b;
-    bool solved = rank_step_is_shared(&y->part.p, o), blocks = solved && o->order == ORDER_BLOCK;
+    bool solved = !freedoms_in(&y->part.p), blocks = solved && o->order == ORDER_BLOCK;
     if (blocks)
         solve_in_blocks(y, &b, whole, &f->here, o, rep), blocks_free(&b);
     else if (solved)

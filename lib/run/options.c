@@ -221,7 +221,6 @@ const char *options_error(enum criterion criterion)
 
 void options_warn(const char *where, const struct report *r)
 {
-    if (r->fallback) warn("%s: %s: %s sweeps instead", where, r->fallback, r->method);
     if (r->given_up) warn("%s: given up: %s", where, r->given_up);
 }
 

@@ -280,9 +280,8 @@ static int factorise(struct strategy *a)
    too large, -1 when memory is short. */
 static int make_ready(struct strategy *a)
 {
-    const char *reason;
     if (a->ready) return 0;
-    int e = newton_assemble(&a->w, a->s, &reason);
+    int e = newton_assemble(&a->w, a->s);
     if (e) return e;
     a->ready = true;
     return solve_keep_best(a->s);
@@ -313,7 +312,6 @@ static bool may_pay(const struct strategy *a, double more)
 static int look_for_better(struct strategy *a, double more)
 {
     struct solve *s = a->s;
-    const char *reason;
     int e = make_ready(a);
     if (e) return a->tried = true, e < 0 ? -1 : 0;
     int fits = subset_fits(&a->w.a, s, a->contacts, false, allowance(a, more) - a->vain);
@@ -325,8 +323,7 @@ static int look_for_better(struct strategy *a, double more)
     if (solve_over(s)) return 0;
     if (subsets) a->older.sweeps = 0; // the gain so far says nothing about the next sweeps
     if (!may_pay(a, more)) return 0;
-    if (!a->w.system && (e = newton_factors(&a->w, s, &reason)))
-        return a->tried = true, e < 0 ? -1 : 0;
+    if (!a->w.system && (e = newton_factors(&a->w, s))) return a->tried = true, e < 0 ? -1 : 0;
     if (!pays(a, more, a->w.price)) return 0;
     if (factorise(a)) return -1;
     a->tried = true;

@@ -23,7 +23,6 @@ enum {
     NEXT_STEPS = 12,  /* steps of each later round, at most */
     WARM_STEPS = 25,  /* steps from the sweeps' reactions, at most */
     ARC_STEPS = 60,   /* steps by arc length, at most */
-    SWEEPS = 500      /* sweeps before the method begins: most statuses are right by then */
 };
 
 /* The t tried in turn: between balls, and where the W_cc are full (columns, walls) */
@@ -243,11 +242,3 @@ void ipm_solve(struct newton *w, struct solve *s)
     if (!solve_over(s)) path_with_small_t(w, s);
     if (!solve_over(s)) path_then_arc(w, s, GAP_COLD);
 }
-
-static int ipm_run(struct solve *s)
-{
-    return newton_after_sweeps(s, SWEEPS, 1.3, ipm_solve);
-}
-
-const struct solver solver_ipm = { "ipm", "interior point method on all contacts at once", 0,
-                                   ipm_run };

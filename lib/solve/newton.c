@@ -21,11 +21,6 @@ enum {
 #define FACTOR_BYTES 4e9    /* bytes of the factors, at most */
 #define CONTACTS_MAX 100000 /* contacts: more are not even assembled */
 
-static const char too_many[] = "more than 100000 contacts are not factorised",
-                  too_wide[] = "W has more entries than 32-bit indices reach",
-                  too_dense[] = "the factors would take more than 4 GB",
-                  too_slow[] = "no time for a factorisation within --max-seconds";
-
 void newton_free(struct newton *w)
 {
     system_free(w->system);
@@ -40,14 +35,12 @@ static int free_and_return(struct newton *w, int status)
     return status;
 }
 
-int newton_assemble(struct newton *w, struct solve *s, const char **reason)
+int newton_assemble(struct newton *w, struct solve *s)
 {
     struct failure failure = { 0 };
     *w = (struct newton){ .rho = RHO };
-    *reason = too_many;
     if (s->p->n > CONTACTS_MAX) return 1;
     int e = scaled_init(&w->a, s->p, &failure);
-    if (e == EX_DATAERR) *reason = too_wide;
     if (e) return free_and_return(w, e == EX_DATAERR ? 1 : -1);
     s->rep->work += price_assembly(delassus_entries(&w->a.W));
     size_t size = (size_t)w->a.size + 4, blocks = 9 * (size_t)s->p->n;
@@ -58,40 +51,24 @@ int newton_assemble(struct newton *w, struct solve *s, const char **reason)
     return 0;
 }
 
-int newton_factors(struct newton *w, struct solve *s, const char **reason)
+int newton_factors(struct newton *w, struct solve *s)
 {
     bool too_large;
-    *reason = too_slow;
     if (!solve_affords(s, system_price_new(&w->a))) return 1;
     s->rep->work += system_price_new(&w->a);
     w->system = system_new(&w->a, FACTOR_BYTES, &too_large);
     if (!w->system && !too_large) return -1;
-    if (too_large) return *reason = too_dense, 1;
+    if (too_large) return 1;
     w->price = system_price(w->system);
     if (solve_affords(s, w->price)) return 0;
     system_free(w->system), w->system = NULL;
     return 1;
 }
 
-int newton_init(struct newton *w, struct solve *s, const char **reason)
+int newton_init(struct newton *w, struct solve *s)
 {
-    int e = newton_assemble(w, s, reason);
-    if (!e && (e = newton_factors(w, s, reason))) newton_free(w);
-    return e;
-}
-
-int newton_after_sweeps(struct solve *s, int32_t sweeps, double omega,
-                        void (*solve)(struct newton *w, struct solve *s))
-{
-    struct newton w;
-    const char *reason;
-    if (nlgs_sweeps(s, sweeps, s->o->relax > 0 ? s->o->relax : omega)) return -1;
-    if (solve_over(s)) return 0;
-    int e = newton_init(&w, s, &reason);
-    if (e) return e < 0 ? -1 : nlgs_fall_back(s, reason);
-    e = solve_keep_best(s);
-    if (!e) solve(&w, s);
-    newton_free(&w);
+    int e = newton_assemble(w, s);
+    if (!e && (e = newton_factors(w, s))) newton_free(w);
     return e;
 }
 

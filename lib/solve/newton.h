@@ -32,13 +32,13 @@ struct newton {
 
 /*
  * For the problem of s. Returns 0; -1 when memory is short; 1 where the problem is too large or the
- * time left too short, with *reason (a literal). There is something to free only after 0.
+ * time left too short. There is something to free only after 0.
  */
-int newton_init(struct newton *w, struct solve *s, const char **reason);
+int newton_init(struct newton *w, struct solve *s);
 /* The same in two parts: everything but the factors, without which no steps can be made; then the
    factors. Where newton_factors() fails, what newton_assemble() made stays. */
-int newton_assemble(struct newton *w, struct solve *s, const char **reason);
-int newton_factors(struct newton *w, struct solve *s, const char **reason);
+int newton_assemble(struct newton *w, struct solve *s);
+int newton_factors(struct newton *w, struct solve *s);
 void newton_free(struct newton *w);
 
 /* The number of sweeps that cost as much as a Newton step, within 200 to 2000 */
@@ -57,13 +57,5 @@ bool newton_finish(struct newton *w, struct solve *s, const double *x, double rh
  * Ends with the best iterate restored.
  */
 void newton_polish(struct newton *w, struct solve *s, double alpha, int patience);
-
-/*
- * A whole solver: sweeps, with this omega where none is asked for, then solve() with the best
- * iterate kept. Where the problem is too large to factorise it sweeps to the end, and the report
- * says so. Returns 0, or -1 when memory is short.
- */
-int newton_after_sweeps(struct solve *s, int32_t sweeps, double omega,
-                        void (*solve)(struct newton *w, struct solve *s));
 
 #endif

@@ -150,13 +150,6 @@ int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega)
     return 0;
 }
 
-int nlgs_fall_back(struct solve *s, const char *reason)
-{
-    s->rep->fallback = reason;
-    snprintf(s->rep->method, sizeof s->rep->method, "%s", s->o->method->name);
-    return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);
-}
-
 static int nlgs_run(struct solve *s)
 {
     return nlgs_sweeps(s, s->o->max_sweeps, s->o->relax > 0 ? s->o->relax : 1);

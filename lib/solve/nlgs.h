@@ -22,8 +22,5 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w);
 /* `sweeps` sweeps with this omega, or fewer when the solve is over before; the last one is judged.
    Returns 0, or -1 when memory is short. */
 int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega);
-/* For a solver that cannot do what was asked: sweeps to the end instead, and reports `reason` (a
-   literal). Returns as nlgs_sweeps(). */
-int nlgs_fall_back(struct solve *s, const char *reason);
 
 #endif

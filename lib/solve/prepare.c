@@ -18,7 +18,7 @@ static int bonded_check_memory(const struct problem *p, struct failure *failure)
     if (need <= have) return 0;
     return failure_set(failure, EX_SOFTWARE,
                        "the bonds couple %lld contacts: needs %.3g GB, the machine has %.3g; "
-                       "--global auto, anderson and nlgs need no W, nor does --fclib=global",
+                       "without loads no W is needed, nor for --fclib=global",
                        (long long)p->n, need / GB, have / GB);
 }
 
@@ -231,8 +231,7 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
     if (bodies.kind.rolls) {
         problem_free(&bodies);
         return failure_set(failure, EX_DATAERR,
-                           "rolling friction where loads push contacts, or by another "
-                           "solver than auto, anderson and nlgs: not known");
+                           "rolling friction where loads push contacts: not known");
     }
     struct delassus *W = prepare_assemble(&bodies, s, failure);
     if (W && !problem_prepare_delassus(p, W, o, failure)) {
@@ -251,18 +250,11 @@ static int prepare_by_W(struct problem *p, const struct packing *pack, const str
     return failure->status;
 }
 
-static bool bonded(const struct contacts *s)
-{
-    for (int64_t i = 0; s->law && i < s->n; i++)
-        if (s->law[i].stiff[0] > 0 || s->law[i].stiff[1] > 0) return true;
-    return false;
-}
-
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, const struct prepare_opt *o, struct failure *failure)
+                    const struct prepare_opt *o, struct failure *failure)
 {
-    bool by_W = !sweeps && bonded(s);
-    if (!by_W && freedoms_in(pack)) {
+    bool by_W = false;
+    if (freedoms_in(pack)) {
         struct couplings touched;
         if (couplings_init(&touched, pack, s, failure)) return failure->status;
         by_W = touched.n > 0;

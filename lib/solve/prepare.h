@@ -40,10 +40,10 @@ int bonded_blocks(const struct problem *bodies, struct delassus *W, struct failu
    case. Returns 0, EX_SOFTWARE or EX_DATAERR. */
 int bonded_global(const struct assembly *A, struct global *P, struct failure *failure);
 
-/* As problem_prepare(). Where it is not sweeps that solve, W has the bonds [solve/extra.h] in it
+/* As problem_prepare(). Where loads push contacts the problem is given by a W, which has the bonds [solve/extra.h] in it
    [solve/prepare.h]: the slots' r are then r*. EX_SOFTWARE also where W is larger than the memory of
    the machine. */
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
-                    bool sweeps, const struct prepare_opt *o, struct failure *failure);
+                    const struct prepare_opt *o, struct failure *failure);
 
 #endif

@@ -88,8 +88,7 @@ static const char no_solution[] = "no solution: reactions grow without end";
 
 #define PACE 1e-9 /* s on the wall per priced ns, before any Newton step was timed */
 
-const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson, &solver_ipm,
-                                         NULL };
+const struct solver *const solvers[] = { &solver_auto, &solver_nlgs, &solver_anderson, NULL };
 
 enum {
     SLOTS_PER_THREAD = 16384, /* the fewest slots that are worth a thread: 100 us of copying */
@@ -327,7 +326,7 @@ int solve_problem(struct problem *p, const struct solve_opt *o, struct report *r
         s.enough = (int32_t)fmax(ENOUGH, CHEAP / price_sweep(p));
     rep->criterion = o->criterion, rep->eps = o->eps;
     rep->sweeps = 0, rep->newton = rep->safeguarded = rep->gave_up = 0;
-    rep->work = 0, rep->fallback = rep->given_up = NULL;
+    rep->work = 0, rep->given_up = NULL;
     snprintf(rep->method, sizeof rep->method, "%s",
              o->global == &solver_nlgs ? o->method->name : o->global->name);
     if (device && device_hold(device, p, o->method->id, &failure)) return -1;

@@ -98,11 +98,11 @@ struct solver {
 
 /* NULL ends it; the first is the default. */
 extern const struct solver *const solvers[];
-extern const struct solver solver_auto, solver_nlgs, solver_anderson, solver_ipm;
+extern const struct solver solver_auto, solver_nlgs, solver_anderson;
 
 /*
  * Solves a problem, starting from the r in its slots; afterwards they hold r and u. Fills method,
- * err (all but max_overlap), criterion, eps, sweeps, converged, counts, work, fallback, given_up,
+ * err (all but max_overlap), criterion, eps, sweeps, converged, counts, work, given_up,
  * seconds and history of the report. Returns 0, or -1 when memory is short for what the solver
  * cannot do without.
  */

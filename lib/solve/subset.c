@@ -74,10 +74,9 @@ static int subset_run(struct solve *s)
 {
     const struct inner *inner = (const struct inner *)s->o->global;
     struct newton w;
-    const char *reason;
     if (nlgs_sweeps(s, SWEEPS, OMEGA)) return -1;
     if (solve_over(s)) return 0;
-    int e = newton_init(&w, s, &reason);
+    int e = newton_init(&w, s);
     if (e) return e < 0 ? -1 : 0;
     if (STEPS * w.price <= inner->budget && !(e = solve_keep_best(s))) ipm_from(&w, s, GAP);
     newton_free(&w);

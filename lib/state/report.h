@@ -109,7 +109,7 @@ struct report {
     struct balance balance; /* of the step that the reactions make */
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;
-    double eps;     /* what was asked */
+    double eps; /* what was asked */
     int32_t sweeps;
     bool converged;
     int32_t unsolved
@@ -123,10 +123,9 @@ struct report {
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
     struct endless endless;            /* for which the step was not made */
-    double work;          /* ns, counted and not timed, of the whole solve [solve/solver.h] */
-    const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
-    const char *given_up; /* why it ended before its limits, a literal; or NULL */
-    const char *on_cpu;   /* why the device asked for did not solve it, a literal; or NULL */
+    double work;             /* ns, counted and not timed, of the whole solve [solve/solver.h] */
+    const char *given_up;    /* why it ended before its limits, a literal; or NULL */
+    const char *on_cpu;      /* why the device asked for did not solve it, a literal; or NULL */
     double bus_to, bus_from; /* bytes to the device, and from it */
     int64_t kernels;         /* started there */
     double seconds;          /* s of CPU, of all threads, in the solve */

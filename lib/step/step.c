@@ -18,22 +18,6 @@
 
 #include <stdlib.h>
 
-bool step_sweeps(const struct solver *global)
-{
-    return global == &solver_auto || global == &solver_nlgs || global == &solver_anderson;
-}
-
-/* Refuses what the solver asked for cannot solve. */
-static int check_solver(const struct problem *p, const struct solver *global,
-                        struct failure *failure)
-{
-    if (!p->kind.rolls || step_sweeps(global)) return 0;
-    return failure_set(
-        failure, EX_DATAERR,
-        "%s does not solve contacts with rolling friction: --global auto, anderson and nlgs do",
-        global->name);
-}
-
 /* Why solve_problem() has failed: the device, or memory */
 static int solve_failed(const struct solve_opt *o, struct failure *failure)
 {
@@ -50,9 +34,7 @@ static int solve_contacts(const struct packing *pack, struct contacts *s, struct
     const struct prepare_opt form = {
         .alpha = o->alpha, .rho_factor = o->solve.method->rho, .order = o->order, .kept = kept
     };
-    if (prepare_packing(&p, pack, s, step_sweeps(o->solve.global), &form, failure))
-        return failure->status;
-    if (check_solver(&p, o->solve.global, failure)) return problem_free(&p), failure->status;
+    if (prepare_packing(&p, pack, s, &form, failure)) return failure->status;
     int failed = solve_problem(&p, &o->solve, rep);
     if (failed)
         solve_failed(&o->solve, failure);

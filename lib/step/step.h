@@ -32,9 +32,6 @@ struct step_memory {
 };
 void step_forget(struct step_memory *m); /* all; m is empty again */
 
-/* Does this solver make sweeps alone of what bonds and moments hold together? Others want a W. */
-bool step_sweeps(const struct solver *global);
-
 /* All that follow return 0, or EX_SOFTWARE or EX_DATAERR with the reason in why. */
 
 /* Solves the contacts, whose bases and gaps are known; their found[] gets r, u and status. */

@@ -118,6 +118,7 @@ static struct cli_choice solver_choice(int k)
 /* Solvers that solved nothing that auto does not [nsd-methods(7)] */
 static const struct cli_choice solvers_gone[] = { { "cg", "auto solves all that it solved" },
                                                   { "prox", "auto solves all that it solved" },
+                                                  { "ipm", "auto uses it where it pays" },
                                                   { NULL, NULL } };
 
 static struct cli_choice criterion_choice(int k)

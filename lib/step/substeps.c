@@ -176,7 +176,6 @@ static void add_report(struct report *to, const struct report *r)
     to->balanced = to->balanced && r->balanced, to->converged = to->converged && r->converged;
     to->sweeps += r->sweeps, to->newton += r->newton;
     to->safeguarded += r->safeguarded, to->gave_up += r->gave_up;
-    if (r->fallback) to->fallback = r->fallback;
     if (r->given_up) to->given_up = r->given_up;
     if (r->on_cpu) to->on_cpu = r->on_cpu;
     to->bus_to += r->bus_to, to->bus_from += r->bus_from, to->kernels += r->kernels;

@@ -35,7 +35,7 @@ commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-
     "nsd-detect --fclib=global $tmp/solved.h5" "nsd-view --size 32x32 $tmp/solved.h5" "nsd-view --network --size 300x300 $tmp/solved.h5"
     "nsd-view --svg $tmp/discs.h5" "nsd-web $tmp/run.h5" "nsd-solve -m sbp --max-sweeps 3 $tmp/solved.h5"
     "nsd-solve -m exact --max-sweeps 3 $tmp/local.h5" "nsd-solve -m eal --max-sweeps 3 $tmp/global.h5"
-    "nsd-solve --global ipm $tmp/solved.h5"
+    "nsd-solve --criterion glob --eps 1e-12 $tmp/solved.h5"
     "nsd-step -m sbp -n 2 $tmp/solved.h5" # the default goes on without Anderson where that finds no memory: other bytes
     "nsd-step -m sbp -n 2 --order colour --contacts $tmp/solved.h5" "nsd-gen --schema")
 runs=14 # a command, spread over its allocations

@@ -36,7 +36,7 @@ for c in "$top"/cookbook/*/scene.json; do
 done
 # A heap of 300 balls that has fallen, by what steps and solves
 heap='nsd-gen 300 | nsd-step -n 700 --every 700 2>heap.said >heap.h5; cat heap.said'
-for way in '' '-j 2' '--cold' '-m sbp' '-m sal' '-m ebp' '-m eal -j 2' '-m exact --order random' '--global ipm' \
+for way in '' '-j 2' '--cold' '-m sbp' '-m sal' '-m ebp' '-m eal -j 2' '-m exact --order random' \
     '--global anderson -j 2' '--paper -m ebp' '--overlap gap' '--overlap push' '--overlap keep' '--dt auto:0.01' '--order block'; do
     frozen "heap${way// /}" "$heap; cp heap.h5 h.h5; nsd-step -n 5 --contacts $way -o out.h5 h.h5; cat out.h5; nsd-info out.h5"
 done

@@ -425,9 +425,8 @@ static void test_W(const struct place *where, int dim)
     struct problem problem;
     where->make(&p, dim, 0);
     must(detect_contacts(&s, &p, 0, NULL, &failure) || contacts_alloc_found(&s), &failure);
-    must(
-        prepare_packing(&problem, &p, &s, true, &(struct prepare_opt){ .rho_factor = 1 }, &failure),
-        &failure);
+    must(prepare_packing(&problem, &p, &s, &(struct prepare_opt){ .rho_factor = 1 }, &failure),
+         &failure);
     const struct delassus *W = problem.W;
     size_t size = (size_t)(s.n * dim) + 4;
     double *free_u = calloc(size, 8), *u = calloc(size, 8), *r = calloc(size, 8),

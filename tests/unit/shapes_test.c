@@ -416,8 +416,8 @@ static void assembly_is_sweep(void)
     struct delassus W;
     struct apply a;
     detect_contacts(&s, &p, 0.5, NULL, &failure);
-    prepare_packing(&q, &p, &s, true,
-                    &(struct prepare_opt){ .rho_factor = 1, .order = ORDER_COLOUR }, &failure);
+    prepare_packing(&q, &p, &s, &(struct prepare_opt){ .rho_factor = 1, .order = ORDER_COLOUR },
+                    &failure);
     assembly_init(&A, &q, &failure), assembly_blocks(&A, &W, &failure);
     double *x = calloc((size_t)(3 * q.slots) + 4, sizeof *x),
            *y = calloc((size_t)(3 * q.slots) + 4, sizeof *y);

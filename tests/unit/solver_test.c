@@ -149,8 +149,7 @@ static int follow(struct solve *s)
 {
     struct newton w;
     struct central m;
-    const char *reason;
-    if (newton_init(&w, s, &reason) || solve_keep_best(s)) return -1;
+    if (newton_init(&w, s) || solve_keep_best(s)) return -1;
     if (central_init(&m, &w, s, 0.1, true)) {
         arc_follow(&m, 1e-9, 200);
         central_free(&m);
@@ -177,8 +176,7 @@ static void test_path(const struct packing *p, const struct contacts *s, const c
 static int after(struct solve *s, int32_t sweeps)
 {
     struct newton w;
-    const char *reason;
-    if (nlgs_sweeps(s, sweeps, 1) || newton_init(&w, s, &reason) || solve_keep_best(s)) return -1;
+    if (nlgs_sweeps(s, sweeps, 1) || newton_init(&w, s) || solve_keep_best(s)) return -1;
     ipm_solve(&w, s);
     newton_free(&w);
     return 0;

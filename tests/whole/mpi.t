@@ -58,7 +58,6 @@ ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
 jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
 alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap keep --eps 1e-10
-alone=1 ok "as the interior point method" same "$tmp/heap.h5" 2 -n 1 --global ipm
 
 while read -r before scene ranks steps alone name; do
     [ -z "$thin" ] || [ "$alone" != 0 ] || steps=1
