@@ -316,7 +316,7 @@ static void solve_in_blocks(struct rank_step *y, struct blocks *b, const struct 
 static bool bounds_impacts(const struct packing *p)
 {
     bool said = false;
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         said = said || p->law[k].impact == IMPACT_BOUNDED;
     return packing_may_gain(p) && (p->shape || said);
 }

@@ -25,7 +25,7 @@ struct bond {
     vec3 turn;      /* rad: how far the spring of the moment is turned, b against a */
     /* Of grains that are no balls, a bond keeps the place where it was made [contact/bond_anchor.h]. */
     double area;     /* m^2; 0: none has been kept, and what follows is 0 */
-    vec3 at_a, at_b; /* m: in the frames of a, a body or a boundary, and of b */
+    vec3 at_a, at_b; /* m: in the frames of a, a body or a wall, and of b */
     vec3 axis;       /* the normal in the frame of b */
 };
 
