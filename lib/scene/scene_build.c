@@ -8,6 +8,7 @@
 #include "scene/grains.h"
 #include "scene/random_start.h"
 #include "scene/scene_carry.h"
+#include "scene/stiffness.h"
 #include "scene/time_step.h"
 #include "state/placement.h"
 #include "state/servo_box.h"
@@ -322,7 +323,7 @@ static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->materials * s->materials; k++)
         if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
-            s->law[k].pair_law.impact > 0 || pair_law_springs(&s->law[k].pair_law))
+            s->law[k].pair_law.impact > 0 || stiffness_given(&s->law[k]))
             return true;
     return false;
 }
@@ -683,7 +684,8 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
         packing_wrap(p, NULL);
         names_settle(&p->names);
         p->pulls_most = pulls_most(&p->pulls, p->n, p->id, p->mass);
-        if (!set_masses(p, s, failure) && !scene_build_set_dt(p, s, failure)) {
+        if (!set_masses(p, s, failure) && !scene_build_set_dt(p, s, failure) &&
+            !stiffness_build(p, s, failure)) {
             scene_carry_dt(p, s);
             check_packing(p, s, list, failure);
         }

@@ -1,6 +1,5 @@
 /* scene/scene_material.c: materials, and the law of each pair of them, from their JSON. */
 
-#include "contact/spring.h"
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -166,45 +165,44 @@ static int read_impact(jnode n, struct scene *s, void *member)
     return 0;
 }
 
-/* K, or {"normal": K, "tangential": K} */
-static const struct key stiffness_key[] = {
-    { "normal", &key_positive, AT(kn), "N/m", REQUIRED, "1e5", "Normal force per overlap." },
-    { "tangential", &key_positive, AT(kt), "N/m", "2/7 of it", "3e4",
-      "Tangential force per displacement." },
-    { 0 },
-};
-
-static int finish_stiffness(jnode o, struct scene *s, void *out)
-{
-    struct pair_law *l = out;
-    (void)s;
-    if (!keys_has(&o, "tangential")) l->kt = SPRING_ACROSS * l->kn;
-    return 0;
-}
-
-static const struct keys stiffness_keys = { "stiffness", stiffness_key,
-                                            .finish = finish_stiffness };
-
-static int read_stiffness(jnode n, const struct key *k, struct scene *s, void *member)
-{
-    struct pair_law *l = member;
-    (void)k;
-    if (json_is_object(n.json)) return keys_read(n, &stiffness_keys, s, l);
-    if (json_node_number(n, J_POSITIVE, &l->kn)) return 1;
-    l->kt = SPRING_ACROSS * l->kn;
-    return 0;
-}
-
-static const struct key_type key_stiffness = {
-    "number or object",
-    "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'$ref': 'stiffness'}]}", read_stiffness,
-    NULL, &stiffness_keys
-};
-
 /* ---- the law of all pairs, or of one ---- */
 
 #undef AT
 #define AT(member) offsetof(struct scene_law, member)
+
+/* K, "auto", or {"normal": K, "tangential": K}, or {"young": E} */
+static const struct key stiffness_key[] = {
+    { "normal", &key_positive, AT(pair_law.kn), "N/m", "-", "1e5", "Normal force per overlap.",
+      .choice = 1 },
+    { "young", &key_positive, AT(young), "Pa", "-", "1e7",
+      "Young's modulus E: the normal stiffness is pi/4 E d, d the smallest diameter, in the plane "
+      "E: that of a bar with the cross-section and the length of the smallest grain.",
+      .choice = 1 },
+    { "tangential", &key_positive, AT(tangential), "N/m", "2/7 of that", "3e4",
+      "Tangential force per displacement." },
+    { 0 },
+};
+static const struct keys stiffness_keys = { "stiffness", stiffness_key };
+
+static int read_stiffness(jnode n, const struct key *k, struct scene *s, void *member)
+{
+    struct scene_law *l = member;
+    (void)k;
+    l->pair_law.kn = l->young = l->tangential = 0, l->softest = false;
+    if (json_is_object(n.json)) return keys_read(n, &stiffness_keys, s, l);
+    if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, &l->pair_law.kn);
+    l->softest = true;
+    return strcmp(json_string_value(n.json), "auto")
+               ? json_node_fault(n, "needs a number of N/m, an object, or \"auto\"")
+               : 0;
+}
+
+static const struct key_type key_stiffness = {
+    "number or object",
+    "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'const': 'auto'}, {'$ref': "
+    "'stiffness'}]}",
+    read_stiffness, NULL, &stiffness_keys
+};
 
 /* Unit, default, example and help of the numbers of state/pair_columns.h */
 #define TEXT_mu "-", "0", "0.4", "Coulomb friction coefficient of every pair of kinds."
@@ -233,9 +231,10 @@ static const struct key law_key[] = {
       "Rolling and pivoting friction.", .object = &rolling_keys },
     { "adhesion", &key_object, AT(pair_law), "-", "none", "see below", "Bonds with damage.",
       .object = &adhesion_keys },
-    { "stiffness", &key_stiffness, AT(pair_law), "N/m", "rigid", "1e5",
+    { "stiffness", &key_stiffness, 0, "N/m", "rigid", "1e5",
       "Stiffness of contacts along the normal (in the plane for each metre of thickness), or an "
-      "object. Without it contacts are rigid, see nsd-methods(7), \"Contacts with a stiffness\"." },
+      "object. \"auto\": the least that its loads and speeds ask for. Without it contacts are "
+      "rigid, see nsd-methods(7), \"Contacts with a stiffness\"." },
     { 0 },
 };
 #undef ROW

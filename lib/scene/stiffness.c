@@ -45,17 +45,17 @@ static struct stiffness_bodies bodies_of(const struct packing *p, const struct s
     return b;
 }
 
-int stiffness_needed(double *k, const struct packing *p, struct failure *failure)
+/* Of the packing of a scene; *radius (m): the smallest, of bodies that inlets bring too */
+static int stiffness_of(double *k, double *radius, const struct packing *p, const struct scene *s,
+                        struct failure *failure)
 {
-    struct flow flow;
     struct time_step t;
     *k = 0;
-    if (flow_read(&flow, p, failure)) return failure->status;
     const double g = v3_norm(p->g);
     const vec3 up = g > 0 ? v3_scale(-1 / g, p->g) : v3(0, 0, 0);
-    time_step_of(&t, &flow.scene, p);
-    const struct stiffness_bodies b = bodies_of(p, &flow.scene, up);
-    flow_free(&flow);
+    time_step_of(&t, s, p);
+    *radius = t.radius;
+    const struct stiffness_bodies b = bodies_of(p, s, up);
     double v = 0;
     for (int i = LIMIT_SPEED; i <= LIMIT_WALL; i++) v = fmax(v, t.x[i]);
     const double fall = t.x[LIMIT_FALL], cross = p->dim == 2 ? 2 * b.large : 4 * b.large * b.large;
@@ -69,6 +69,45 @@ int stiffness_needed(double *k, const struct packing *p, struct failure *failure
     return failure_set(
         failure, EX_DATAERR,
         "nothing moves or is loaded, by which a stiffness could be chosen: give it in N/m");
+}
+
+int stiffness_needed(double *k, const struct packing *p, struct failure *failure)
+{
+    struct flow flow;
+    double radius;
+    *k = 0;
+    if (flow_read(&flow, p, failure)) return failure->status;
+    stiffness_of(k, &radius, p, &flow.scene, failure);
+    flow_free(&flow);
+    return failure->status;
+}
+
+/* N/m: of a bar with the cross-section and the length of a grain, in the plane for each metre of thickness */
+static double stiffness_of_bar(int dim, double young, double radius)
+{
+    return dim == 2 ? young : M_PI_4 * young * 2 * radius;
+}
+
+int stiffness_build(struct packing *p, const struct scene *s, struct failure *failure)
+{
+    struct failure why = { 0 };
+    double needed = 0, radius = INFINITY;
+    bool any = false;
+    const int32_t pairs = p->materials * p->materials;
+    for (int32_t i = 0; i < pairs; i++) any = any || s->law[i].softest || s->law[i].young > 0;
+    if (any) stiffness_of(&needed, &radius, p, s, &why);
+    for (int32_t i = 0; p->law && i < pairs; i++) {
+        const struct scene_law *l = &s->law[i];
+        if (l->softest && why.status)
+            return failure_set(failure, why.status, "stiffness: auto: %s", why.text);
+        if (l->young > 0 && !isfinite(radius))
+            return failure_set(failure, EX_DATAERR,
+                               "stiffness: young: no body has a diameter: give a stiffness in N/m");
+        if (l->softest) p->law[i].kn = needed;
+        if (l->young > 0) p->law[i].kn = stiffness_of_bar(p->dim, l->young, radius);
+        p->law[i].kt = l->tangential > 0 ? l->tangential : SPRING_ACROSS * p->law[i].kn;
+    }
+    return 0;
 }
 
 int stiffness_read(double *k, const char *text, const struct packing *p, struct failure *failure)

@@ -15,6 +15,7 @@
 #ifndef NSD_STIFFNESS_H
 #define NSD_STIFFNESS_H
 
+#include "scene/scene.h"
 #include "state/packing.h"
 
 #define STIFFNESS_STATIC 1e-4 /* radii of the smallest body */
@@ -24,6 +25,13 @@
 
 /* *k: N/m, as above. Returns 0, or EX_DATAERR where nothing moves or is loaded, or EX_SOFTWARE. */
 int stiffness_needed(double *k, const struct packing *p, struct failure *failure);
+/* Gives a scene this law a stiffness? */
+static inline bool stiffness_given(const struct scene_law *l)
+{
+    return l->pair_law.kn > 0 || l->young > 0 || l->softest;
+}
+/* k_n and k_t of all pairs of a packing whose bodies have been built, as its scene has them. Returns as the former. */
+int stiffness_build(struct packing *p, const struct scene *s, struct failure *failure);
 /* *k by a text, as --stiffness has it: a number above 0 (N/m), "rigid" (0) or "auto" (needed). The same returns, and EX_USAGE
    where it is none of these. */
 int stiffness_read(double *k, const char *text, const struct packing *p, struct failure *failure);
