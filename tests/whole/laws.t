@@ -477,27 +477,27 @@ ok "a brick on a slope stays, displaced by m g sin/(4 k_t)" near "$(last "$tmp/b
 jq -n '{ dt: 1e-3, mu: 0.6, gravity: [3, 0, -9], stiffness: 1e6, rolling: { mu_r: 1e-3 }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: [{ x: [0, 0, 0.01], radius: 0.01 }] }' | nsd-gen - | step --criterion natural --eps 1e-10 -n 100 --every 100 -o "$tmp/down.h5"
 ok "a ball rolls down a slope with 5/7 (g sin - mu_r/R g cos)" near "$(last "$tmp/down.h5" | jq '.v[0]')" 0.15 1e-9
-# slope KEYS BODY: below the angle of rolling friction
-slope()
+# tilted KEYS BODY: below the angle of rolling friction
+tilted()
 {
     jq -n --argjson more "$1" --argjson body "$2" '{ dt: 1e-3, mu: 0.6, gravity: [1, 0, -9], stiffness: 1e6, rolling: { mu_r: 2e-3 },
         walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.01] } + $body] } + $more' | nsd-gen -
 }
 for m in sbp sal ebp eal exact; do
-    slope '{}' '{ "radius": 0.01 }' | step -m $m --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5"
+    tilted '{}' '{ "radius": 0.01 }' | step -m $m --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5"
     # F/k_t by the slip, and F R/(k_t R^2) R by the turn
     ok "-m $m: a ball is held on a slope, displaced by 2 F/k_t" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
         "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 7 / 1e6')" 1e-6
     rm "$tmp/down.h5"
 done
 # two balls as one grain, whose bounding ball has a radius of 16 mm: two contacts, each with k_t (16 mm)^2
-slope '{ "shapes": { "pair": { "balls": [[0, 0.006, 0, 0.01], [0, -0.006, 0, 0.01]] } } }' \
+tilted '{ "shapes": { "pair": { "balls": [[0, 0.006, 0, 0.01], [0, -0.006, 0, 0.01]] } } }' \
     '{ "shape": "pair", "size": 1 }' >"$tmp/pair.h5"
 step --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5" "$tmp/pair.h5"
 ok "two balls as one grain are held by 2 k_t and 2 k_t R^2" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
     "$(nsd-info -p "$tmp/pair.h5" | jq '.mass * (1 + (1 / 1.6) * (1 / 1.6)) / (2 * 2e6 / 7)')" 1e-5
 # k_r h^2/I of a spinning ball in one step
-slope '{ "gravity": [0, 0, -9], "rolling": { "mu_p": 100 } }' '{ "radius": 0.01, "w": [0, 0, 1] }' |
+tilted '{ "gravity": [0, 0, -9], "rolling": { "mu_p": 100 } }' '{ "radius": 0.01, "w": [0, 0, 1] }' |
     step --criterion natural --eps 1e-12 -n 1 -o "$tmp/spun.h5"
 ok "a spring against pivoting: an implicit step of k_t R^2" near "$(last "$tmp/spun.h5" | jq '.w[2]')" \
     "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 0.4 | 1 / (1 + 2 / 7 / .)')" 1e-9
