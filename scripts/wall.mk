@@ -19,6 +19,8 @@ EACH  := 1000 2000 4000 $(if $(QUICK),,8000 16000 32000 64000 128000 256000)# sw
 END   := $(if $(QUICK),4000,64000)# where the law is made linear, and proximal steps begin
 COUNT := $(if $(QUICK),20,60)# eigenvalues
 EPS   := 1e-4 1e-5 1e-6 1e-7
+MORE  ?=# N=DOCUMENT of other piles, for the table of stiffnesses
+SOFT  := $(if $(QUICK),0 1e-2,0 1e-4 1e-3 3e-3 1e-2 3e-2 1e-1)# compliances, of W
 # make takes a blank for the end of a name, the shell a quote for its own
 $(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error wall.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
 export PATH := $(CURDIR)/build:$(PATH)
@@ -32,7 +34,7 @@ all: $(OUT)/README.md
 	@echo "wall: $(OUT)/README.md" >&2
 
 $(OUT)/README.md: $(P)/page.py $(OUT)/map.svg $(OUT)/spectrum.svg $(SIZES:%=$(OUT)/%/spectrum.jsonl) $(OUT)/jam/follow.jsonl \
-                  $(SIZES:%=$(OUT)/%/auto.jsonl)
+                  $(SIZES:%=$(OUT)/%/auto.jsonl) $(SIZES:%=$(OUT)/%/soft.jsonl) $(OUT)/stiffness.tsv $(OUT)/change.tsv
 	$(P)/page.py $(OUT) $(SIZES) >$@
 
 $(OUT)/%/pile.h5: $(P)/pile.jq
@@ -66,6 +68,18 @@ $(OUT)/%/spectrum.jsonl: $(OUT)/%/global.h5 $(OUT)/%/sweeps-$(END).h5 $(P)/wall.
 
 $(OUT)/%/steps.jsonl: $(OUT)/%/global.h5 $(OUT)/%/sweeps-$(END).h5 $(P)/wall.py
 	$(P)/wall.py steps $< $(OUT)/$*/sweeps-$(END).h5 100 30 >$@
+
+# with a stiffness
+$(OUT)/%/soft.h5: $(OUT)/%/pile.h5
+	nsd-step --stiffness 5.45e4 -n 300 --every 300 $< 2>/dev/null | nsd-cat --last >$@
+$(OUT)/%/soft.jsonl: $(OUT)/%/soft.h5 $(P)/wall.py
+	nsd-detect $< | nsd-solve --cold --criterion natural --eps 1e-10 >$(@D)/soft-solved.h5 2>/dev/null
+	nsd-detect --fclib=global <$< >$(@D)/soft-global.h5
+	$(P)/wall.py spectrum $(@D)/soft-global.h5 $(@D)/soft-solved.h5 $(COUNT) >$@
+$(OUT)/stiffness.tsv: $(SIZES:%=$(OUT)/%/pile.h5) $(P)/stiffness.sh
+	ALPHAS="$(SOFT)" $(P)/stiffness.sh $(foreach n,$(SIZES),$n=$(OUT)/$n/pile.h5) $(MORE) >$@
+$(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
+	ALPHAS="$(if $(QUICK),0 1e-2,0 1e-4 1e-3 1e-2)" $(P)/change.sh $< >$@
 
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json

@@ -41,7 +41,32 @@ steps = rows(last, "steps.jsonl")
 ratio = {law: [s["ratio"] for s in steps if s["law"] == law and s["ratio"]] for law in ("Coulomb", "held")}
 jam = [[f["file"].split("eps-")[1][:-3], e(f["natural"]), e(f["r"]), e(f.get("dr")), e(f.get("dv")), e(f["self_stress"])]
        for f in rows("jam", "follow.jsonl")]
+
+
+def cells(name):
+    with open(f"{out}/{name}", encoding="ascii") as file:
+        return [row.rstrip("\n").split("\t") for row in file]
+
+
+def number(text):
+    return f"{float(text):.2g}".replace("e-0", "e-")
+
+
+stiff, soft = {}, []
+for balls, contacts, alpha, _, deep, eps, taken, newton, seconds, natural in cells("stiffness.tsv"):
+    row = stiff.setdefault((balls, alpha), [balls, contacts, alpha, "" if alpha == "0" else e(float(deep))])
+    good = float(natural) <= 1.01 * float(eps)
+    steps = taken + (f" + {newton}" if newton not in ("", "0") else "")
+    row.append(f"{steps}; {number(seconds)} s" if good else f"{e(float(natural))} in {number(seconds)} s")
+for n in sizes:
+    s = rows(n, "soft.jsonl")[0]
+    soft.append([n, s["contacts"], s["load"], s["slide"], s["zero"], s["unstable"], e(s["least"])])
+change = [[a, e(float(x)), e(float(y)), *more] for a, x, y, *more in cells("change.tsv")]
 for name, value in {
+        "STIFF": table(["balls", "contacts", "alpha", "deepest, radii", "to 1e-4", "to 1e-6", "to 1e-8"],
+                       [row + [""] * (7 - len(row)) for row in stiff.values()]),
+        "SOFT": table(["balls", "contacts", "loaded", "sliding", "zero", "unstable", "least real part"], soft),
+        "CHANGE": table(["alpha", "map of auto", "of Gauss-Seidel", "largest change", "root mean square"], change),
         "SWEEPS": table(["balls", "sweeps", "natural map", "norm of r, N s", "change of r", "change of v, g dt",
                          "statuses changed", "bodies with 9/10 of it"], sweeps),
         "SPECTRA": table(["balls", "contacts", "loaded", "sliding", "natural map", "zero", "unstable", "least real part",
