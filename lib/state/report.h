@@ -121,8 +121,9 @@ struct report {
     int64_t passed; /* bodies that went through a wall or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
-    struct endless endless;            /* for which the step was not made */
-    double work;          /* ns, counted and not timed, of the whole solve [solve/solver.h] */
+    int64_t small;          /* small steps, of which it is made; 0: it was made at once */
+    struct endless endless; /* for which the step was not made */
+    double work;            /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *fallback; /* why the solver asked for could not go on, and swept instead; or NULL */
     const char *given_up; /* why it ended before its limits, a literal; or NULL */
     const char *on_cpu;   /* why the device asked for did not solve it, a literal; or NULL */
