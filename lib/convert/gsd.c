@@ -187,7 +187,7 @@ static void put_vertex(FILE *out, bool first, double r, vec3 x, int dim)
 static void put_shape(FILE *out, const struct packing *p, const struct gsd_particle *k)
 {
     const struct shape *s = &p->shapes.s[k->shape];
-    const bool clump = k->shape && s->form == SHAPE_CLUMP;
+    const bool clump = k->shape && shape_is_union(s);
     if (!k->shape) {
         fputs("{}", out);
         return;
@@ -199,7 +199,7 @@ static void put_shape(FILE *out, const struct packing *p, const struct gsd_parti
     if (!clump) fprintf(out, "\"rounding_radius\": %.9g, ", k->radius * s->round);
     fputs(clump ? "\"centers\": [" : "\"vertices\": [", out);
     for (int32_t i = 0; i < s->vertices; i++) {
-        bool ring = p->dim == 2 && s->form == SHAPE_HULL; // in the order around it
+        bool ring = p->dim == 2 && shape_has_faces(s); // in the order around it
         put_vertex(out, !i, k->radius, s->vertex[ring ? s->corner[i] : i], clump ? 3 : p->dim);
     }
     fputs(clump ? "], \"diameters\": [" : "]", out);
