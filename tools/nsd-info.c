@@ -4,6 +4,7 @@
 #include "measure/stress.h"
 #include "run/cli.h"
 #include "state/face_of.h"
+#include "state/fields.h"
 #include "state/kinematics.h"
 #include "state/rotation.h"
 #include "state/selection.h"
@@ -45,28 +46,22 @@ const struct cli_tool tool = {
 /* What pairs of materials do beyond friction and restitution */
 static void add_law(json_t *j, const struct pair_law *l)
 {
-    if (l->cohesion > 0)
-        json_object_set_new(j, "cohesion",
-                            json_pack("{s:f, s:f}", "force", l->cohesion, "range", l->range));
-    if (pair_law_wets(l))
-        json_object_set_new(j, "capillary",
-                            json_pack("{s:f, s:f, s:f}", "volume", l->volume, "tension", l->tension,
-                                      "wetting", l->wetting));
-    if (pair_law_rolls(l)) {
-        json_t *rolling = json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p);
-        if (l->mu_r_ratio > 0) json_object_set_new(rolling, "mu_r_ratio", json_real(l->mu_r_ratio));
-        if (l->mu_p_ratio > 0) json_object_set_new(rolling, "mu_p_ratio", json_real(l->mu_p_ratio));
-        json_object_set_new(j, "rolling", rolling);
+    for (const struct law_name *law = law_names; law->name; law++) {
+        const size_t length = strlen(law->name);
+        if (!law->is_of(l)) continue;
+        json_t *of = json_object();
+        for (const struct field *f = law_fields; f->name; f++) {
+            double x = *(const double *)(const void *)((const char *)l + f->offset);
+            bool named = f->key && !strncmp(f->key, law->name, length) && f->key[length] == '.';
+            if (!named || (x == 0 && (f->traits & FIELD_OPTIONAL || f->range == FIELD_FLAG)) ||
+                (f->range == FIELD_FINITE &&
+                 l->forever > 0)) // bonds are made at a time, or for ever
+                continue;
+            json_object_set_new(of, f->key + length + 1,
+                                f->range == FIELD_FLAG ? json_true() : json_real(x));
+        }
+        json_object_set_new(j, law->name, of);
     }
-    if (pair_law_springs(l))
-        json_object_set_new(j, "stiffness",
-                            json_pack("{s:f, s:f}", "normal", l->kn, "tangential", l->kt));
-    if (!pair_law_adheres(l)) return;
-    json_t *a = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "c_n", l->cn, "c_t", l->ct, "w", l->w,
-                          "eta", l->eta, "area", l->area, "beta", l->beta);
-    json_object_set_new(a, l->forever ? "forever" : "made",
-                        l->forever ? json_true() : json_real(l->made));
-    json_object_set_new(j, "adhesion", a);
 }
 
 static json_t *material(const struct packing *p)

@@ -321,9 +321,7 @@ static int check_names(const struct packing *p, const struct scene *s, struct fa
 static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->materials * s->materials; k++)
-        if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
-            s->law[k].pair_law.impact > 0 || pair_law_springs(&s->law[k].pair_law))
-            return true;
+        if (pair_law_acts(&s->law[k].pair_law)) return true;
     return false;
 }
 

@@ -1,5 +1,7 @@
 #include "scene/scene_carry.h"
 
+#include "contact/contact_law.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,12 +76,8 @@ static int carry_bonds(const struct carried *y, struct failure *failure)
         const int32_t wall = -1 - b.a;
         if (!scene_carry_find(y, &b.a)) continue;
         b.b += (int32_t)y->row;
-        const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
-        if (!pair_law_wets(l)) b.wet = 0;
-        if (!pair_law_springs(l)) b.pressed = 0, b.rest = 0;
-        bool bonds = pair_law_adheres(l);
-        if (!has_images(y, b.shift) || (!bonds && !b.wet && !b.pressed)) continue;
-        if (!bonds) b.beta = 0;
+        if (!has_images(y, b.shift) || !contact_law_carries(&p->law[packing_pair(p, b.a, b.b)], &b))
+            continue;
         if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
         if (!bonds_add(&p->bonds, &b))
             return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
