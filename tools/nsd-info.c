@@ -193,9 +193,13 @@ static void show_moment(const struct frame *f)
 
 static void show_particles(const struct packing *p)
 {
+#define MEMBER(ctype, member, ...) #member,
+    static const char *const key[] = { EACH_BODY_COLUMN(MEMBER) };
+#undef MEMBER
+    const unsigned apart =
+        1 << BODY_inertia | 1 << BODY_id | 1 << BODY_material | 1 << BODY_shape | 1 << BODY_group;
     for (int64_t i = 0; i < p->n; i++) {
         if (!selection_body(&chosen, p, i)) continue;
-        const double q[4] = { p->q[i].w, p->q[i].x, p->q[i].y, p->q[i].z };
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
@@ -203,15 +207,10 @@ static void show_particles(const struct packing *p)
         if (p->group && p->group[i])
             json_object_set_new(j, "group", json_string(p->names.text[p->group[i] - 1]));
         if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
-        json_object_set_new(j, "radius", json_number(p->radius[i]));
-        json_object_set_new(j, "mass", json_number(p->mass[i]));
-        json_object_set_new(j, "x", json_vec(p->x[i]));
-        json_object_set_new(j, "v", json_vec(p->v[i]));
-        json_object_set_new(j, "w", json_vec(p->w[i]));
-        json_object_set_new(j, "q", json_numbers(q, 4));
-        const int32_t *image = p->image ? p->image[i] : NULL;
-        if (image)
-            json_object_set_new(j, "image", json_pack("[i,i,i]", image[0], image[1], image[2]));
+        for (int k = 0; k < BODY_COLUMNS; k++)
+            if (!(apart >> k & 1) && field_array(&body_columns[k], p))
+                json_object_set_new(
+                    j, key[k], json_field(&body_columns[k], field_row(&body_columns[k], p, i)));
         json_line(j);
     }
 }
@@ -390,11 +389,9 @@ static void show_sweeps(const struct frame *f)
 {
     shown = true;
     for (int32_t i = 0; i < f->report.sweeps; i++) {
-        const struct terms *t = &f->report.history[i];
-        json_line(json_pack("{s:i, s:o, s:o, s:o, s:o, s:o}", "sweep", i + 1, "eps_glob",
-                            json_number(t->eps_glob), "motion", json_number(t->motion), "proj",
-                            json_number(t->proj), "bipotential", json_number(t->bipotential),
-                            "penetration", json_number(t->penetration)));
+        json_t *j = json_pack("{s:i}", "sweep", i + 1);
+        json_terms(j, &f->report.history[i]);
+        json_line(j);
     }
 }
 

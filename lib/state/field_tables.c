@@ -346,10 +346,7 @@ const struct field found_fields[] = {
 
 /* ---- reports ---- */
 
-/*
- * /nsd/solver/NAME/value [frames][width]. The five numbers of eps are
- * eps_glob, motion, proj, bipotential, penetration.
- */
+/* /nsd/solver/NAME/value [frames][width]; the five numbers of eps are those of terms_fields */
 const struct field report_fields[] = {
     FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
@@ -368,6 +365,15 @@ const struct field report_fields[] = {
     FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
     FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    { 0 },
+};
+
+const struct field terms_fields[] = {
+    FIELD(struct terms, eps_glob, F64, 1, "eps_glob", "1", FIELD_MOVES),
+    FIELD(struct terms, motion, F64, 1, "motion", "1", FIELD_MOVES),
+    FIELD(struct terms, proj, F64, 1, "proj", "1", FIELD_MOVES),
+    FIELD(struct terms, bipotential, F64, 1, "bipotential", "1", FIELD_MOVES),
+    FIELD(struct terms, penetration, F64, 1, "penetration", "1", FIELD_MOVES),
     { 0 },
 };
 

@@ -37,7 +37,8 @@ static void *array(int64_t n, size_t size)
 }
 
 #define ROW(ctype, member, type, width, name, unit, bounds, ...)                                   \
-    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds),
+    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds,   \
+          .key = BODY_##member == BODY_material ? "kind" : NULL), /* "species" is H5MD's word */
 const struct field body_columns[] = { EACH_BODY_COLUMN(ROW){ 0 } };
 #undef ROW
 
