@@ -22,21 +22,21 @@
 static int scene_build_set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x,
                                 double r, struct failure *failure)
 {
-    double mass, inertia;
-    if (b->form.shape)
-        packing_solid_shape(p->dim, &p->shapes.s[b->form.shape], r, b->density, &mass, &inertia);
-    else
-        packing_solid(p->dim, r, b->density, &mass, &inertia);
-    if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
-    if (!b->fixed && !(mass > 0 && inertia > 0))
+    const struct new_body body = { .x = x,
+                                   .v = b->v,
+                                   .w = b->w,
+                                   .q = { 1, 0, 0, 0 },
+                                   .radius = r,
+                                   .density = b->density,
+                                   .mass = b->mass,
+                                   .weighed = b->mass > 0,
+                                   .fixed = b->fixed,
+                                   .material = b->material,
+                                   .shape = b->form.shape,
+                                   .group = b->group };
+    if (!packing_set_body(p, i, &body))
         return failure_set(failure, EX_DATAERR, "body %lld: a radius of %g m gives no mass",
                            (long long)i, r);
-    p->x[i] = x, p->v[i] = b->v, p->w[i] = b->w;
-    p->radius[i] = r;
-    p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
-    p->material[i] = b->material;
-    if (p->shape) p->shape[i] = b->form.shape;
-    if (p->group) p->group[i] = b->group;
     return 0;
 }
 

@@ -535,8 +535,9 @@ struct cell_flow packing_flow(const struct packing *p)
     return f;
 }
 
-void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
-                         double *mass, double *inertia)
+/* Mass and inertia of a shape of this radius, as packing_solid() */
+static void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                                double *mass, double *inertia)
 {
     const double *m = s->moment;
     double mean = dim == 2 ? m[2] : (m[0] + m[1] + m[2]) / 3;
@@ -554,4 +555,20 @@ void packing_solid(int dim, double radius, double density, double *mass, double 
     }
     *mass = density * 4.0 / 3 * M_PI * r2 * radius;
     *inertia = 0.4 * *mass * r2;
+}
+
+bool packing_set_body(struct packing *p, int64_t i, const struct new_body *b)
+{
+    double mass, inertia;
+    if (b->shape)
+        packing_solid_shape(p->dim, &p->shapes.s[b->shape], b->radius, b->density, &mass, &inertia);
+    else
+        packing_solid(p->dim, b->radius, b->density, &mass, &inertia);
+    if (b->weighed) inertia *= b->mass / mass, mass = b->mass;
+    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
+    p->radius[i] = b->radius, p->material[i] = b->material;
+    p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
+    if (p->shape) p->shape[i] = b->shape;
+    if (p->group) p->group[i] = b->group;
+    return b->fixed || (mass > 0 && inertia > 0);
 }
