@@ -1,5 +1,6 @@
 #include "convert/sheet.h"
 
+#include "base/array.h"
 #include "draw/facets.h"
 #include "state/face_of.h"
 
@@ -280,14 +281,9 @@ static void sheet_add_cell(void *to, int corners, const vec3 *x)
 {
     struct sheet_cells *c = to;
     if (c->failure->status) return;
-    if (c->s->cells == c->room) {
-        int64_t room = 2 * c->room + 64;
-        int32_t *of = realloc(c->of, (size_t)room * sizeof *of);
-        if (!of) {
-            failure_set(c->failure, EX_SOFTWARE, "no memory for the surfaces of the grains");
-            return;
-        }
-        c->of = of, c->room = room;
+    if (!array_grow(&c->of, &c->room, c->s->cells + 1, sizeof *c->of)) {
+        failure_set(c->failure, EX_SOFTWARE, "no memory for the surfaces of the grains");
+        return;
     }
     c->of[c->s->cells] = (int32_t)c->grain;
     sheet_add(c->s, corners, x, c->failure);

@@ -1,5 +1,7 @@
 #include "file/vtkhdf.h"
 
+#include "base/array.h"
+
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -188,12 +190,8 @@ static uint64_t hash_more(uint64_t h, const void *data, size_t size)
 
 static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct failure *failure)
 {
-    if (b->steps == b->room) {
-        int64_t room = b->room ? 2 * b->room : 64;
-        struct step *more = realloc(b->step, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
-        b->step = more, b->room = room;
-    }
+    if (!array_grow(&b->step, &b->room, b->steps + 1, sizeof *b->step))
+        return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     b->step[b->steps++] = s;
     return 0;
 }
@@ -201,12 +199,8 @@ static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct failure
 static int vtkhdf_add_part(struct vtkhdf_block *b, int64_t points, int64_t cells, int64_t corners,
                            struct failure *failure)
 {
-    if (b->parts == b->parts_room) {
-        int64_t room = b->parts_room ? 2 * b->parts_room : 64;
-        struct vtkhdf_extent *more = realloc(b->part, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
-        b->part = more, b->parts_room = room;
-    }
+    if (!array_grow(&b->part, &b->parts_room, b->parts + 1, sizeof *b->part))
+        return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     if (b->part) b->part[b->parts++] = (struct vtkhdf_extent){ points, cells, corners };
     return 0;
 }
@@ -330,8 +324,8 @@ static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *
         const void *array = field_array(c, p);
         snprintf(name, sizeof name, "PointData/%s", field_key(c));
         if (array)
-            append_to(b, file, name, (struct added){ column_native(c->type), c->width, p->n, array },
-                      failure);
+            append_to(b, file, name,
+                      (struct added){ column_native(c->type), c->width, p->n, array }, failure);
     }
     return failure->status;
 }

@@ -1,6 +1,7 @@
 /* state/contact.c: lists of contacts, their bases, and reactions carried from step to step. */
 #include "state/contact.h"
 
+#include "base/array.h"
 #include "base/team.h"
 
 #include <math.h>
@@ -70,11 +71,7 @@ int contacts_copy(struct contacts *to, const struct contacts *from)
 
 bool contacts_reserve(struct contacts *s, int64_t more)
 {
-    int64_t room = s->room + s->room / 2 + more;
-    if (s->n + more <= s->room) return true;
-    struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
-    if (c) s->c = c, s->room = room;
-    return c != NULL;
+    return array_grow(&s->c, &s->room, s->n + more, sizeof *s->c);
 }
 
 struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)

@@ -1,6 +1,7 @@
 /* state/packing.c: memory for a packing, and the check of its numbers. */
 #include "state/packing.h"
 
+#include "base/array.h"
 #include "state/fields.h"
 
 #include <stdio.h>
@@ -9,20 +10,10 @@
 
 int events_add(struct events *s, const struct event *e, struct failure *failure)
 {
-    if (s->n == s->room) {
-        int64_t room = s->room ? 2 * s->room : 64;
-        struct event *more = realloc(s->e, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for events");
-        s->e = more, s->room = room;
-    }
+    if (!array_grow(&s->e, &s->room, s->n + 1, sizeof *s->e))
+        return failure_set(failure, EX_SOFTWARE, "no memory for events");
     s->e[s->n++] = *e;
     return 0;
-}
-
-void events_free(struct events *s)
-{
-    free(s->e);
-    *s = (struct events){ 0 };
 }
 
 const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",

@@ -112,7 +112,6 @@ struct events {
 
 /* Returns 0 or EX_SOFTWARE. */
 int events_add(struct events *events, const struct event *event, struct failure *failure);
-void events_free(struct events *events);
 
 struct whole;
 
