@@ -162,7 +162,7 @@ static struct core time_of_impact_core_of(const struct packing *p, const struct 
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
     if (!s) return (struct core){ .n = 1, .v = v, .round = b->radius, .centre = x };
-    struct core c = shape_core(s, b->radius, x, v, k);
+    struct core c = shape_core(s, b->radius, x, v, NULL, k);
     c.hull = NULL; // its vertices are enough
     return c;
 }

@@ -113,16 +113,21 @@ static inline double shape_round(const struct shape *s, int32_t k)
 {
     return shape_is_union(s) ? s->ball[k] : s->round;
 }
-/* Part k of a body at x (m) of this radius (m), whose vertices are at v (m); normals are left to the caller */
+/* Part k of a body at x (m) of this radius (m), whose vertices are at v (m), and whose faces have these normals */
 static inline struct core shape_core(const struct shape *s, double radius, vec3 x, const vec3 *v,
-                                     int32_t k)
+                                     const vec3 *normal, int32_t k)
 {
-    const struct shape_part part = shape_part(s, k);
-    return (struct core){ .n = part.n,
-                          .v = v + part.first,
+    if (shape_is_union(s)) {
+        const struct shape_part part = shape_part(s, k);
+        v += part.first;
+        return (struct core){ .n = part.n, .v = v, .round = radius * part.round, .centre = *v };
+    }
+    return (struct core){ .n = s->vertices,
+                          .v = v,
+                          .normal = normal,
                           .hull = shape_has_faces(s) ? s : NULL,
-                          .round = radius * part.round,
-                          .centre = shape_is_union(s) ? v[part.first] : x };
+                          .round = radius * s->round,
+                          .centre = x };
 }
 
 struct shapes {

@@ -61,9 +61,7 @@ struct core placed_core(const struct placed *s, int64_t i, int32_t k)
     double r = s->p->radius[i];
     const vec3 *v = s->vertex + s->first[i];
     if (!shape) return (struct core){ .n = 1, .v = &s->x[i], .round = r, .centre = s->x[i] };
-    struct core c = shape_core(shape, r, s->x[i], v, k);
-    c.normal = s->normal + s->face[i];
-    return c;
+    return shape_core(shape, r, s->x[i], v, s->normal + s->face[i], k);
 }
 
 static int8_t placement_clamp(int64_t s)
