@@ -70,11 +70,13 @@ static json_t *material(const struct packing *p)
     for (int32_t a = 0; a < p->materials; a++)
         for (int32_t b = a; b < p->materials; b++) {
             int32_t k = a * p->materials + b;
-            json_t *j =
-                json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->material_name[a],
-                          p->material_name[b], "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
-            if (p->mu_s[k] > 0) json_object_set_new(j, "mu_s", json_real(p->mu_s[k]));
-            if (p->mu_s[k] > 0) json_object_set_new(j, "v_s", json_real(p->v_s[k]));
+            json_t *j = json_pack("{s:[s,s]}", "pair", p->material_name[a], p->material_name[b]);
+#define NUMBER(member, name, unit, key, ...) json_object_set_new(j, key, json_real(p->member[k]));
+            EACH_PAIR_COLUMN(NUMBER)
+            if (p->mu_s[k] > 0) {
+                STATIC_FRICTION_COLUMNS(NUMBER)
+            }
+#undef NUMBER
             if (p->law) add_law(j, &p->law[k]);
             json_array_append_new(list, j);
         }
@@ -351,9 +353,9 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "t1", json_vec(c->t1));
         json_object_set_new(j, "t2", json_vec(contact_t2(c)));
         json_object_set_new(j, "gap", json_number(c->gap));
-        json_object_set_new(j, "mu", json_number(c->mu));
-        json_object_set_new(j, "e_n", json_number(c->en));
-        json_object_set_new(j, "e_t", json_number(c->et));
+#define NUMBER(member, name, unit, key, ...) json_object_set_new(j, key, json_number(c->member));
+        EACH_PAIR_COLUMN(NUMBER)
+#undef NUMBER
         if (f->contacts.law) add_tie(j, &f->contacts.law[i]);
         const struct found *found = f->contacts.found ? &f->contacts.found[i] : NULL;
         if (found) {
