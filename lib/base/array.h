@@ -17,10 +17,11 @@ static inline bool array_grow(void *array, int64_t *room, int64_t least, size_t 
     void *rows;
     if (least <= *room) return true;
     memcpy(&rows, array, sizeof rows);
-    if (!(rows = realloc(rows, (size_t)wanted * size))) return false;
-    memcpy(array, &rows, sizeof rows);
+    void *grown = realloc(rows, (size_t)wanted * size);
+    if (!grown) return false;
+    memcpy(array, &grown, sizeof grown);
     *room = wanted;
-    return true;
+    return true; // cppcheck-suppress memleak ; the caller's pointer has it
 }
 
 #endif

@@ -163,7 +163,7 @@ int external_force_tables_write(struct table_write *s, const struct frame *f,
 /* NULL where all are 0 */
 static void drop_zeros(double **x, int64_t n)
 {
-    for (int64_t i = 0; i < n; i++)
+    for (int64_t i = 0; *x && i < n; i++)
         if ((*x)[i] != 0) return;
     free(*x);
     *x = NULL;
