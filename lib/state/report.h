@@ -39,8 +39,8 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
-    double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
-    double velocity;             /* the same over the scene's own velocity [solve/problem.h] */
+    double velocity;       /* velocity_error over the scene's own velocity [solve/problem.h] */
+    double velocity_error; /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
     int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
     double stray;   /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
