@@ -113,7 +113,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
         die(EX_DATAERR, "step %lld: no solved contacts, and frames before it have them",
             (long long)f->packing.step);
     if (s->moments && what != PART_CONTACTS && !s->solved) m.contacts = NULL;
-    if (s->moments && what == PART_BOUNDARY && s->sums != (f->packing.sums.n > 0))
+    if (s->moments && what == PART_WALLS && s->sums != (f->packing.sums.n > 0))
         die(EX_DATAERR, "step %lld: sums of walls in some frames of one table, and not in others",
             (long long)f->packing.step);
     if (s->moments && what == PART_CONTACTS && s->solved != solved)
@@ -188,7 +188,7 @@ static void directory_make(const char *name)
     if (mkdir(name, 0777) && errno != EEXIST) die(EX_IOERR, "%s: %s", name, strerror(errno));
 }
 
-/* Is there anything of this part? A packing has a cell, boundaries, contacts or shapes, or it has not. */
+/* Is there anything of this part? A packing has a cell, walls, contacts or shapes, or it has not. */
 static bool has_part(const struct frame *f, enum part what)
 {
     const bool has[PART_COUNT] = { true, f->detected, f->packing.walls > 0,
@@ -223,14 +223,14 @@ enum target { TARGET_FILE, TARGET_SERIES, TARGET_DIRECTORY };
 static struct sheaf single;
 static bool shown; /* whether any frame had the part that was asked for */
 
-/* What --only names, which the part has: grains are of bodies, boundaries of walls, contacts of either. */
+/* What --only names, which the part has: grains are of bodies, walls of walls, contacts of either. */
 static void choose(const struct packing *p, enum target target)
 {
     struct failure failure = { 0 };
     if (selection_init(&chosen, p, "--only", only, &failure))
         die(failure.status, "step %lld: %s", (long long)p->step, failure.text);
     if (!only || (target == TARGET_DIRECTORY && !cli_given(&part))) return;
-    if (part == PART_BOUNDARY ? chosen.walls : part == PART_CONTACTS || chosen.bodies) return;
+    if (part == PART_WALLS ? chosen.walls : part == PART_CONTACTS || chosen.bodies) return;
     die(EX_DATAERR, "--only: '%s' names %s; --part %s has no such names", only,
         chosen.walls ? "walls" : "bodies", part_name[part]);
 }
@@ -242,8 +242,7 @@ static void export(const struct format *format, enum target target, const struct
         for (int what = 0; what < PART_COUNT; what++) {
             bool wanted = cli_given(&part) ? what == part : format->parts || what == PART_GRAINS;
             if (!wanted || !has_part(f, what)) continue;
-            if (!strcmp(format->name, "stl") && what != PART_GRAINS && what != PART_BOUNDARY)
-                continue;
+            if (!strcmp(format->name, "stl") && what != PART_GRAINS && what != PART_WALLS) continue;
             directory_add(format, what, f, k);
             shown = true;
         }

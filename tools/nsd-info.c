@@ -42,7 +42,7 @@ const struct cli_tool tool = {
     "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
 };
 
-/* What pairs of kinds do beyond friction and restitution */
+/* What pairs of materials do beyond friction and restitution */
 static void add_law(json_t *j, const struct pair_law *l)
 {
     if (l->cohesion > 0)
@@ -72,12 +72,12 @@ static void add_law(json_t *j, const struct pair_law *l)
 static json_t *material(const struct packing *p)
 {
     json_t *list = json_array();
-    for (int32_t a = 0; a < p->kinds; a++)
-        for (int32_t b = a; b < p->kinds; b++) {
-            int32_t k = a * p->kinds + b;
+    for (int32_t a = 0; a < p->materials; a++)
+        for (int32_t b = a; b < p->materials; b++) {
+            int32_t k = a * p->materials + b;
             json_t *j =
-                json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->kind_name[a], p->kind_name[b],
-                          "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
+                json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->material_name[a],
+                          p->material_name[b], "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
             if (p->mu_s[k] > 0) json_object_set_new(j, "mu_s", json_real(p->mu_s[k]));
             if (p->mu_s[k] > 0) json_object_set_new(j, "v_s", json_real(p->v_s[k]));
             if (p->law) add_law(j, &p->law[k]);
@@ -204,7 +204,7 @@ static void show_particles(const struct packing *p)
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
-        json_object_set_new(j, "kind", json_string(p->kind_name[p->kind[i]]));
+        json_object_set_new(j, "kind", json_string(p->material_name[p->material[i]]));
         if (p->group && p->group[i])
             json_object_set_new(j, "group", json_string(p->names.text[p->group[i] - 1]));
         if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
@@ -274,7 +274,7 @@ static json_t *parts(const struct packing *p, int32_t wall)
     for (int32_t k = 0; k < p->names.rows; k++) {
         const struct named *r = &p->names.row[k];
         const char *name = p->names.text[r->name];
-        if (r->boundary != wall || !r->count) continue;
+        if (r->wall != wall || !r->count) continue;
         if (!json_object_get(j, name)) json_object_set_new(j, name, json_array());
         json_array_append_new(json_object_get(j, name),
                               json_pack("[i,i]", r->first, r->first + r->count - 1));
@@ -292,15 +292,15 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
         if (name) json_object_set_new(j, "name", json_string(name));
-        json_object_set_new(j, "kind", json_string(p->kind_name[w->kind]));
+        json_object_set_new(j, "kind", json_string(p->material_name[w->material]));
         vec3 x = wall_at(p, w, p->t), spin = wall_spin(p, w);
-        json_object_set_new(j, "shape", json_string(boundary_shape_name[w->shape]));
+        json_object_set_new(j, "shape", json_string(wall_shape_name[w->shape]));
         json_object_set_new(j, "point", json_vec(x));
         json_object_set_new(j, "normal", json_vec(wall_normal(p, w, p->t)));
         json_object_set_new(j, "velocity", json_vec(wall_velocity(p, w, x)));
         if (v3_norm(w->belt) > 0) json_object_set_new(j, "belt", json_vec(w->belt));
         if (v3_norm(spin) > 0) json_object_set_new(j, "spin", json_vec(spin));
-        if (w->shape != BOUNDARY_PLANE) json_object_set_new(j, "size", sizes(w));
+        if (w->shape != WALL_PLANE) json_object_set_new(j, "size", sizes(w));
         if (!wall_there(w, p->t)) json_object_set_new(j, "gone", json_true());
         if (w->load.way) json_object_set_new(j, "load", load(p, w));
         json_t *named = parts(p, i);
@@ -427,17 +427,17 @@ static json_t *scene_of_parameters(const struct packing *p)
                           p->tolerance > 0 ? json_string("auto") : json_real(packing_whole_dt(p)),
                           "seed", (json_int_t)p->seed);
     const double g[3] = { p->g.x, p->g.y, p->g.z };
-    json_t *kinds = json_object();
-    for (int32_t k = 0; k < p->kinds; k++)
-        json_object_set_new(kinds, p->kind_name[k], json_object());
+    json_t *materials = json_object();
+    for (int32_t k = 0; k < p->materials; k++)
+        json_object_set_new(materials, p->material_name[k], json_object());
     json_object_set_new(j, "gravity", json_numbers(g, p->dim));
-    json_object_set_new(j, "kinds", kinds);
+    json_object_set_new(j, "kinds", materials);
     json_object_set_new(j, "pairs", material(p));
     return j;
 }
 
-/* How many boundaries this item of a scene's walls is: of a box, as many as it has sides */
-static int32_t boundaries_of(const json_t *wall)
+/* How many walls this item of a scene's walls is: of a box, as many as it has sides */
+static int32_t walls_of(const json_t *wall)
 {
     const char *axis;
     json_t *side, *box = json_object_get(wall, "box");
@@ -458,7 +458,7 @@ static void set_loads(json_t *list, const struct packing *p)
             json_object_set_new(load, "speed", json_real(p->wall[at].load.speed));
             json_object_set_new(load, "travel", json_real(p->wall[at].load.travel));
         }
-        at += boundaries_of(wall);
+        at += walls_of(wall);
     }
 }
 

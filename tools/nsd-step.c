@@ -722,7 +722,7 @@ int tool_main(int argc, char **argv)
             die_why(&failure);
     }
     count_steps(&r.f.packing);
-    loop_choose_boundaries(&r.f.packing);
+    loop_choose_walls(&r.f.packing);
     if (steps && !in_place && writer_begin(r.out, &r.f, &failure)) die_why(&failure);
     options_log_open(argc, argv, output);
     save_begin(&r, in_place ? argv[0] : output);

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 static int64_t step = -1, every, samples = 3, threads, follow = -1, rate = 25;
-static int colour = COLOUR_RADIUS, boundaries;
+static int colour = COLOUR_RADIUS, walls;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
 static struct overlay over;
@@ -39,7 +39,7 @@ static struct cli_choice colour_choice(int k)
 
 enum { GLASS, LINES };
 
-static struct cli_choice boundaries_choice(int k)
+static struct cli_choice walls_choice(int k)
 {
     static const struct cli_choice choices[] = { { "glass", "half transparent" },
                                                  { "lines", "edges and outlines only" },
@@ -98,7 +98,7 @@ static const struct cli_option own[] = {
       .help = "draw only bodies with their centre in this box, m [all]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
       .help = "draw only bodies of these groups and kinds [all]" },
-    { CLI_CHOICE, 0, "boundaries", &boundaries, .choice = boundaries_choice,
+    { CLI_CHOICE, 0, "boundaries", &walls, .choice = walls_choice,
       .help = "draw boundaries in this way [glass]" },
     { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
       .help = "draw these walls and parts solid, by name or number [none]" },
@@ -192,7 +192,7 @@ static struct view view_of_options(void)
                       .angle = perspective,
                       .up = up_of_option(),
                       .strays = strays,
-                      .glass = boundaries == GLASS,
+                      .glass = walls == GLASS,
                       .follows = follow >= 0,
                       .follow = (int32_t)follow,
                       .pale = (float)(cli_given(&pale)                              ? pale
@@ -273,7 +273,7 @@ static bool wants_solid(void)
     return solid_names || cli_given(&surface);
 }
 
-/* The solid boundaries of a frame */
+/* The solid walls of a frame */
 static void set_solid(struct view *v, const struct frame *f, const char *where)
 {
     struct failure failure = { 0 };

@@ -8,7 +8,7 @@
 
 static const double NEAR = 0.2; /* smaller radii: closer contacts are where the bond is */
 
-/* The image of a place on a boundary that is nearest to x (m): a boundary goes on where the cell repeats,
+/* The image of a place on a wall that is nearest to x (m): a wall goes on where the cell repeats,
    and b, whom it has carried out of the cell, has come in again on the other side. */
 static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, vec3 x)
 {

@@ -60,7 +60,7 @@ double contact_laws_reach(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
     double reach = 0;
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; k < p->materials * p->materials; k++)
         reach = fmax(reach,
                      fmax(p->law[k].cohesion > 0 ? p->law[k].range : 0, bridge_reach(&p->law[k])));
     if (all.apart > -INFINITY) reach = fmax(reach, all.apart + MARGIN * all.small);

@@ -33,7 +33,7 @@
 #include "state/packing.h"
 
 /*
- * Static and kinetic friction. A pair of kinds may have besides mu, its kinetic friction, a static
+ * Static and kinetic friction. A pair of materials may have besides mu, its kinetic friction, a static
  * one mu_s and a speed v_s. A contact's friction in a step is
  *
  *     mu_s where |u_t-| <= v_s,  else mu,

@@ -17,7 +17,7 @@
 
 enum {
     PER_THREAD_CURVED =
-        512, /* bodies whose places on a curved boundary are worth a thread: 50 us of work, */
+        512, /* bodies whose places on a curved wall are worth a thread: 50 us of work, */
     PER_THREAD_FLAT = 16384, /* and bodies at a plane, or pairs */
     ELEMENTS_BODY =
         4096, /* elements of meshes near a body: one ten times as wide as they are has 600 */
@@ -132,7 +132,7 @@ static bool detect_add_body(struct contacts *out, const struct sought *o, const 
         return detect_shapes_wall(out, &o->all, w, i, o->gap, v3(0, 0, 0));
     vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->all.x[i], pose->shift)), wall->x);
     int n = surface ? surface_touches(surface, c, r + o->gap, touch)
-                    : boundary_nearest(wall, p->dim, c, r, touch);
+                    : wall_nearest(wall, p->dim, c, r, touch);
     for (int k = 0; k < n; k++) {
         if (!(touch[k].distance - r <= o->gap)) continue;
         touch[k].n = quat_turn(pose->q, touch[k].n);
@@ -246,7 +246,7 @@ static int detect_all(struct contacts *out, const struct packing *p, const struc
     o.all.surface = near->surface;
     for (o.wall = p->walls - 1; !e && stored && o.wall >= 0; o.wall--) {
         const struct wall *wall = &p->wall[o.wall];
-        bool plane = wall->shape == BOUNDARY_PLANE;
+        bool plane = wall->shape == WALL_PLANE;
         if (!wall_there(wall, at->t)) continue;
         stored = find_all(out, &o, p->n, plane && !shaped ? PER_THREAD_FLAT : PER_THREAD_CURVED,
                           plane ? add_plane : detect_add_shape);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 enum {
-    CORNERS = 256,     /* of a body that are near a boundary, at most: of more the first */
+    CORNERS = 256,     /* of a body that are near a wall, at most: of more the first */
     RIM_KEY = 1 << 30, /* features of rims; with RIM_END of their ends */
     MOVED_MOST = 256   /* corners of a body that is met as an image without memory of its own */
 };
@@ -82,19 +82,19 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, const stru
     return good;
 }
 
-/* ---- boundaries ---- */
+/* ---- walls ---- */
 
-/* A body and a boundary, whose contacts are sought */
+/* A body and a wall, whose contacts are sought */
 struct facing {
     const struct placed *s;
     int64_t i;
     const struct wall *wall;
     const struct surface *surface; /* of a mesh, else NULL */
-    struct pose pose;              /* of the boundary */
+    struct pose pose;              /* of the wall */
     double gap;                    /* m: the largest */
 };
 
-/* Where x (m) is for the boundary as it is described */
+/* Where x (m) is for the wall as it is described */
 static vec3 detect_shapes_described(const struct facing *o, vec3 x)
 {
     return v3_sub(quat_turn_back(o->pose.q, v3_sub(x, o->pose.shift)), o->wall->x);
@@ -106,15 +106,15 @@ static double reach_of(const struct facing *o)
     return o->s->p->radius[o->i] + fmax(o->gap, 0);
 }
 
-/* Is the place t of the end of a boundary below a corner, to its weld tolerance? The normal of t is then that of
+/* Is the place t of the end of a wall below a corner, to its weld tolerance? The normal of t is then that of
    the face: two walls may end there in one flat surface. */
 static bool detect_shapes_over_face(const struct wall *wall, const struct surface *surface,
                                     struct touch *t)
 {
     vec3 n = wall->n, d = v3_scale(t->distance, t->n);
-    double near = 2 * WELD_USUAL * boundary_reach(wall);
+    double near = 2 * WELD_USUAL * wall_reach(wall);
     if (surface) n = surface_normal(surface, t->feature / SURFACE_FEATURES), near = surface->weld;
-    if (!surface && (wall->weld > 0 || wall->shape != BOUNDARY_RECTANGLE)) near = wall->weld;
+    if (!surface && (wall->weld > 0 || wall->shape != WALL_RECTANGLE)) near = wall->weld;
     double height = v3_dot(d, n);
     if (!(v3_norm(v3_axpy(d, -height, n)) <= near)) return false;
     t->n = height < 0 ? v3_scale(-1, n) : n, t->distance = fabs(height);
@@ -134,10 +134,10 @@ struct detect_shapes_corner {
 
 static bool is_between(const struct detect_shapes_corner *o, vec3 a, vec3 b)
 {
-    return boundary_between(o->wall, o->dim, o->surface, a, b);
+    return wall_between(o->wall, o->dim, o->surface, a, b);
 }
 
-/* Has the corner gone through the boundary at t? Its normal then leads to the middle, and it is at a negative
+/* Has the corner gone through the wall at t? Its normal then leads to the middle, and it is at a negative
    distance. */
 static void turn_to_middle(const struct detect_shapes_corner *o, struct touch *t)
 {
@@ -175,7 +175,7 @@ static int turn_touches(const struct detect_shapes_corner *o, struct touch *t, i
 }
 
 /* Where a corner v of the body, rounded by `round` (m), meets the surface; n points to the body's side. Where the
-   boundary ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
+   wall ends or bends only what is round meets it by its corners: of sharp bodies, edges and faces meet rims
    [meet_rims()]. Returns how many places. */
 static int near_surface(const struct facing *face, vec3 v, double round,
                         struct touch touch[TOUCHES_MOST])
@@ -187,7 +187,7 @@ static int near_surface(const struct facing *face, vec3 v, double round,
          middle = detect_shapes_described(face, face->s->x[face->i]);
     double r = p->radius[face->i];
     int n = surface ? surface_touches(surface, c, round + face->gap + r, touch)
-                    : boundary_nearest(wall, p->dim, c, r, touch);
+                    : wall_nearest(wall, p->dim, c, r, touch);
     struct touch found[TOUCHES_MOST];
     struct grooves grooves;
     const struct detect_shapes_corner o = { wall, surface, p->dim, c, middle };
@@ -197,7 +197,7 @@ static int near_surface(const struct facing *face, vec3 v, double round,
     memcpy(found, touch, (size_t)n * sizeof *touch);
     for (int k = 0; k < n && kept < TOUCHES_MOST; k++) {
         struct touch *t = &touch[kept], *f = &found[k];
-        bool end = boundary_ends_at(wall, p->dim, surface, c, f);
+        bool end = wall_ends_at(wall, p->dim, surface, c, f);
         if (round == 0 && end && !(detect_shapes_over_face(wall, surface, f) && is_before(&o, f)))
             continue;
         if (round == 0 && surface && surface_bends(surface, p->dim, f->feature)) {
@@ -205,8 +205,8 @@ static int near_surface(const struct facing *face, vec3 v, double round,
             continue;
         }
         *t = *f, kept++;
-        bool two_sided = wall->side == BOUNDARY_BOTH || wall->shape == BOUNDARY_RECTANGLE ||
-                         wall->shape == BOUNDARY_DISC;
+        bool two_sided =
+            wall->side == WALL_BOTH || wall->shape == WALL_RECTANGLE || wall->shape == WALL_DISC;
         if (!surface && two_sided && (!end || round == 0) && is_between(&o, middle, c))
             turn_to_middle(&o, t);
     }
@@ -217,14 +217,14 @@ static int near_surface(const struct facing *face, vec3 v, double round,
 }
 
 /* The outside of a sphere or an endless cylinder, as the core of a ball or capsule with ends v; false: no such
-   boundary */
-static bool convex_boundary(const struct facing *o, vec3 v[2], struct core *c)
+   wall */
+static bool convex_wall(const struct facing *o, vec3 v[2], struct core *c)
 {
     const struct packing *p = o->s->p;
     const struct wall *wall = o->wall;
-    if (wall->side != BOUNDARY_OUTSIDE || wall->arc > 0) return false;
-    bool ball = wall->shape == BOUNDARY_SPHERE || (wall->shape == BOUNDARY_CYLINDER && p->dim == 2);
-    bool tube = wall->shape == BOUNDARY_CYLINDER && p->dim == 3 && wall->size[2] == 0;
+    if (wall->side != WALL_OUTSIDE || wall->arc > 0) return false;
+    bool ball = wall->shape == WALL_SPHERE || (wall->shape == WALL_CYLINDER && p->dim == 2);
+    bool tube = wall->shape == WALL_CYLINDER && p->dim == 3 && wall->size[2] == 0;
     if (!ball && !tube) return false;
     vec3 x = pose_of(&o->pose, wall->x), n = quat_turn(o->pose.q, wall->n);
     double along = v3_dot(n, v3_sub(o->s->x[o->i], x)), reach = 2 * reach_of(o);
@@ -235,14 +235,14 @@ static bool convex_boundary(const struct facing *o, vec3 v[2], struct core *c)
 }
 
 static bool meet_convex(struct contacts *out, const struct placed *s, int32_t w, int64_t i,
-                        const struct core *boundary, double gap)
+                        const struct core *wall_core, double gap)
 {
     static const int8_t none[3] = { 0, 0, 0 };
     int32_t cores = placed_cores(s, i);
     for (int32_t k = 0; k < cores; k++) {
         struct core c = placed_core(s, i, k);
         struct place place[PLACES_MOST];
-        int n = meet_cores(s->p->dim, boundary, &c, gap, place);
+        int n = meet_cores(s->p->dim, wall_core, &c, gap, place);
         for (int l = 0; l < n; l++) {
             if (cores > 1) place[l].feature = k * PLACES_MOST + l;
             place[l].x = v3_axpy(place[l].x, -0.5 * place[l].gap, place[l].n); // on the surface
@@ -310,7 +310,7 @@ static bool detect_shapes_goes_on(const struct facing *o, const struct rim *r, v
     return true;
 }
 
-/* Adds where the rims of the boundary meet the body's core and no corner does; returns how many places there are. */
+/* Adds where the rims of the wall meet the body's core and no corner does; returns how many places there are. */
 static int meet_rims(const struct facing *o, const struct core *c, struct place *place, int count)
 {
     const struct packing *p = o->s->p;
@@ -351,12 +351,12 @@ bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32
     const struct placed *s = all->shaped;
     const struct wall *wall = &p->wall[w];
     struct facing o = { s, i, wall, situation_surface(all, w), wall_pose(p, wall, all->t), gap };
-    bool plane = wall->shape == BOUNDARY_PLANE;
+    bool plane = wall->shape == WALL_PLANE;
     vec3 at = wall_at(p, wall, all->t), n = wall_normal(p, wall, all->t), ends[2];
-    struct core boundary;
+    struct core wall_core;
     o.pose.shift = v3_sub(o.pose.shift, ahead);
     if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach_of(&o)) return true;
-    if (convex_boundary(&o, ends, &boundary)) return meet_convex(out, s, w, i, &boundary, gap);
+    if (convex_wall(&o, ends, &wall_core)) return meet_convex(out, s, w, i, &wall_core, gap);
     struct place place[CORNERS];
     int count = 0;
     int32_t cores = placed_cores(s, i);

@@ -10,7 +10,7 @@ static bool is_fast(const struct packing *p, int64_t i, double thick)
 static struct fast body_of(const struct packing *p, int64_t i)
 {
     struct fast b = { .id = p->id[i],
-                      .kind = p->kind[i],
+                      .material = p->material[i],
                       .shape = p->shape ? p->shape[i] : 0,
                       .radius = p->radius[i],
                       .thick = tunnelling_thickness(p, i),
@@ -202,7 +202,7 @@ int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *
             const struct placed_path *path = &all[k];
             if (fast_pairs_apart(&path->box, &box) || path->of->id == b.id ||
                 (b.fast && path->of->id < b.id) || (path->of->mass == 0 && b.mass == 0) ||
-                p->inert[path->of->kind * p->kinds + b.kind] != 0)
+                p->inert[path->of->material * p->materials + b.material] != 0)
                 continue;
             struct fast a = *path->of;
             a.x = path->x, a.v = path->v;

@@ -13,7 +13,7 @@
 
 /* A body, as a path is examined */
 struct fast {
-    int32_t id, kind;
+    int32_t id, material;
     int32_t shape; /* row of the packing's shapes */
     bool fast;
     double radius, thick;

@@ -49,8 +49,8 @@ static double weld_of(const struct situation *o, int32_t who)
     if (who >= 0) return FLUSH * o->p->radius[who];
     const struct wall *w = &o->p->wall[-1 - who];
     if (w->weld > 0) return w->weld;
-    if (w->shape == BOUNDARY_MESH) return o->surface[-1 - who].weld;
-    double reach = boundary_reach(w);
+    if (w->shape == WALL_MESH) return o->surface[-1 - who].weld;
+    double reach = wall_reach(w);
     return isfinite(reach) ? 2 * WELD_USUAL * reach : 0;
 }
 
@@ -142,7 +142,7 @@ static bool mesh_rises(const struct surface *s, const struct internal_edge_spot 
 static bool nearest_place(const struct situation *o, const struct wall *w, vec3 c, vec3 *at)
 {
     struct touch t;
-    if (!boundary_nearest(w, o->p->dim, c, INFINITY, &t)) return false;
+    if (!wall_nearest(w, o->p->dim, c, INFINITY, &t)) return false;
     *at = v3_axpy(c, -t.distance, t.n);
     return true;
 }
@@ -167,7 +167,7 @@ static bool rises(const struct situation *o, const struct internal_edge_side *f,
     const struct height above = { n, v3_dot(n, c) + depth + 3 * near };
     const struct internal_edge_spot spot = { c, quat_turn_back(pose.q, f->n), d, near,
                                              dmax(depth, 0) };
-    if (w->shape == BOUNDARY_MESH) return mesh_rises(&o->surface[-1 - f->other], &spot, &above);
+    if (w->shape == WALL_MESH) return mesh_rises(&o->surface[-1 - f->other], &spot, &above);
     return nearest_place(o, w, c, &at) && nearest_place(o, w, d, &to) && leads_up(at, to, &above);
 }
 
@@ -178,9 +178,9 @@ static bool wall_is_at(const struct situation *o, int32_t w, vec3 x, vec3 n, dou
     struct pose pose = wall_pose(o->p, wall, o->t);
     vec3 c = internal_edge_described(wall, &pose, x), at;
     n = quat_turn_back(pose.q, n);
-    if (wall->shape == BOUNDARY_MESH) return surface_is_at(&o->surface[w], c, &n, near);
-    bool flat = wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_RECTANGLE ||
-                wall->shape == BOUNDARY_DISC;
+    if (wall->shape == WALL_MESH) return surface_is_at(&o->surface[w], c, &n, near);
+    bool flat =
+        wall->shape == WALL_PLANE || wall->shape == WALL_RECTANGLE || wall->shape == WALL_DISC;
     return flat && fabs(v3_dot(n, wall->n)) > 1 - ALONG && nearest_place(o, wall, c, &at) &&
            v3_norm(v3_sub(c, at)) <= near;
 }
@@ -271,12 +271,12 @@ static bool internal_edge_may_be(const struct situation *o, const struct contact
     if (c->a >= 0) return !internal_edge_moves(o, c->a) || !internal_edge_moves(o, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];
-    if (packing_shape(o->p, c->b)) return wall->shape != BOUNDARY_PLANE;
-    if (wall->shape == BOUNDARY_RECTANGLE || wall->shape == BOUNDARY_DISC)
+    if (packing_shape(o->p, c->b)) return wall->shape != WALL_PLANE;
+    if (wall->shape == WALL_RECTANGLE || wall->shape == WALL_DISC)
         return fabs(v3_dot(c->n, wall_normal(o->p, wall, o->t))) < 1 - ALONG;
-    if (wall->shape != BOUNDARY_MESH) return false;
+    if (wall->shape != WALL_MESH) return false;
     struct touch t = { .feature = c->feature };
-    return boundary_ends_at(wall, o->p->dim, &o->surface[w], v3(0, 0, 0), &t);
+    return wall_ends_at(wall, o->p->dim, &o->surface[w], v3(0, 0, 0), &t);
 }
 
 static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct contacts *s,

@@ -242,9 +242,8 @@ int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct fa
     s->surfaces = p->walls;
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
-        if (wall->shape == BOUNDARY_MESH &&
-            surface_init(&s->surface[w], &p->mesh, wall->first_element, wall->elements, wall->weld,
-                         failure))
+        if (wall->shape == WALL_MESH && surface_init(&s->surface[w], &p->mesh, wall->first_element,
+                                                     wall->elements, wall->weld, failure))
             return failure->status;
     }
     return 0;

@@ -16,7 +16,7 @@
 #include "state/packing.h"
 #include "state/placement.h"
 
-/* Bodies and boundaries, prepared for a search of contacts. */
+/* Bodies and walls, prepared for a search of contacts. */
 
 struct situation {
     const struct packing *p;
@@ -29,7 +29,7 @@ struct situation {
 /* The surface of wall w; NULL: it is no mesh */
 static inline const struct surface *situation_surface(const struct situation *o, int32_t w)
 {
-    return o->p->wall[w].shape == BOUNDARY_MESH ? &o->surface[w] : NULL;
+    return o->p->wall[w].shape == WALL_MESH ? &o->surface[w] : NULL;
 }
 
 struct pair {

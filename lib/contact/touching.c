@@ -23,7 +23,7 @@ static struct wish wish_of(const struct packing *p, const struct pair_law *l)
 static bool wishes_any(const struct packing *p)
 {
     bool any = false;
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds && !any; k++) {
+    for (int32_t k = 0; p->law && k < p->materials * p->materials && !any; k++) {
         const struct wish wish = wish_of(p, &p->law[k]);
         any = wish.bonds || wish.wets;
     }

@@ -109,7 +109,7 @@ static int64_t add_coming(const struct approach *o, int64_t k, const struct cont
     return n;
 }
 
-/* ---- boundaries ---- */
+/* ---- walls ---- */
 
 /* A way beside a wall, as the wall is described */
 struct tunnelling_beside {
@@ -128,8 +128,7 @@ static bool tunnelling_is_near(const struct tunnelling_beside *s, vec3 c, double
     const struct surface *surface = situation_surface(s->o, s->w);
     struct touch t;
     if (!surface)
-        return boundary_nearest(&p->wall[s->w], p->dim, c, INFINITY, &t) &&
-               fabs(t.distance) <= reach;
+        return wall_nearest(&p->wall[s->w], p->dim, c, INFINITY, &t) && fabs(t.distance) <= reach;
     struct surface_walk walk;
     struct surface_branch leaf;
     surface_walk_begin(&walk, surface->n);
@@ -147,10 +146,10 @@ static bool touch_ball(struct contacts *found, const struct tunnelling_beside *s
     vec3 c = v3_axpy(s->c, (double)k, s->step);
     double most = r + s->to.y->thick;
     const int32_t shape = p->wall[s->w].shape;
-    const bool sheet = surface || shape == BOUNDARY_RECTANGLE || shape == BOUNDARY_DISC ||
-                       p->wall[s->w].side == BOUNDARY_BOTH;
+    const bool sheet =
+        surface || shape == WALL_RECTANGLE || shape == WALL_DISC || p->wall[s->w].side == WALL_BOTH;
     int n = surface ? surface_touches(surface, c, most, touch)
-                    : boundary_nearest(&p->wall[s->w], p->dim, c, r, touch);
+                    : wall_nearest(&p->wall[s->w], p->dim, c, r, touch);
     for (int l = 0; l < n; l++) {
         if (!(touch[l].distance <= most)) continue;
         // a centre that lies on the sheet, to rounding, is met on the side that it comes from
@@ -311,8 +310,8 @@ bool tunnelling_meet_hulls(struct contacts *out, const struct situation *o)
 static double outside(const struct wall *w, vec3 c)
 {
     double z = v3_dot(c, w->n), rho = v3_norm(v3_axpy(c, -z, w->n)), r = w->size[0];
-    if (w->shape == BOUNDARY_SPHERE) return v3_norm(c) - r;
-    if (w->shape == BOUNDARY_CONE) r += (w->size[1] - r) * z / w->size[2];
+    if (w->shape == WALL_SPHERE) return v3_norm(c) - r;
+    if (w->shape == WALL_CONE) r += (w->size[1] - r) * z / w->size[2];
     return rho - r;
 }
 
@@ -328,7 +327,7 @@ static bool through_round(const struct wall *w, int dim, vec3 a, vec3 b)
         else
             b = middle;
     }
-    return boundary_nearest(w, dim, a, INFINITY, &t) &&
+    return wall_nearest(w, dim, a, INFINITY, &t) &&
            fabs(t.distance) <= 1e-9 * (v3_norm(a) + w->size[0]);
 }
 
@@ -339,11 +338,10 @@ static bool through_wall(const struct packing *p, const struct surface *surface,
     struct pose pose = wall_pose(p, wall, p->t);
     a = v3_sub(quat_turn_back(pose.q, v3_sub(a, pose.shift)), wall->x);
     b = v3_sub(quat_turn_back(pose.q, v3_sub(b, pose.shift)), wall->x);
-    bool round = wall->shape == BOUNDARY_CYLINDER || wall->shape == BOUNDARY_CONE ||
-                 wall->shape == BOUNDARY_SPHERE;
+    bool round =
+        wall->shape == WALL_CYLINDER || wall->shape == WALL_CONE || wall->shape == WALL_SPHERE;
     return round ? through_round(wall, p->dim, a, b)
-                 : boundary_between(wall, p->dim, wall->shape == BOUNDARY_MESH ? &surface[w] : NULL,
-                                    a, b);
+                 : wall_between(wall, p->dim, wall->shape == WALL_MESH ? &surface[w] : NULL, a, b);
 }
 
 bool tunnelling_through_hull(const struct shape *s, int dim, double r, quat q, vec3 a, vec3 b)
@@ -370,7 +368,7 @@ bool tunnelling_watches(const struct packing *p)
 {
     double most;
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape != BOUNDARY_PLANE) return true;
+        if (p->wall[w].shape != WALL_PLANE) return true;
     return first_fixed_hull(p, &most) < p->n;
 }
 
@@ -381,13 +379,13 @@ void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of
     int64_t first = first_fixed_hull(p, &most);
     *s = (struct passed){ 0 };
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape != BOUNDARY_PLANE) speed = dmax(speed, tunnelling_beside(p, w));
+        if (p->wall[w].shape != WALL_PLANE) speed = dmax(speed, tunnelling_beside(p, w));
     if (!tunnelling_watches(p)) return;
     for (int64_t i = 0; i < p->n; i++) {
         if ((of && !of[i]) || !tunnelling_is(p, i, dmax(speed, most))) continue;
         for (int32_t w = 0; w < p->walls; w++) {
             const struct wall *wall = &p->wall[w];
-            if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t) ||
+            if (wall->shape == WALL_PLANE || !wall_there(wall, p->t) ||
                 !packing_may_meet(p, -1 - w, (int32_t)i))
                 continue;
             vec3 v = v3_sub(p->v[i], wall_velocity(p, wall, p->x[i]));

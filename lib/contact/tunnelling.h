@@ -2,7 +2,7 @@
  * contact/tunnelling.h: bodies that move in a step by more than they are thick. Where contacts are sought such a body is
  * on one side of a sheet at one step and on the other at the next.
  *
- * Its way in the step, relative to a boundary, (v + g dt - v_wall) dt, is looked at in places no farther apart than
+ * Its way in the step, relative to a wall, (v + g dt - v_wall) dt, is looked at in places no farther apart than
  * it is thick. The first of them at which it touches what it did not touch before makes contacts now, with all that
  * is nearer there than it is thick, and with the gaps along their normals that it has now: it gets as far as there in this step, or where the law sees no gaps
  * [state/packing.h] it stops, or rebounds, at most one step's way early. Their features tell them, for they are
@@ -18,7 +18,7 @@
 #include "state/contact.h"
 #include "state/placement.h"
 
-/* Features of such contacts, of boundaries and of bodies: no others lie between one of these and its double. */
+/* Features of such contacts, of walls and of bodies: no others lie between one of these and its double. */
 enum { AHEAD_OF_WALL = 1 << 29, AHEAD_OF_BODY = 1 << 30 };
 static inline bool tunnelling_ahead(const struct contact *c)
 {
@@ -44,7 +44,7 @@ bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct sit
 /* Adds what bodies meet ahead of fixed hulls, and sorts all contacts again. */
 bool tunnelling_meet_hulls(struct contacts *out, const struct situation *o);
 
-/* Bodies that have gone through a boundary or another body without meeting it */
+/* Bodies that have gone through a wall or another body without meeting it */
 struct passed {
     int64_t n;
     /* of the one with the lowest number: what it went through, a wall -1-w or a body's number; of several the last */
@@ -68,7 +68,7 @@ static inline struct window window_after(const struct packing *p)
     return (struct window){ step_after(p), p->dt };
 }
 
-/* Is there anything of that kind, a boundary that is no plane or a fixed hull? */
+/* Is there anything of that kind, a wall that is no plane or a fixed hull? */
 bool tunnelling_watches(const struct packing *p);
 /* In the window, of bodies for which of[p->n] is true; NULL: all */
 void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,

@@ -13,11 +13,11 @@
 #include <stdio.h>
 
 /*
- * What is exported of one moment, and the parts of it: grains, contacts, boundaries,
+ * What is exported of one moment, and the parts of it: grains, contacts, walls,
  * the cell, the surfaces of grains that are no balls. Files of other programs take either a part as a sheet (convert/sheet.h), or the grains.
  */
 
-enum part { PART_GRAINS, PART_CONTACTS, PART_BOUNDARY, PART_CELL, PART_SURFACES, PART_COUNT };
+enum part { PART_GRAINS, PART_CONTACTS, PART_WALLS, PART_CELL, PART_SURFACES, PART_COUNT };
 extern const char *const part_name[PART_COUNT];
 
 struct export_frame {
@@ -25,8 +25,7 @@ struct export_frame {
     const struct contacts *contacts; /* NULL: there are none in the document */
     int detail;                      /* of balls made of triangles: 20 * 4^detail of them */
     void **kept;                     /* what a format keeps from moment to moment of its file */
-    const struct selection
-        *only; /* boundaries, bodies and their contacts that are wanted; NULL: all */
+    const struct selection *only; /* walls, bodies and their contacts that are wanted; NULL: all */
     void (*tell)(int64_t done, int64_t of); /* how far it is, for who looks on; NULL: nobody does */
 };
 
@@ -90,7 +89,7 @@ struct some_bodies {
     struct packing packing; /* these with all else of the other packing, which is borrowed */
 };
 
-/* Bodies of groups and kinds that c names, in their order. Returns 0, or EX_SOFTWARE with nothing to free. */
+/* Bodies of groups and materials that c names, in their order. Returns 0, or EX_SOFTWARE with nothing to free. */
 int some_bodies_init(struct some_bodies *s, const struct packing *p, const struct selection *c,
                      struct failure *failure);
 void some_bodies_free(struct some_bodies *s);

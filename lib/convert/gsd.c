@@ -3,8 +3,8 @@
  * OVITO: a header, chunks of numbers, and behind them the names of the chunks and an index by frame and name.
  * A chunk that is the same as in frame 0 is left out, as the schema allows. Reals are of single precision.
  *
- * GSD gives a shape to a type of particles, not to a particle. Balls have the type of their kind and a diameter
- * each; grains of another shape have a type for each kind, shape and radius. The centre of the box is the
+ * GSD gives a shape to a type of particles, not to a particle. Balls have the type of their material and a diameter
+ * each; grains of another shape have a type for each material, shape and radius. The centre of the box is the
  * origin, so positions are relative to it, and within it along periodic edges, which `image` counts.
  */
 #include "convert/format.h"
@@ -132,42 +132,43 @@ static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t colu
 
 /* ---- types ---- */
 
-struct kind {
-    int32_t kind, shape; /* shape 0: balls of any radius */
-    double radius;       /* m */
+struct gsd_particle {
+    int32_t material, shape; /* shape 0: balls of any radius */
+    double radius;           /* m */
 };
 
-static int by_kind(const void *one, const void *other)
+static int gsd_by_type(const void *one, const void *other)
 {
-    const struct kind *a = one, *b = other;
+    const struct gsd_particle *a = one, *b = other;
     if (a->shape != b->shape) return a->shape < b->shape ? -1 : 1;
-    if (a->kind != b->kind) return a->kind < b->kind ? -1 : 1;
+    if (a->material != b->material) return a->material < b->material ? -1 : 1;
     return (a->radius > b->radius) - (a->radius < b->radius);
 }
 
-static struct kind gsd_kind_of(const struct packing *p, int64_t i)
+static struct gsd_particle gsd_particle_of(const struct packing *p, int64_t i)
 {
     int32_t shape = p->shape ? p->shape[i] : 0;
-    return (struct kind){ p->kind[i], shape, shape ? p->radius[i] : 0 };
+    return (struct gsd_particle){ p->material[i], shape, shape ? p->radius[i] : 0 };
 }
 
-/* The types, sorted; those of balls come first, one for each kind. To be freed. */
-static struct kind *gsd_list_types(const struct packing *p, int64_t *types, struct failure *failure)
+/* The types, sorted; those of balls come first, one for each material. To be freed. */
+static struct gsd_particle *gsd_list_types(const struct packing *p, int64_t *types,
+                                           struct failure *failure)
 {
-    struct kind *t = malloc(((size_t)p->n + (size_t)p->kinds) * sizeof *t);
+    struct gsd_particle *t = malloc(((size_t)p->n + (size_t)p->materials) * sizeof *t);
     int64_t n = 0, kept = 0;
     if (!t) return failure_set(failure, EX_SOFTWARE, "no memory for the types of an export"), NULL;
-    for (int32_t k = 0; k < p->kinds; k++) t[n++] = (struct kind){ k, 0, 0 };
+    for (int32_t k = 0; k < p->materials; k++) t[n++] = (struct gsd_particle){ k, 0, 0 };
     for (int64_t i = 0; i < p->n; i++)
-        if (packing_shape(p, i)) t[n++] = gsd_kind_of(p, i);
-    qsort(t, (size_t)n, sizeof *t, by_kind);
+        if (packing_shape(p, i)) t[n++] = gsd_particle_of(p, i);
+    qsort(t, (size_t)n, sizeof *t, gsd_by_type);
     for (int64_t k = 0; k < n; k++)
-        if (!kept || by_kind(&t[kept - 1], &t[k])) t[kept++] = t[k];
-    if (kept - p->kinds > TYPES_MOST) {
+        if (!kept || gsd_by_type(&t[kept - 1], &t[k])) t[kept++] = t[k];
+    if (kept - p->materials > TYPES_MOST) {
         failure_set(failure, EX_DATAERR,
                     "%lld sizes of grains that are no balls: GSD has a type for each, at most %d; "
                     "--to vtp --part surfaces takes any number",
-                    (long long)(kept - p->kinds), TYPES_MOST);
+                    (long long)(kept - p->materials), TYPES_MOST);
         free(t);
         return NULL;
     }
@@ -183,7 +184,7 @@ static void put_vertex(FILE *out, bool first, double r, vec3 x, int dim)
 }
 
 /* As gsd's documentation of particles/type_shapes has them. A capsule is a line that is rounded. */
-static void put_shape(FILE *out, const struct packing *p, const struct kind *k)
+static void put_shape(FILE *out, const struct packing *p, const struct gsd_particle *k)
 {
     const struct shape *s = &p->shapes.s[k->shape];
     const bool clump = k->shape && s->form == SHAPE_CLUMP;
@@ -207,16 +208,18 @@ static void put_shape(FILE *out, const struct packing *p, const struct kind *k)
     fputs(clump ? "]}" : "}", out);
 }
 
-/* The k-th type's name: its kind, with the shape and, where there are several sizes of that, a number */
-static void gsd_put_name(FILE *out, const struct packing *p, const struct kind *t, int64_t types,
-                         int64_t k)
+/* The k-th type's name: its material, with the shape and, where there are several sizes of that, a number */
+static void gsd_put_name(FILE *out, const struct packing *p, const struct gsd_particle *t,
+                         int64_t types, int64_t k)
 {
     int64_t first = k, last = k;
-    fputs(p->kind_name[t[k].kind], out);
+    fputs(p->material_name[t[k].material], out);
     if (!t[k].shape) return;
     fprintf(out, ":%s", p->shapes.s[t[k].shape].name);
-    while (first > 0 && t[first - 1].shape == t[k].shape && t[first - 1].kind == t[k].kind) first--;
-    while (last + 1 < types && t[last + 1].shape == t[k].shape && t[last + 1].kind == t[k].kind)
+    while (first > 0 && t[first - 1].shape == t[k].shape && t[first - 1].material == t[k].material)
+        first--;
+    while (last + 1 < types && t[last + 1].shape == t[k].shape &&
+           t[last + 1].material == t[k].material)
         last++;
     if (last > first) fprintf(out, ":%" PRId64, k - first + 1);
 }
@@ -239,8 +242,8 @@ static int gsd_put_texts(struct gsd *g, enum gsd_chunk c, char *const *text, int
     return failure->status;
 }
 
-static int put_types(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
-                     enum gsd_chunk c, struct failure *failure)
+static int put_types(struct gsd *g, const struct packing *p, const struct gsd_particle *t,
+                     int64_t types, enum gsd_chunk c, struct failure *failure)
 {
     char **text = calloc((size_t)types + 1, sizeof *text);
     struct text written;
@@ -259,17 +262,17 @@ static int put_types(struct gsd *g, const struct packing *p, const struct kind *
     return failure->status;
 }
 
-static int put_type_ids(struct gsd *g, const struct packing *p, const struct kind *t, int64_t types,
-                        struct failure *failure)
+static int put_type_ids(struct gsd *g, const struct packing *p, const struct gsd_particle *t,
+                        int64_t types, struct failure *failure)
 {
     uint32_t *id = malloc(((size_t)p->n + 1) * sizeof *id);
     if (!id) return failure_set(failure, EX_SOFTWARE, "no memory for an export");
     for (int64_t i = 0; i < p->n; i++) {
-        struct kind k = gsd_kind_of(p, i);
-        id[i] =
-            !k.shape
-                ? (uint32_t)k.kind
-                : (uint32_t)((struct kind *)bsearch(&k, t, (size_t)types, sizeof k, by_kind) - t);
+        struct gsd_particle k = gsd_particle_of(p, i);
+        id[i] = !k.shape ? (uint32_t)k.material
+                         : (uint32_t)((struct gsd_particle *)bsearch(&k, t, (size_t)types, sizeof k,
+                                                                     gsd_by_type) -
+                                      t);
     }
     put_chunk(g, TYPE_ID, p->n, 1, id, failure);
     free(id);
@@ -387,7 +390,7 @@ static int put_frame(struct gsd *g, const struct packing *p, struct failure *fai
     float box[6];
     int64_t types = 0;
     if (gsd_box_of(box, &b, p, failure)) return failure->status;
-    struct kind *t = gsd_list_types(p, &types, failure);
+    struct gsd_particle *t = gsd_list_types(p, &types, failure);
     if (t && !put_chunk(g, STEP, 1, 1, &step, failure) &&
         !put_chunk(g, DIMENSIONS, 1, 1, &dim, failure) && !put_chunk(g, BOX, 6, 1, box, failure) &&
         !put_chunk(g, COUNT, 1, 1, &n, failure) && !put_types(g, p, t, types, TYPES, failure) &&

@@ -16,7 +16,7 @@ static const struct import_format *const formats[] = { &import_lammps_dump, &imp
 
 enum {
     FORMATS = sizeof formats / sizeof formats[0],
-    TYPES_MOST = 4096 /* kinds of material, as of a document */
+    TYPES_MOST = 4096 /* materials, as of a document */
 };
 
 static const int64_t BYTES_MOST = (int64_t)1 << 33;
@@ -100,14 +100,15 @@ static int32_t *import_file_list_types(const struct imported_ball *ball, int64_t
     return type;
 }
 
-static int set_kinds(struct packing *p, const int32_t *type, int32_t types, struct failure *failure)
+static int set_materials(struct packing *p, const int32_t *type, int32_t types,
+                         struct failure *failure)
 {
-    if (packing_alloc_kinds(p, types ? types : 1, failure)) return failure->status;
+    if (packing_alloc_materials(p, types ? types : 1, failure)) return failure->status;
     for (int32_t k = 0; k < types; k++) {
         char text[16];
         snprintf(text, sizeof text, "%d", type[k]);
-        free(p->kind_name[k]);
-        if (!(p->kind_name[k] = strdup(text)))
+        free(p->material_name[k]);
+        if (!(p->material_name[k] = strdup(text)))
             return failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
     }
     return 0;
@@ -160,12 +161,13 @@ static int make_packing(struct packing *p, const struct imported_head *h,
     int32_t types = 0, *type = import_file_list_types(ball, h->n, &types, name, failure);
     if (!failure->status && !packing_init(p, wish->dim, h->n, failure)) {
         p->dt = 1; // the scene has one
-        if (!set_kinds(p, type, types, failure) && !import_file_set_cell(p, h, wish, name, failure))
+        if (!set_materials(p, type, types, failure) &&
+            !import_file_set_cell(p, h, wish, name, failure))
             for (int64_t i = 0; i < h->n && !failure->status; i++) {
                 if (import_file_set_body(p, i, &ball[i], name, failure)) break;
                 const int32_t *k = bsearch(&ball[i].type, type, (size_t)types, sizeof *type,
                                            import_file_by_number);
-                p->kind[i] = k ? (int32_t)(k - type) : 0;
+                p->material[i] = k ? (int32_t)(k - type) : 0;
             }
         struct failure trouble = { 0 };
         if (!failure->status && packing_check(p, &trouble))

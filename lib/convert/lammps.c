@@ -1,7 +1,7 @@
 /*
  * convert/lammps.c: the text of LAMMPS' dumps, for OVITO and what else reads them: grains in SI units.
  * Only what every reader takes: neither UNITS nor TIME, with which MDAnalysis' cannot go on.
- * Types are kinds, counted from 1. The box is the cell where it repeats; else it goes as far as the
+ * Types are materials, counted from 1. The box is the cell where it repeats; else it goes as far as the
  * grains reach.
  */
 
@@ -72,7 +72,7 @@ static int dump(FILE *out, const struct export_frame *m, enum part part, bool fi
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "%" PRId32 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g %.17g ", p->id[i],
-                p->kind[i] + 1, x.x, x.y, x.z, v.x, v.y, v.z);
+                p->material[i] + 1, x.x, x.y, x.z, v.x, v.y, v.z);
         fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g", w.x, w.y, w.z,
                 p->radius[i], p->mass[i], q.x, q.y, q.z, q.w);
         export_put_image(out, p, i);
@@ -91,7 +91,7 @@ const struct format format_lammps = {
 
 /*
  * A data file of LAMMPS or LIGGGHTS [docs.lammps.org, read_data], atom_style sphere (LIGGGHTS:
- * granular): balls in SI units, with their velocities. Types are kinds, counted from 1. The box is the cell where it
+ * granular): balls in SI units, with their velocities. Types are materials, counted from 1. The box is the cell where it
  * is periodic, else as large as the grains need; along which edges it is periodic the file does not say.
  */
 
@@ -146,7 +146,7 @@ static int write_data(FILE *out, const struct export_frame *m, enum part part, b
     if (lammps_check(p, failure)) return failure->status;
     fprintf(out,
             "# nsd, step %" PRId64 ": SI units\n\n%" PRId64 " atoms\n%" PRId32 " atom types\n\n",
-            p->step, p->n, p->kinds);
+            p->step, p->n, p->materials);
     if (lammps_data_put_box(out, p, failure)) return failure->status;
     fputs("\nAtoms\n\n", out);
     for (int64_t i = 0; i < p->n; i++) {
@@ -154,7 +154,7 @@ static int write_data(FILE *out, const struct export_frame *m, enum part part, b
         moment_tell(m, i, p->n);
         packing_solid(3, p->radius[i], 1, &mass, &inertia);
         fprintf(out, "%" PRId64 " %" PRId32 " %.17g %.17g %.17g %.17g %.17g", id_of(p, i),
-                p->kind[i] + 1, 2 * p->radius[i], p->mass[i] / mass, p->x[i].x, p->x[i].y,
+                p->material[i] + 1, 2 * p->radius[i], p->mass[i] / mass, p->x[i].x, p->x[i].y,
                 p->x[i].z);
         export_put_image(out, p, i);
         putc('\n', out);

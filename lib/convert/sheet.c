@@ -138,7 +138,7 @@ static int sheet_box(struct sheet *s, const struct export_frame *m, struct failu
 }
 
 /*
- * Contacts as lines from centre to centre, from a boundary's point of
+ * Contacts as lines from centre to centre, from a wall's point of
  * contact to the centre; with forces in N, in space, where they are solved.
  */
 
@@ -230,7 +230,8 @@ static int sheet_grains(struct sheet *s, const struct export_frame *m, struct fa
     s->shape = SHEET_POINT, s->of_points = true;
     for (int64_t i = 0; i < p->n; i++)
         if (sheet_add(s, 1, &p->x[i], failure)) return failure->status;
-    int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure);
+    int32_t *id = sheet_whole(s, "id", "", failure),
+            *material = sheet_whole(s, "kind", "", failure);
     double *radius = sheet_real(s, "radius", "", failure),
            *mass = sheet_real(s, "mass", "", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
@@ -244,7 +245,7 @@ static int sheet_grains(struct sheet *s, const struct export_frame *m, struct fa
     if (n && group) memcpy(group, p->group, n * sizeof *group);
     if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
     if (n) {
-        memcpy(id, p->id, n * sizeof *id), memcpy(kind, p->kind, n * sizeof *kind);
+        memcpy(id, p->id, n * sizeof *id), memcpy(material, p->material, n * sizeof *material);
         memcpy(radius, p->radius, n * sizeof *radius), memcpy(mass, p->mass, n * sizeof *mass);
         memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
         memcpy(q, p->q, n * sizeof *p->q);
@@ -287,7 +288,8 @@ static void sheet_surfaces_put(double *out, int64_t k, vec3 x)
 static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
                               struct failure *failure)
 {
-    int32_t *id = sheet_whole(s, "id", "", failure), *kind = sheet_whole(s, "kind", "", failure),
+    int32_t *id = sheet_whole(s, "id", "", failure),
+            *material = sheet_whole(s, "kind", "", failure),
             *shape = sheet_whole(s, "shape", "", failure);
     double *radius = sheet_real(s, "radius", "", failure),
            *mass = sheet_real(s, "mass", "", failure);
@@ -296,7 +298,7 @@ static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct p
     if (failure->status) return;
     for (int64_t k = 0; of && k < s->cells; k++) {
         int32_t i = of[k];
-        id[k] = p->id[i], kind[k] = p->kind[i], shape[k] = p->shape[i];
+        id[k] = p->id[i], material[k] = p->material[i], shape[k] = p->shape[i];
         radius[k] = p->radius[i], mass[k] = p->mass[i];
         sheet_surfaces_put(v, k, p->v[i]), sheet_surfaces_put(w, k, p->w[i]);
     }
@@ -348,7 +350,7 @@ int sheet_of(struct sheet *s, enum part part, const struct export_frame *m, stru
 {
     static int (*const fill[PART_COUNT])(struct sheet *, const struct export_frame *,
                                          struct failure *) = { sheet_grains, sheet_contacts,
-                                                               sheet_boundary, sheet_box,
+                                                               sheet_walls, sheet_box,
                                                                sheet_surfaces };
     *s = (struct sheet){ .shape = SHEET_POINT };
     if (fill[part](s, m, failure) || keep_wanted(s, part, m, failure)) sheet_free(s);

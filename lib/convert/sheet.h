@@ -44,7 +44,7 @@ static inline int64_t sheet_rows(const struct sheet *s)
 
 /* ---- for those who fill one: sheet.c, sheet_walls.c ---- */
 
-int sheet_boundary(struct sheet *s, const struct export_frame *m, struct failure *failure);
+int sheet_walls(struct sheet *s, const struct export_frame *m, struct failure *failure);
 
 /* One cell more, of these corners. */
 int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failure);

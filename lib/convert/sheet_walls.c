@@ -1,5 +1,5 @@
 /*
- * convert/sheet_walls.c: boundaries as polygons, in the plane as lines, at the moment's time. A plane
+ * convert/sheet_walls.c: walls as polygons, in the plane as lines, at the moment's time. A plane
  * is infinite: it is cut off where the region of the grains ends, and by the other planes.
  */
 #include "convert/sheet.h"
@@ -11,13 +11,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Which boundary each cell is of, and which of its faces */
+/* Which wall each cell is of, and which of its faces */
 struct owners {
     struct owner {
-        int32_t boundary, face;
+        int32_t wall, face;
     } * of;
     int64_t room;
-    struct selection chosen; /* boundaries that are wanted */
+    struct selection chosen; /* walls that are wanted */
 };
 
 static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
@@ -53,13 +53,13 @@ static int sheet_walls_add_outlines(struct sheet *s, struct owners *o, const str
     if (outline_init(&line, p, v3_norm(v3_sub(region->hi, region->lo)), failure))
         return failure->status;
     for (int64_t i = 0; p->dim == 3 && i < line.triangles && !failure->status; i++) {
-        const struct owner of = { line.triangle[i].boundary, line.triangle[i].face };
-        if (selection_face(&o->chosen, p, of.boundary, of.face))
+        const struct owner of = { line.triangle[i].wall, line.triangle[i].face };
+        if (selection_face(&o->chosen, p, of.wall, of.face))
             sheet_walls_add_cell(s, o, of, 3, line.triangle[i].corner, failure);
     }
     for (int64_t i = 0; p->dim == 2 && i < line.lines && !failure->status; i++) {
-        const struct owner of = { line.line[i].boundary, line.line[i].face };
-        if (selection_face(&o->chosen, p, of.boundary, of.face))
+        const struct owner of = { line.line[i].wall, line.line[i].face };
+        if (selection_face(&o->chosen, p, of.wall, of.face))
             sheet_walls_add_cell(s, o, of, 2, line.line[i].end, failure);
     }
     outline_free(&line);
@@ -75,15 +75,15 @@ static int sheet_walls_add_columns(struct sheet *s, const struct owners *o, cons
                                    struct failure *failure)
 {
     int32_t *number = sheet_whole(s, "boundary", "", failure),
-            *kind = sheet_whole(s, "kind", "", failure);
+            *material = sheet_whole(s, "kind", "", failure);
     double *point = sheet_real(s, "point", "xyz", failure),
            *n = sheet_real(s, "normal", "xyz", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
     if (failure->status) return failure->status;
     for (int64_t k = 0; o->of && k < s->cells; k++) {
-        const struct wall *w = &p->wall[o->of[k].boundary];
+        const struct wall *w = &p->wall[o->of[k].wall];
         vec3 x = wall_at(p, w, p->t);
-        number[k] = o->of[k].boundary, kind[k] = w->kind;
+        number[k] = o->of[k].wall, material[k] = w->material;
         sheet_walls_put(point, k, x), sheet_walls_put(n, k, wall_normal(p, w, p->t)),
             sheet_walls_put(v, k, wall_velocity(p, w, x));
     }
@@ -110,7 +110,7 @@ static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o,
         pushes[k] += t->found[i].r[0] > 0;
     }
     for (int64_t k = 0; !failure->status && o->of && k < s->cells; k++) {
-        int32_t face = faces->first[o->of[k].boundary] + o->of[k].face;
+        int32_t face = faces->first[o->of[k].wall] + o->of[k].face;
         count[k] = pushes[face], sheet_walls_put(force, k, sum[face]);
     }
     free(sum), free(pushes);
@@ -130,11 +130,11 @@ static int add_sums(struct sheet *s, const struct owners *o, const struct packin
     double *wear = sheet_real(s, "wear", "", failure);
     for (int64_t k = 0; !failure->status && o->of && k < s->cells; k++) {
         const struct owner of = o->of[k];
-        const struct face_sums *x = &p->sums.face[faces->first[of.boundary] + of.face];
-        double area = face_of_area(p, of.boundary, of.face);
+        const struct face_sums *x = &p->sums.face[faces->first[of.wall] + of.face];
+        double area = face_of_area(p, of.wall, of.face);
         sheet_walls_put(force, k, v3_scale(by, x->impulse));
         pressure[k] = isfinite(area) ? by * x->normal / area : NAN;
-        friction[k] = x->friction, rub[k] = x->rub, wear[k] = p->wall[of.boundary].wear * x->rub;
+        friction[k] = x->friction, rub[k] = x->rub, wear[k] = p->wall[of.wall].wear * x->rub;
     }
     return failure->status;
 }
@@ -155,7 +155,7 @@ static int sheet_walls_add_forces(struct sheet *s, const struct owners *o,
     return failure->status;
 }
 
-int sheet_boundary(struct sheet *s, const struct export_frame *m, struct failure *failure)
+int sheet_walls(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
     const struct packing *p = m->packing;
     struct extent region = { 0 };

@@ -1,5 +1,5 @@
 /*
- * convert/stl.c: a moment as triangles, binary STL, in m: grains as draw/facets.h has them, boundaries
+ * convert/stl.c: a moment as triangles, binary STL, in m: grains as draw/facets.h has them, walls
  * as their polygons.
  */
 #include "convert/format.h"
@@ -62,10 +62,10 @@ static int stl(FILE *out, const struct export_frame *m, enum part part, bool fir
     struct facets b;
     struct sheet walls;
     (void)first;
-    if (part != PART_GRAINS && part != PART_BOUNDARY)
+    if (part != PART_GRAINS && part != PART_WALLS)
         return failure_set(failure, EX_USAGE, "%s cannot be made of triangles", part_name[part]);
     if (facets_init(&b, m->detail, failure)) return failure->status;
-    if (sheet_of(&walls, PART_BOUNDARY, m, failure)) return facets_free(&b), failure->status;
+    if (sheet_of(&walls, PART_WALLS, m, failure)) return facets_free(&b), failure->status;
     const int64_t grains = part == PART_GRAINS ? p->n : 0;
     int64_t n = polygon_triangles(&walls);
     for (int64_t i = 0; i < grains; i++)

@@ -1,5 +1,5 @@
 /*
- * convert/text.c: tables of text, a row for each grain, contact, piece of a boundary or edge of the
+ * convert/text.c: tables of text, a row for each grain, contact, piece of a wall or edge of the
  * cell; the first line has the names of the columns. Numbers are written so that reading them gives
  * the same bits.
  */

@@ -16,7 +16,7 @@
 
 enum { DETAIL = 1 /* of what is round: 80 triangles a ball */ };
 
-static const enum part part_of[] = { PART_SURFACES, PART_BOUNDARY };
+static const enum part part_of[] = { PART_SURFACES, PART_WALLS };
 static const char *const path_of[] = { "/VTKHDF/surfaces", "/VTKHDF/boundary" };
 
 /* Columns that say which grain or wall a cell is of; what else a sheet has is in the grains. */

@@ -1,7 +1,7 @@
 /*
  * convert/xyz.c: extended XYZ, for OVITO and ASE: the number of grains, a line that names the columns
  * (Properties) and the cell (Lattice, where it repeats), and a line a grain. The species is X, a
- * chemical symbol that stands for none: ASE takes no others; the kind is a column. Lengths are in m,
+ * chemical symbol that stands for none: ASE takes no others; the material is a column. Lengths are in m,
  * the orientation is (x, y, z, w), as OVITO has it.
  */
 #include "convert/format.h"
@@ -40,7 +40,7 @@ static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bo
         const vec3 x = p->x[i], v = p->v[i], w = p->w[i];
         const quat q = p->q[i];
         fprintf(out, "X %.17g %.17g %.17g %" PRId32 " %" PRId32 " %.17g %.17g ", x.x, x.y, x.z,
-                p->id[i], p->kind[i], p->radius[i], p->mass[i]);
+                p->id[i], p->material[i], p->radius[i], p->mass[i]);
         fprintf(out, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g", v.x, v.y, v.z,
                 w.x, w.y, w.z, q.x, q.y, q.z, q.w);
         export_put_image(out, p, i);

@@ -5,11 +5,11 @@
 
 #define SHARP 0.94 /* the cosine of the least angle between triangles whose edge is drawn */
 
-/* A boundary where it is now */
+/* A wall where it is now */
 struct outline_placed {
     const struct packing *p;
     const struct wall *w;
-    int32_t boundary;
+    int32_t wall;
     struct pose pose;
     double reach; /* m */
 };
@@ -23,7 +23,7 @@ static bool add_triangle(struct outline *o, const struct outline_placed *b, int3
         if (!more) return false;
         o->triangle = more, o->triangle_room = room;
     }
-    o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->boundary, face };
+    o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->wall, face };
     return true;
 }
 
@@ -35,7 +35,7 @@ static bool outline_add_line(struct outline *o, const struct outline_placed *b, 
         if (!more) return false;
         o->line = more, o->line_room = room;
     }
-    o->line[o->lines++] = (struct outline_line){ { x, y }, b->boundary, 0 };
+    o->line[o->lines++] = (struct outline_line){ { x, y }, b->wall, 0 };
     return true;
 }
 
@@ -55,21 +55,21 @@ static vec3 point_of(const struct outline_placed *b, double u, double v)
 {
     const struct wall *w = b->w;
     const double *s = w->size;
-    bool endless = w->shape == BOUNDARY_CYLINDER && s[2] == 0;
+    bool endless = w->shape == WALL_CYLINDER && s[2] == 0;
     vec3 x, d = outline_around(w, u);
     switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         x = v3_axpy(v3_scale((u - 0.5) * s[0], w->along), (v - 0.5) * s[1],
                     v3_cross(w->n, w->along));
         break;
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         x = v3_scale(s[0] + v * (s[1] - s[0]), d);
         break;
-    case BOUNDARY_SPHERE:
+    case WALL_SPHERE:
         x = v3_axpy(v3_scale(s[0] * sin(M_PI * v), d), -s[0] * cos(M_PI * v), w->n);
         break;
     default:
-        x = v3_scale(w->shape == BOUNDARY_CONE ? s[0] + v * (s[1] - s[0]) : s[0], d);
+        x = v3_scale(w->shape == WALL_CONE ? s[0] + v * (s[1] - s[0]) : s[0], d);
         x = v3_axpy(x, endless ? (2 * v - 1) * b->reach : v * s[2], w->n);
     }
     return pose_of(&b->pose, v3_add(w->x, x));
@@ -111,21 +111,21 @@ static bool add_grid(struct outline *o, const struct outline_placed *b, int nu, 
 static bool outline_add_shape(struct outline *o, const struct outline_placed *b)
 {
     const struct wall *w = b->w;
-    bool flat = b->p->dim == 2, rectangle = w->shape == BOUNDARY_RECTANGLE;
-    bool sphere = w->shape == BOUNDARY_SPHERE;
+    bool flat = b->p->dim == 2, rectangle = w->shape == WALL_RECTANGLE;
+    bool sphere = w->shape == WALL_SPHERE;
     int n = rectangle ? 1 : OUTLINE_FACETS;
     if (flat) return add_curve(o, b, (struct curve){ 0, 0.5, 1, 0.5 }, n);
     if (!add_grid(o, b, n, sphere ? OUTLINE_FACETS / 2 : 1)) return false;
     for (int k = 0; k < 3; k++) { // borders, of a sphere three circles
         double v = sphere ? 0.25 * (k + 1) : k % 2;
-        bool point = !sphere && w->shape != BOUNDARY_CYLINDER && w->size[v > 0] == 0;
+        bool point = !sphere && w->shape != WALL_CYLINDER && w->size[v > 0] == 0;
         if (k == 2 && !sphere) break;
         if ((rectangle || !point) && !add_curve(o, b, (struct curve){ 0, v, 1, v }, n))
             return false;
     }
     // straight lines, which show that it turns
     int lines = rectangle || w->arc > 0 ? 2 : 8, pieces = sphere ? n / 2 : 1;
-    for (int k = 0; k < lines && w->shape != BOUNDARY_DISC; k++) {
+    for (int k = 0; k < lines && w->shape != WALL_DISC; k++) {
         double u = lines == 2 ? k : (double)k / lines;
         if (!add_curve(o, b, (struct curve){ u, 0, u, 1 }, pieces)) return false;
     }
@@ -202,9 +202,9 @@ int outline_init(struct outline *o, const struct packing *p, double reach, struc
     *o = (struct outline){ 0 };
     for (int32_t w = 0; good && w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
-        if (wall->shape == BOUNDARY_PLANE || !wall_there(wall, p->t)) continue;
+        if (wall->shape == WALL_PLANE || !wall_there(wall, p->t)) continue;
         const struct outline_placed b = { p, wall, w, wall_pose(p, wall, p->t), reach };
-        good = wall->shape == BOUNDARY_MESH ? add_mesh(o, &b) : outline_add_shape(o, &b);
+        good = wall->shape == WALL_MESH ? add_mesh(o, &b) : outline_add_shape(o, &b);
     }
     if (good) return 0;
     outline_free(o);

@@ -1,5 +1,5 @@
 /*
- * draw/outline.h: boundaries that are not planes as triangles and lines, for pictures, pages and other
+ * draw/outline.h: walls that are not planes as triangles and lines, for pictures, pages and other
  * programs: each at the packing's time, round shapes by OUTLINE_FACETS facets. Planes have no end:
  * draw/walls.h cuts them.
  */
@@ -12,15 +12,15 @@
 enum { OUTLINE_FACETS = 64 };
 
 struct outline_triangle {
-    vec3 corner[3];   /* m */
-    int32_t boundary; /* whose it is */
-    int32_t face;     /* of a mesh its triangle, from the boundary's first one; else 0 */
+    vec3 corner[3]; /* m */
+    int32_t wall;   /* whose it is */
+    int32_t face;   /* of a mesh its triangle, from the wall's first one; else 0 */
 };
 
 /* In space the borders and sharp edges of shapes; in the plane all of them */
 struct outline_line {
     vec3 end[2]; /* m */
-    int32_t boundary;
+    int32_t wall;
     int32_t face; /* in the plane, of a mesh its segment; else 0 */
 };
 

@@ -39,7 +39,7 @@ static double largest_force(const struct packing *p, const struct contacts *s)
     return most;
 }
 
-/* A line from centre to centre, of a boundary from the contact; its width is the normal force. */
+/* A line from centre to centre, of a wall from the contact; its width is the normal force. */
 static void draw_push(cairo_t *cr, const struct view *v, const struct packing *p,
                       const struct contact *c, const struct found *f, double share)
 {
@@ -80,7 +80,7 @@ static void overlay_set_bond(cairo_t *cr, const struct bond *b)
         cairo_set_source_rgb(cr, 0.20, 0.55, 0.90);
 }
 
-/* A line for each pair that is tied, as draw_push() has them, or from a boundary to the body's centre */
+/* A line for each pair that is tied, as draw_push() has them, or from a wall to the body's centre */
 static void draw_bonds(cairo_t *cr, const struct view *v, const struct packing *p)
 {
     cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
@@ -232,25 +232,25 @@ static bool draw_key(cairo_t *cr, double *x, double y, double end, struct rgb c,
     return true;
 }
 
-/* The kinds, or the names of the groups, that bodies are of, with their colours */
+/* The materials, or the names of the groups, that bodies are of, with their colours */
 static void draw_classes(cairo_t *cr, const struct view *v, const struct packing *p, double x,
                          double y, double end)
 {
     const bool groups = v->paint.by == COLOUR_GROUP;
-    const int32_t n = groups ? p->names.n : p->kinds;
+    const int32_t n = groups ? p->names.n : p->materials;
     bool *any = calloc((size_t)n + 1, sizeof *any);
     for (int64_t i = 0; any && i < p->n; i++) {
-        int32_t k = !groups ? p->kind[i] : p->group ? p->group[i] - 1 : -1;
+        int32_t k = !groups ? p->material[i] : p->group ? p->group[i] - 1 : -1;
         if (k >= 0 && view_joins(v, p, -1, (int32_t)i)) any[k] = true;
     }
     for (int32_t k = 0; any && k < n; k++)
-        if (any[k] &&
-            !draw_key(cr, &x, y, end, paint_kind(k), groups ? p->names.text[k] : p->kind_name[k]))
+        if (any[k] && !draw_key(cr, &x, y, end, paint_material(k),
+                                groups ? p->names.text[k] : p->material_name[k]))
             break;
     free(any);
 }
 
-/* What the colours of solid boundaries show: their names, or numbers */
+/* What the colours of solid walls show: their names, or numbers */
 static void draw_solid(cairo_t *cr, const struct solid_walls *s, const struct paint *paint,
                        double x, double y, double end)
 {
@@ -319,7 +319,7 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
     cairo_set_line_width(cr, fmax(1.2, 0.0016 * w));
     if (o->solid)
         draw_solid(cr, o->solid, &v->paint, 0.03 * w, top + strip + 0.3 * strip, 0.97 * w);
-    if (v->paint.by == COLOUR_KIND || v->paint.by == COLOUR_GROUP)
+    if (v->paint.by == COLOUR_MATERIAL || v->paint.by == COLOUR_GROUP)
         draw_classes(cr, v, p, 0.03 * w, top + 0.58 * strip, 0.43 * w);
     else
         draw_palette(cr, &v->paint, 0.03 * w, top + 0.36 * strip, 0.34 * w, 0.22 * strip);

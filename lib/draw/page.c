@@ -90,7 +90,7 @@ static int write_grains(struct page *p, const struct packing *k, struct failure 
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->radius[i]);
     for (int64_t i = 0; i < k->n; i++) chunk_put_float(&b, k->mass[i]);
     chunk_put(&b, k->id, 4 * (size_t)k->n);
-    chunk_put(&b, k->kind, 4 * (size_t)k->n);
+    chunk_put(&b, k->material, 4 * (size_t)k->n);
     if (k->shape) chunk_put(&b, k->shape, 4 * (size_t)k->n);
     return write_changed(p, 'g', &p->grains, &b, failure);
 }
@@ -284,10 +284,10 @@ static int adopt(struct page *p, const struct packing *k, struct failure *failur
 {
     p->dim = k->dim, p->up = walls_up(k);
     p->radius[0] = INFINITY;
-    p->kind_name = calloc((size_t)k->kinds + 1, sizeof *p->kind_name);
-    for (; p->kind_name && p->kinds < k->kinds; p->kinds++)
-        if (!(p->kind_name[p->kinds] = strdup(k->kind_name[p->kinds]))) break;
-    return p->kind_name && p->kinds == k->kinds ? 0 : page_no_memory(failure);
+    p->material_name = calloc((size_t)k->materials + 1, sizeof *p->material_name);
+    for (; p->material_name && p->materials < k->materials; p->materials++)
+        if (!(p->material_name[p->materials] = strdup(k->material_name[p->materials]))) break;
+    return p->material_name && p->materials == k->materials ? 0 : page_no_memory(failure);
 }
 
 int page_frame(struct page *p, const struct packing *k, const struct contacts *s,
@@ -399,8 +399,9 @@ void page_free(struct page *p)
 {
     for (int c = 0; c < p->curves; c++)
         free(p->curve[c].name), free(p->curve[c].unit), free(p->curve[c].value);
-    for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->curve), free(p->kind_name), free(p->moment), free(p->grains.last), free(p->walls.last);
+    for (int32_t k = 0; p->material_name && k < p->materials; k++) free(p->material_name[k]);
+    free(p->curve), free(p->material_name), free(p->moment), free(p->grains.last),
+        free(p->walls.last);
     free(p->shapes.last);
     *p = (struct page){ 0 };
 }

@@ -127,8 +127,8 @@ json_t *page_meta(const struct page *p)
     json_t *j = json_pack("{s:i, s:b}", "dim", p->dim, "solved", p->solved), *list = json_array();
     if ((p->dim == 2 ? p->up.y : p->up.z) != 1) // else the page knows
         json_object_set_new(j, "up", json_pack("[f, f, f]", p->up.x, p->up.y, p->up.z));
-    for (int32_t k = 0; k < p->kinds; k++) {
-        json_t *name = json_string(p->kind_name[k]);
+    for (int32_t k = 0; k < p->materials; k++) {
+        json_t *name = json_string(p->material_name[k]);
         json_array_append_new(list, name ? name : json_string("?"));
     }
     json_object_set_new(j, "kinds", list);

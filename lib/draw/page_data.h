@@ -65,9 +65,9 @@ struct page {
     struct page_moment *moment; /* [frames] */
     int curves;
     struct page_curve *curve; /* [curves] */
-    int32_t kinds;
-    char **kind_name; /* [kinds] of the first frame */
-    bool solved;      /* some frame has contacts with reactions */
+    int32_t materials;
+    char **material_name; /* [materials] of the first frame */
+    bool solved;          /* some frame has contacts with reactions */
     struct page_kept grains, walls, shapes;
     struct extent seen;                           /* m: of all grains and finite walls */
     double fastest, spin, radius[2], force, push; /* m/s, rad/s, m, N, N: of all frames */

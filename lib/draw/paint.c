@@ -13,7 +13,7 @@
 const struct colour_meaning colour_meaning[COLOUR_COUNT] = {
     [COLOUR_RADIUS] = { .name = "radius", .unit = "m" },
     [COLOUR_SPEED] = { .name = "speed", .unit = "m/s", .from_zero = true },
-    [COLOUR_KIND] = { .name = "kind", .unit = "", .classes = true },
+    [COLOUR_MATERIAL] = { .name = "kind", .unit = "", .classes = true },
     [COLOUR_ID] = { .name = "id", .unit = "", .classes = true },
     [COLOUR_SPIN] = { .name = "spin", .unit = "rad/s", .from_zero = true },
     [COLOUR_HEIGHT] = { .name = "height", .unit = "m" },
@@ -121,16 +121,16 @@ void paint_range(struct paint *p, const struct packing *k)
     }
 }
 
-struct rgb paint_kind(int32_t kind)
+struct rgb paint_material(int32_t material)
 {
-    return rgb_of(ten[kind % 10]);
+    return rgb_of(ten[material % 10]);
 }
 
 struct rgb paint_body(const struct paint *p, const struct packing *k, int64_t i)
 {
-    if (p->by == COLOUR_KIND) return paint_kind(k->kind[i]);
+    if (p->by == COLOUR_MATERIAL) return paint_material(k->material[i]);
     if (p->by == COLOUR_GROUP)
-        return k->group && k->group[i] ? paint_kind(k->group[i] - 1) : rgb_of(0xb8b8b8);
+        return k->group && k->group[i] ? paint_material(k->group[i] - 1) : rgb_of(0xb8b8b8);
     if (p->by == COLOUR_ID) return rgb_of(ten[(uint32_t)k->id[i] % 10]);
     double x = palette_value(p, k, i), t = (x - p->lo) / (p->hi - p->lo);
     if (isnan(x)) return rgb_of(0xb8b8b8);

@@ -10,7 +10,7 @@
 enum colour {
     COLOUR_RADIUS,
     COLOUR_SPEED,
-    COLOUR_KIND,
+    COLOUR_MATERIAL,
     COLOUR_ID,
     COLOUR_SPIN,
     COLOUR_HEIGHT,
@@ -56,8 +56,8 @@ void paint_init(struct paint *p, enum colour by, bool plain);
 void paint_range(struct paint *p, const struct packing *packing);
 /* The colour of body i, without marks */
 struct rgb paint_body(const struct paint *p, const struct packing *packing, int64_t i);
-/* That of a kind, where colours are kinds */
-struct rgb paint_kind(int32_t kind);
+/* That of a material, where colours are materials */
+struct rgb paint_material(int32_t material);
 /* The colour with marks, at a point in the body's axes: of a ball a unit vector, of a disc within
    the unit circle. own: paint_body() of it. */
 struct rgb paint_ball(const struct paint *p, struct rgb own, vec3 point);

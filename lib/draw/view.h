@@ -26,9 +26,9 @@ struct view {
     bool strays;    /* bodies and walls far from all others count too in what the picture shows */
     bool follows;   /* a body stays where it is in the picture: */
     int32_t follow; /* its id */
-    bool glass;     /* boundaries are half-transparent, not lines alone [draw/wall_facets.h] */
+    bool glass;     /* walls are half-transparent, not lines alone [draw/wall_facets.h] */
     const struct selection *only;    /* bodies that are drawn, and what joins them; NULL: all */
-    const struct solid_walls *solid; /* boundaries that are solid instead; NULL: none */
+    const struct solid_walls *solid; /* walls that are solid instead; NULL: none */
     float pale;                      /* 0 to 1: how much bodies are mixed with the background */
     int width, height;               /* pixels; 0: chosen */
     int samples;                     /* a pixel is the mean of samples x samples */
@@ -49,7 +49,7 @@ struct view {
 
 /* Whether body i is drawn: wanted, and in the picture's region */
 bool view_shows(const struct view *v, const struct packing *p, int64_t i);
-/* Whether what joins a and b, bodies or a boundary (a < 0), is drawn: of a body that is wanted */
+/* Whether what joins a and b, bodies or a wall (a < 0), is drawn: of a body that is wanted */
 bool view_joins(const struct view *v, const struct packing *p, int32_t a, int32_t b);
 /* Moves what is shown along with the body that is followed. */
 void view_follow(struct view *v, const struct packing *p);

@@ -17,7 +17,7 @@ const struct surface_meaning surface_meaning[SURFACE_COUNT] = {
                       "coefficient" },
 };
 
-/* Colours of names, which differ from those of kinds: brass, steel blue, copper, moss, slate, plum */
+/* Colours of names, which differ from those of materials: brass, steel blue, copper, moss, slate, plum */
 static const unsigned colours[] = { 0xc9b27a, 0x8fa3b8, 0xc08a6e, 0x96a77e, 0x8a8f98, 0xa88fae };
 enum { COLOURS = sizeof colours / sizeof colours[0] };
 
@@ -46,7 +46,7 @@ static const char *wall_facets_name_of(const struct selection *c, const struct p
     for (int32_t k = 0; c->any && k < p->names.rows; k++) {
         const struct named *r = &p->names.row[k];
         bool covers = !r->count || (face >= r->first && face < r->first + r->count);
-        if (c->name[r->name] && r->boundary == wall && covers) return p->names.text[r->name];
+        if (c->name[r->name] && r->wall == wall && covers) return p->names.text[r->name];
     }
     return names_of_face(&p->names, wall, face);
 }
@@ -116,9 +116,9 @@ int solid_init(struct solid_walls *s, const struct packing *p, const struct soli
 }
 
 /* r < 0: glass */
-static struct rgb wall_facets_own_of(const struct solid_walls *s, int32_t boundary, int32_t face)
+static struct rgb wall_facets_own_of(const struct solid_walls *s, int32_t wall, int32_t face)
 {
-    return s ? s->colour[s->faces.first[boundary] + face] : (struct rgb){ -1, 0, 0 };
+    return s ? s->colour[s->faces.first[wall] + face] : (struct rgb){ -1, 0, 0 };
 }
 
 static void wall_facets_add(struct glass *g, struct rgb own, vec3 a, vec3 b, vec3 c)
@@ -156,7 +156,7 @@ int glass_init(struct glass *g, const struct packing *p, const struct glass_opt 
         for (int64_t i = 0; i < all.triangles; i++) {
             const vec3 *x = all.triangle[i].corner;
             struct rgb own =
-                wall_facets_own_of(o->solid, all.triangle[i].boundary, all.triangle[i].face);
+                wall_facets_own_of(o->solid, all.triangle[i].wall, all.triangle[i].face);
             if (own.r >= 0 || o->glass) wall_facets_add(g, own, x[0], x[1], x[2]);
         }
     } else

@@ -1,5 +1,5 @@
 /*
- * draw/wall_facets.h: boundaries that are drawn solid and shaded: which of their faces, and in which colour: one for each name,
+ * draw/wall_facets.h: walls that are drawn solid and shaded: which of their faces, and in which colour: one for each name,
  * or by what bodies have done to each face, from the sums of nsd-step --sums [state/wall_load.h].
  */
 #ifndef NSD_WALL_FACETS_H
@@ -31,7 +31,7 @@ struct solid_walls {
 };
 
 struct solid_opt {
-    const char *list; /* names and numbers of boundaries [state/selection.h]; NULL: all */
+    const char *list; /* names and numbers of walls [state/selection.h]; NULL: all */
     enum solid_by by;
     double lo, hi; /* the palette's ends; NAN: those of what there is */
     const struct paint *paint;
@@ -43,7 +43,7 @@ int solid_init(struct solid_walls *s, const struct packing *p, const struct soli
 void solid_free(struct solid_walls *s);
 
 /*
- * Boundaries as half-transparent facets, so that a picture shows where they are and what
+ * Walls as half-transparent facets, so that a picture shows where they are and what
  * they hold.
  *
  * At a sample, facets in front of what is seen take part k, 0 < k < 1, of its light and give their own:
@@ -62,7 +62,7 @@ struct glass {
     struct facet *facet;
 };
 
-/* Which boundaries are drawn as facets */
+/* Which walls are drawn as facets */
 struct glass_opt {
     struct extent region;
     vec3 toward;                     /* unit vector to the viewer */
@@ -70,7 +70,7 @@ struct glass_opt {
     bool glass;                      /* the others, too */
 };
 
-/* The boundaries of p inside the region, at p's time, in space; none in the plane. Planes that are drawn
+/* The walls of p inside the region, at p's time, in space; none in the plane. Planes that are drawn
    as floors where the viewer sees them are left out, unless they are solid. Returns 0, or
    EX_SOFTWARE with nothing to free. */
 int glass_init(struct glass *g, const struct packing *p, const struct glass_opt *o,

@@ -26,7 +26,7 @@ static vec3 normal_now(const struct packing *p, int i)
 /* A plane that is there; all else is draw/outline.h's */
 static bool is_plane(const struct packing *p, int i)
 {
-    return p->wall[i].shape == BOUNDARY_PLANE && wall_there(&p->wall[i], p->t);
+    return p->wall[i].shape == WALL_PLANE && wall_there(&p->wall[i], p->t);
 }
 
 static bool is_drawn(vec3 x)
@@ -80,7 +80,7 @@ static bool region_of_walls(struct extent *r, const struct packing *p)
 static bool walls_is_finite(const struct packing *p, int32_t i)
 {
     const struct wall *w = &p->wall[i];
-    return wall_there(w, p->t) && (w->shape == BOUNDARY_MESH || isfinite(boundary_reach(w)));
+    return wall_there(w, p->t) && (w->shape == WALL_MESH || isfinite(wall_reach(w)));
 }
 
 static bool any_finite(const struct packing *p)
@@ -115,7 +115,7 @@ bool extent_clip(const struct extent *r, vec3 *a, vec3 *b)
     return true;
 }
 
-/* How far beyond the bodies finite boundaries count: in sizes of all of them, or diameters of the largest */
+/* How far beyond the bodies finite walls count: in sizes of all of them, or diameters of the largest */
 static const double NEAR_ALL = 4, NEAR_ONE = 40;
 
 /* Around the bodies, whose region is r; without any, all space */
@@ -130,7 +130,7 @@ static struct extent near_bodies(const struct extent *r, const struct packing *p
                              : (struct extent){ v3_sub(r->lo, d), v3_add(r->hi, d) };
 }
 
-/* Boundaries that end somewhere are shown as far as they lie in a box; NULL: whole; without memory for that they are
+/* Walls that end somewhere are shown as far as they lie in a box; NULL: whole; without memory for that they are
    not. */
 static void add_finite(struct extent *r, const struct packing *p, const struct extent *in)
 {
@@ -143,7 +143,7 @@ static void add_finite(struct extent *r, const struct packing *p, const struct e
             continue;
         for (int k = 0; k < 2; k++) {
             vec3 x = end[k];
-            if (!walls_is_finite(p, o.line[i].boundary) || !is_drawn(x)) continue;
+            if (!walls_is_finite(p, o.line[i].wall) || !is_drawn(x)) continue;
             r->lo = v3(fmin(r->lo.x, x.x), fmin(r->lo.y, x.y), fmin(r->lo.z, x.z));
             r->hi = v3(fmax(r->hi.x, x.x), fmax(r->hi.y, x.y), fmax(r->hi.z, x.z));
         }

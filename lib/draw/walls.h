@@ -1,5 +1,5 @@
 /*
- * draw/walls.h: what a picture shows of the boundaries: floors as panels, for planes the edges where
+ * draw/walls.h: what a picture shows of the walls: floors as panels, for planes the edges where
  * they meet, for other shapes their outlines [draw/outline.h]. Planes are infinite; they are cut off at
  * a region of space.
  */
@@ -46,7 +46,7 @@ struct walls {
  * near, else by a margin; without bodies, the space between the walls. False if there are neither.
  */
 bool region_of(struct extent *r, const struct packing *p);
-/* The same, but for what of the finite boundaries is far from the bodies, which would make these small */
+/* The same, but for what of the finite walls is far from the bodies, which would make these small */
 bool region_near(struct extent *r, const struct packing *p);
 /* Cuts a line at the sides of a box, to rounding; false: nothing of it is inside. */
 bool extent_clip(const struct extent *r, vec3 *a, vec3 *b);

@@ -21,7 +21,7 @@ static struct dataset external_force_tables_row_of(const char *path, int rank, c
     return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
 }
 
-static int write_boundaries(struct table_write *s, const struct packing *p, struct failure *failure)
+static int write_walls(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const hsize_t shape[3] = { 1, (hsize_t)p->walls, 3 };
     size_t n = (size_t)p->walls;
@@ -121,7 +121,8 @@ int external_force_tables_write(struct table_write *s, const struct frame *f,
 {
     const struct packing *p = &f->packing;
     const struct external_force *o = &p->outside;
-    const hsize_t row[2] = { 1, 3 }, pairs[2] = { 1, (hsize_t)p->kinds * (hsize_t)p->kinds };
+    const hsize_t row[2] = { 1, 3 },
+                  pairs[2] = { 1, (hsize_t)p->materials * (hsize_t)p->materials };
     const double g[3] = { p->g.x, p->g.y, p->g.z };
     if (!f->distributed && write_lasting(s, p, failure)) return failure->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
@@ -133,16 +134,14 @@ int external_force_tables_write(struct table_write *s, const struct frame *f,
         table_write_rows(
             s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL),
             failure) ||
-        write_boundaries(s, p, failure) ||
-        external_force_tables_write_forces(s, p, forces, failure))
+        write_walls(s, p, failure) || external_force_tables_write_forces(s, p, forces, failure))
         return failure->status;
     return external_force_tables_write_words(s, o, failure);
 }
 
 /* ---- from a document ---- */
 
-static int read_boundaries(struct source *s, int64_t row, struct packing *p,
-                           struct failure *failure)
+static int read_walls(struct source *s, int64_t row, struct packing *p, struct failure *failure)
 {
     size_t n = (size_t)p->walls;
     vec3 *x = calloc(2 * n + 1, sizeof *x);
@@ -275,16 +274,16 @@ int external_force_tables_read(struct source *s, struct packing *p, struct failu
     if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g,
                     failure) ||
         source_rows(s, EXTERNAL_HOME "/friction",
-                    (struct slab){ COLUMN_F64, row, 1, (int64_t)p->kinds * p->kinds }, p->mu,
-                    failure) ||
-        read_boundaries(s, row, p, failure) || read_forces(s, row, p, failure) ||
+                    (struct slab){ COLUMN_F64, row, 1, (int64_t)p->materials * p->materials },
+                    p->mu, failure) ||
+        read_walls(s, row, p, failure) || read_forces(s, row, p, failure) ||
         read_words(s, row, &p->outside, failure))
         return failure->status;
     p->g = v3(g[0], g[1], g[2]);
     p->outside.steered = true;
-    for (int32_t a = 0; a < p->kinds; a++)
+    for (int32_t a = 0; a < p->materials; a++)
         for (int32_t b = 0; b < a; b++)
-            if (p->mu[a * p->kinds + b] != p->mu[b * p->kinds + a])
+            if (p->mu[a * p->materials + b] != p->mu[b * p->materials + a])
                 return failure_set(failure, EX_DATAERR, EXTERNAL_HOME "/friction: not symmetric");
     return 0;
 }

@@ -1,6 +1,6 @@
 /*
  * file/external_force_tables.h: what has acted from outside [state/external_force.h] in a document: gravity, friction and the motion
- * of boundaries of frames in which they may differ, the forces of a step whose contacts are kept, those that last, and
+ * of walls of frames in which they may differ, the forces of a step whose contacts are kept, those that last, and
  * what was answered. Frames in which nothing has acted have no row.
  */
 #ifndef NSD_EXTERNAL_FORCE_TABLES_H

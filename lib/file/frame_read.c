@@ -14,7 +14,7 @@
 #include <string.h>
 
 enum {
-    KINDS_MOST = 4096, /* of material: tables of pairs have a row for two of them */
+    MATERIALS_MOST = 4096, /* of material: tables of pairs have a row for two of them */
     BLOCK =
         2 * 8192 /* bodies that are read at once where others take them: two chunks of nsd's own */
 };
@@ -83,22 +83,22 @@ void frame_read_close(struct frame_read *r)
     *r = (struct frame_read){ 0 };
 }
 
-/* Tables of pairs of kinds, both halves of which say the same */
+/* Tables of pairs of materials, both halves of which say the same */
 static int read_pairs(struct source *doc, struct packing *p, struct failure *failure)
 {
-    const uint64_t kinds = (uint64_t)p->kinds;
+    const uint64_t materials = (uint64_t)p->materials;
     for (const struct field *c = material_fields; c->name; c++) {
         char path[80];
         double *table = field_array(c, p);
         snprintf(path, sizeof path, "/nsd/material/%s", c->name);
         if (c->traits & FIELD_OPTIONAL && !source_has(doc, path)) continue;
-        if (source_read(doc, path, COLUMN_F64, kinds * kinds, table, failure))
+        if (source_read(doc, path, COLUMN_F64, materials * materials, table, failure))
             return failure->status;
-        for (int32_t a = 0; a < p->kinds; a++)
+        for (int32_t a = 0; a < p->materials; a++)
             for (int32_t b = 0; b < a; b++)
-                if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
+                if (!(table[a * p->materials + b] == table[b * p->materials + a]))
                     return failure_set(failure, EX_DATAERR, "%s: %s and %s have two values", path,
-                                       p->kind_name[b], p->kind_name[a]);
+                                       p->material_name[b], p->material_name[a]);
     }
     return 0;
 }
@@ -106,25 +106,25 @@ static int read_pairs(struct source *doc, struct packing *p, struct failure *fai
 static int frame_read_material(struct source *doc, struct packing *p, struct failure *failure)
 {
     char *names = source_text(doc, "/nsd/material", "kinds", failure);
-    int32_t kinds = 0;
-    for (const char *c = names; c && *c; c++) kinds += *c == '\n';
+    int32_t materials = 0;
+    for (const char *c = names; c && *c; c++) materials += *c == '\n';
     if (failure->status) return failure->status;
-    if (kinds > KINDS_MOST) {
+    if (materials > MATERIALS_MOST) {
         free(names);
         return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: more than %d kinds",
-                           KINDS_MOST);
+                           MATERIALS_MOST);
     }
-    if (!kinds) {
+    if (!materials) {
         free(names);
         return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
     }
-    int e = packing_alloc_kinds(p, kinds, failure);
+    int e = packing_alloc_materials(p, materials, failure);
     char *name = names;
-    for (int32_t k = 0; !e && k < kinds; k++) {
+    for (int32_t k = 0; !e && k < materials; k++) {
         char *end = strchr(name, '\n');
-        free(p->kind_name[k]);
-        p->kind_name[k] = strndup(name, (size_t)(end - name));
-        if (!p->kind_name[k]) e = failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
+        free(p->material_name[k]);
+        p->material_name[k] = strndup(name, (size_t)(end - name));
+        if (!p->material_name[k]) e = failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
         name = end + 1;
     }
     free(names);
@@ -262,9 +262,9 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
                          failure) ||
         packing_init(p, dim, n, failure) || read_parameters(r->source, p, failure) ||
         frame_read_material(r->source, p, failure) || shape_tables_read(r->source, p, failure) ||
-        boundary_tables_read(r->source, k, p, failure) ||
-        flow_tables_read(r->source, k, p, failure) || pull_tables_read(r->source, p, failure) ||
-        pair_law_tables_read(r->source, k, p, failure) || frame_read_clock(r, k, p, failure) ||
+        wall_tables_read(r->source, k, p, failure) || flow_tables_read(r->source, k, p, failure) ||
+        pull_tables_read(r->source, p, failure) || pair_law_tables_read(r->source, k, p, failure) ||
+        frame_read_clock(r, k, p, failure) ||
         cell_tables_read(r->source, k, r->repeats, p, failure))
         return failure->status;
     if (flow_tables_read_numbers(r->source, p, failure) ||

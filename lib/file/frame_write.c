@@ -57,14 +57,14 @@ static int write_parameters(hid_t file, const struct frame *f, struct failure *f
 /* Is any of the numbers of a pair not 0? */
 static bool any_pair(const struct packing *p, const double *table)
 {
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; k < p->materials * p->materials; k++)
         if (table[k] != 0) return true;
     return false;
 }
 
 static int write_pairs(hid_t file, const struct packing *p, struct failure *failure)
 {
-    const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
+    const hsize_t square[2] = { (hsize_t)p->materials, (hsize_t)p->materials };
     for (const struct field *c = material_fields; c->name; c++) {
         char path[80];
         if (c->traits & FIELD_OPTIONAL && !any_pair(p, field_array(c, p))) continue;
@@ -80,10 +80,10 @@ static int write_material(hid_t file, const struct packing *p, struct failure *f
 {
     if (write_pairs(file, p, failure)) return failure->status;
     size_t length = 1;
-    for (int32_t k = 0; k < p->kinds; k++) length += strlen(p->kind_name[k]) + 1;
+    for (int32_t k = 0; k < p->materials; k++) length += strlen(p->material_name[k]) + 1;
     char *names = calloc(length, 1);
     if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
-    for (int32_t k = 0; k < p->kinds; k++) strcat(strcat(names, p->kind_name[k]), "\n");
+    for (int32_t k = 0; k < p->materials; k++) strcat(strcat(names, p->material_name[k]), "\n");
     int e = h5_attr_text(file, "/nsd/material", "kinds", names, failure);
     free(names);
     return e;
@@ -92,7 +92,7 @@ static int write_material(hid_t file, const struct packing *p, struct failure *f
 static int write_bodies(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     if (!s->roster && table_write_bodies(s, false, p, failure)) return failure->status;
-    if (boundary_tables_write_static(s, p, failure) || pull_tables_write(s, p, failure))
+    if (wall_tables_write_static(s, p, failure) || pull_tables_write(s, p, failure))
         return failure->status;
     return sum_tables_write_static(s, p, failure);
 }
@@ -174,7 +174,7 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct fail
          write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure)))
         return failure->status;
     if (f->packed &&
-        (boundary_tables_write(s, &f->packing, failure) ||
+        (wall_tables_write(s, &f->packing, failure) ||
          pair_law_tables_write(s, &f->packing, failure) ||
          memory_rows_write(s, &f->packing, failure) || sum_tables_write(s, &f->packing, failure) ||
          external_force_tables_write(s, f, failure)))

@@ -14,17 +14,17 @@ static const char law[] = "/nsd/law", bonds[] = "/nsd/bonds";
 static int check_symmetric(const struct packing *p, const struct field *c, const double *table,
                            struct failure *failure)
 {
-    for (int32_t a = 0; a < p->kinds; a++)
+    for (int32_t a = 0; a < p->materials; a++)
         for (int32_t b = 0; b < a; b++)
-            if (!(table[a * p->kinds + b] == table[b * p->kinds + a]))
+            if (!(table[a * p->materials + b] == table[b * p->materials + a]))
                 return failure_set(failure, EX_DATAERR, "%s/%s: %s and %s have two values", law,
-                                   c->name, p->kind_name[b], p->kind_name[a]);
+                                   c->name, p->material_name[b], p->material_name[a]);
     return 0;
 }
 
 static int pair_law_tables_read_laws(struct source *s, struct packing *p, struct failure *failure)
 {
-    int64_t n = (int64_t)p->kinds * p->kinds;
+    int64_t n = (int64_t)p->materials * p->materials;
     if (packing_alloc_laws(p, failure)) return failure->status;
     double *table = malloc((size_t)n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");
@@ -60,8 +60,8 @@ int pair_law_tables_read(struct source *s, int64_t k, struct packing *p, struct 
 
 int pair_law_tables_write_static(hid_t file, const struct packing *p, struct failure *failure)
 {
-    const struct records laws = RECORDS(law_fields, (int64_t)p->kinds * p->kinds, p->law);
-    const hsize_t square[2] = { (hsize_t)p->kinds, (hsize_t)p->kinds };
+    const struct records laws = RECORDS(law_fields, (int64_t)p->materials * p->materials, p->law);
+    const hsize_t square[2] = { (hsize_t)p->materials, (hsize_t)p->materials };
     if (!p->law) return 0;
     double *table = malloc((size_t)laws.n * sizeof *table + 1);
     if (!table) return failure_set(failure, EX_SOFTWARE, "no memory for the laws");

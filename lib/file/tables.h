@@ -85,8 +85,8 @@ struct table_write {
     int64_t bonds;            /* rows of /nsd/bonds so far */
     int64_t memory;           /* rows of /nsd/memory so far */
     int32_t first_id;         /* of the first frame, as /nsd/flow has it */
-    bool at_rest;             /* no boundary could move in the first frame */
-    double sums_since;        /* s: of its sums of boundaries [file/wall_load_tables.h] */
+    bool at_rest;             /* no wall could move in the first frame */
+    double sums_since;        /* s: of its sums of walls [file/wall_load_tables.h] */
     int64_t forces, words;    /* rows of /nsd/outside/body, bytes of /nsd/outside/answer so far */
     int64_t lasting;          /* rows of /nsd/outside/lasting/force so far */
 };

@@ -30,7 +30,7 @@ static const struct {
     { "radius", "radius", 1, false, false, offsetof(struct packing, radius) },
     { "mass", "mass", 1, false, false, offsetof(struct packing, mass) },
     { "id", "id", 1, false, true, offsetof(struct packing, id) },
-    { "kind", "species", 1, false, true, offsetof(struct packing, kind) },
+    { "kind", "species", 1, false, true, offsetof(struct packing, material) },
     { "shape", "shape", 1, false, true, offsetof(struct packing, shape) },
 };
 

@@ -7,21 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BOUNDARY "/particles/boundary"
+#define WALLS_HOME "/particles/boundary"
 
 /* /particles/boundary/NAME [B][width], where any moves NAME/value [F][B][width]: where they are. It
    follows from the tables above, and is not read. */
-struct boundary_motion {
+struct wall_motion {
     vec3 x; /* m: the point of reference */
     quat q; /* from the orientation in which the shape is described */
     vec3 v; /* m/s: of that point */
     vec3 w; /* rad/s */
 };
-static const struct field boundary_motion_fields[] = {
-    FIELD(struct boundary_motion, x, F64, 3, "position", "m", FIELD_MOVES),
-    FIELD(struct boundary_motion, q, F64, 4, "orientation", "1", FIELD_MOVES),
-    FIELD(struct boundary_motion, v, F64, 3, "velocity", "m s-1", FIELD_MOVES),
-    FIELD(struct boundary_motion, w, F64, 3, "angular_velocity", "rad s-1", FIELD_MOVES),
+static const struct field wall_motion_fields[] = {
+    FIELD(struct wall_motion, x, F64, 3, "position", "m", FIELD_MOVES),
+    FIELD(struct wall_motion, q, F64, 4, "orientation", "1", FIELD_MOVES),
+    FIELD(struct wall_motion, v, F64, 3, "velocity", "m s-1", FIELD_MOVES),
+    FIELD(struct wall_motion, w, F64, 3, "angular_velocity", "rad s-1", FIELD_MOVES),
     { 0 },
 };
 
@@ -55,10 +55,10 @@ struct signals {
     size_t first, count; /* and in struct wall the first and the number of its own */
 };
 
-static const struct signals signals_drive = { BOUNDARY "/drive", offsetof(struct packing, drives),
+static const struct signals signals_drive = { WALLS_HOME "/drive", offsetof(struct packing, drives),
                                               offsetof(struct wall, first_drive),
                                               offsetof(struct wall, drives) },
-                            signals_push = { BOUNDARY "/push", offsetof(struct packing, pushes),
+                            signals_push = { WALLS_HOME "/push", offsetof(struct packing, pushes),
                                              offsetof(struct wall, first_push),
                                              offsetof(struct wall, pushes) };
 
@@ -83,8 +83,8 @@ static int read_signals(struct source *r, const struct signals *of, struct packi
     struct drives *d = (struct drives *)(void *)((char *)p + of->drives);
     if (signal_tables_read(r, of->group, drive_fields, d, failure)) return failure->status;
     for (int32_t k = 0; k < d->n; k++) {
-        int32_t w = d->drive[k].boundary;
-        if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].boundary))
+        int32_t w = d->drive[k].wall;
+        if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].wall))
             return failure_set(failure, EX_DATAERR,
                                "%s/boundary: not in the order of the boundaries", of->group);
         int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
@@ -102,9 +102,9 @@ static int read_drives(struct source *r, struct packing *p, struct failure *fail
 
 static int wall_tables_read_mesh(struct source *r, struct packing *p, struct failure *failure)
 {
-    const char *vertex = BOUNDARY "/mesh/vertex", *element = BOUNDARY "/mesh/element";
+    const char *vertex = WALLS_HOME "/mesh/vertex", *element = WALLS_HOME "/mesh/element";
     int32_t n = 0, m = 0;
-    if (!source_has(r, BOUNDARY "/mesh")) return 0;
+    if (!source_has(r, WALLS_HOME "/mesh")) return 0;
     if (wall_tables_count_rows(r, vertex, 2, &n, failure) ||
         wall_tables_count_rows(r, element, 2, &m, failure) || mesh_alloc(&p->mesh, n, m, failure) ||
         source_rows(r, vertex, (struct slab){ COLUMN_F64, 0, n, 3 }, p->mesh.vertex, failure) ||
@@ -125,15 +125,15 @@ static int read_planes(struct source *r, int64_t k, struct packing *p, struct fa
     return read_loads(r, "/walls/load", k, p, failure);
 }
 
-int boundary_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
+int wall_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
 {
-    const char *body = BOUNDARY "/body";
+    const char *body = WALLS_HOME "/body";
     int32_t n = 0;
     if (!source_has(r, body)) return read_planes(r, k, p, failure);
-    if (wall_tables_count_rows(r, BOUNDARY "/body/point", 2, &n, failure) ||
+    if (wall_tables_count_rows(r, WALLS_HOME "/body/point", 2, &n, failure) ||
         packing_alloc_walls(p, n, failure) ||
         table_read_columns(r, body, "", 0, RECORDS(wall_fields, n, p->wall), failure) ||
-        read_loads(r, BOUNDARY "/load", k, p, failure) || read_drives(r, p, failure) ||
+        read_loads(r, WALLS_HOME "/load", k, p, failure) || read_drives(r, p, failure) ||
         wall_tables_read_mesh(r, p, failure))
         return failure->status;
     return 0;
@@ -148,7 +148,7 @@ static bool any_loads(const struct packing *p)
     return false;
 }
 
-bool boundary_tables_move(const struct packing *p)
+bool wall_tables_move(const struct packing *p)
 {
     for (int32_t w = 0; w < p->walls; w++)
         if (v3_norm(p->wall[w].v) > 0 || p->wall[w].load.way) return true;
@@ -158,19 +158,19 @@ bool boundary_tables_move(const struct packing *p)
 /* Or may it, in frames to come? */
 static bool any_may_move(const struct packing *p)
 {
-    return p->outside.steered || boundary_tables_move(p);
+    return p->outside.steered || wall_tables_move(p);
 }
 
 /* [walls]; NULL: no memory */
-static struct boundary_motion *motions(const struct packing *p, struct failure *failure)
+static struct wall_motion *motions(const struct packing *p, struct failure *failure)
 {
-    struct boundary_motion *m = calloc((size_t)p->walls + 1, sizeof *m);
+    struct wall_motion *m = calloc((size_t)p->walls + 1, sizeof *m);
     if (!m) failure_set(failure, EX_SOFTWARE, "no memory for the motion of the boundaries");
     for (int32_t w = 0; m && w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         vec3 x = wall_at(p, wall, p->t);
-        m[w] = (struct boundary_motion){ x, wall_pose(p, wall, p->t).q, wall_velocity(p, wall, x),
-                                         wall_spin(p, wall) };
+        m[w] = (struct wall_motion){ x, wall_pose(p, wall, p->t).q, wall_velocity(p, wall, x),
+                                     wall_spin(p, wall) };
     }
     return m;
 }
@@ -188,9 +188,10 @@ int signal_tables_write(struct table_write *s, const char *group, const struct f
 
 static int write_drives(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (signal_tables_write(s, BOUNDARY "/drive", drive_fields, &p->drives, "s; m, rad", failure))
+    if (signal_tables_write(s, WALLS_HOME "/drive", drive_fields, &p->drives, "s; m, rad", failure))
         return failure->status;
-    return signal_tables_write(s, BOUNDARY "/push", drive_fields, &p->pushes, "s; N, N m", failure);
+    return signal_tables_write(s, WALLS_HOME "/push", drive_fields, &p->pushes, "s; N, N m",
+                               failure);
 }
 
 static int write_mesh(struct table_write *s, const struct packing *p, struct failure *failure)
@@ -198,44 +199,44 @@ static int write_mesh(struct table_write *s, const struct packing *p, struct fai
     const hsize_t vertices[2] = { (hsize_t)p->mesh.vertices, 3 },
                   elements[2] = { (hsize_t)p->mesh.elements, 3 };
     if (!p->mesh.elements) return 0;
-    if (h5_write(s->file, BOUNDARY "/mesh/vertex",
+    if (h5_write(s->file, WALLS_HOME "/mesh/vertex",
                  h5_array(H5T_NATIVE_DOUBLE, 2, vertices, p->mesh.vertex), "m", failure))
         return failure->status;
-    return h5_write(s->file, BOUNDARY "/mesh/element",
+    return h5_write(s->file, WALLS_HOME "/mesh/element",
                     h5_array(H5T_NATIVE_INT32, 2, elements, p->mesh.element), NULL, failure);
 }
 
-int boundary_tables_write_static(struct table_write *s, const struct packing *p,
-                                 struct failure *failure)
+int wall_tables_write_static(struct table_write *s, const struct packing *p,
+                             struct failure *failure)
 {
-    struct boundary_motion *m = NULL;
-    if (!table_write_once(s, BOUNDARY "/body", RECORDS_OF(p, wall_fields, p->walls, p->wall),
+    struct wall_motion *m = NULL;
+    if (!table_write_once(s, WALLS_HOME "/body", RECORDS_OF(p, wall_fields, p->walls, p->wall),
                           failure) &&
         !write_drives(s, p, failure) && !write_mesh(s, p, failure) && any_loads(p))
-        table_write_once(s, BOUNDARY "/load", RECORDS(load_fields, p->walls, p->wall), failure);
+        table_write_once(s, WALLS_HOME "/load", RECORDS(load_fields, p->walls, p->wall), failure);
     s->at_rest = !any_may_move(p);
     if (!failure->status && s->at_rest && (m = motions(p, failure)))
-        table_write_once(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), failure);
+        table_write_once(s, WALLS_HOME, RECORDS(wall_motion_fields, p->walls, m), failure);
     free(m);
     return failure->status;
 }
 
-int boundary_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
+int wall_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
 {
-    if (!any_may_move(p) || (s->at_rest && !boundary_tables_move(p))) return 0;
+    if (!any_may_move(p) || (s->at_rest && !wall_tables_move(p))) return 0;
     if (s->at_rest)
         return failure_set(
             failure, EX_DATAERR,
             "boundaries move, and in the first frame none could: begin another trajectory");
-    struct boundary_motion *m = motions(p, failure);
+    struct wall_motion *m = motions(p, failure);
     if (m &&
-        !table_write_frame(s, BOUNDARY, RECORDS(boundary_motion_fields, p->walls, m), CHUNK_FRAMES,
+        !table_write_frame(s, WALLS_HOME, RECORDS(wall_motion_fields, p->walls, m), CHUNK_FRAMES,
                            failure) &&
-        !table_write_clocks(s, BOUNDARY, boundary_motion_fields, p->step, p->t, failure) &&
+        !table_write_clocks(s, WALLS_HOME, wall_motion_fields, p->step, p->t, failure) &&
         any_loads(p) &&
-        !table_write_frame(s, BOUNDARY "/load", RECORDS(load_motion_fields, p->walls, p->wall),
+        !table_write_frame(s, WALLS_HOME "/load", RECORDS(load_motion_fields, p->walls, p->wall),
                            CHUNK_FRAMES, failure))
-        table_write_clocks(s, BOUNDARY "/load", load_motion_fields, p->step, p->t, failure);
+        table_write_clocks(s, WALLS_HOME "/load", load_motion_fields, p->step, p->t, failure);
     free(m);
     return failure->status;
 }

@@ -1,5 +1,5 @@
 /*
- * file/wall_tables.h: boundaries in a document [nsd-format(5)]: their shapes, meshes, loads and
+ * file/wall_tables.h: walls in a document [nsd-format(5)]: their shapes, meshes, loads and
  * drives, and where they are over time.
  */
 #ifndef NSD_WALL_TABLES_H
@@ -9,24 +9,22 @@
 #include "file/tables.h"
 
 /* Those of frame k, whose time p has */
-int boundary_tables_read(struct source *source, int64_t k, struct packing *p,
-                         struct failure *failure);
+int wall_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
 
-/* Does any boundary move? A trajectory whose first frame has none that does, and none that may, takes none later. */
-bool boundary_tables_move(const struct packing *p);
+/* Does any wall move? A trajectory whose first frame has none that does, and none that may, takes none later. */
+bool wall_tables_move(const struct packing *p);
 /* What all frames share */
-int boundary_tables_write_static(struct table_write *tables, const struct packing *p,
-                                 struct failure *failure);
+int wall_tables_write_static(struct table_write *tables, const struct packing *p,
+                             struct failure *failure);
 /* A frame's part: nothing where nothing moves */
-int boundary_tables_write(struct table_write *tables, const struct packing *p,
-                          struct failure *failure);
+int wall_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
 
 /*
- * Names of boundaries, of parts of their surfaces and of groups of bodies [state/names.h] in a
+ * Names of walls, of parts of their surfaces and of groups of bodies [state/names.h] in a
  * document; nothing where there are none.
  */
 
-/* Into a packing; packing_check() sees whether they are of its boundaries. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+/* Into a packing; packing_check() sees whether they are of its walls. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int name_tables_read(struct source *source, struct packing *p, struct failure *failure);
 /* What all frames share */
 int name_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);

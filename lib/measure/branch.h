@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-/* m: how far the centres of a and b are from the contact's point; a boundary's is 0, and b's then
+/* m: how far the centres of a and b are from the contact's point; a wall's is 0, and b's then
    the whole distance to it. */
 static inline double branch_a(const struct packing *p, const struct contact *c)
 {
@@ -26,7 +26,7 @@ static inline double branch_b(const struct packing *p, const struct contact *c)
 }
 
 /* m: from the contact's point to the centre of b (that a meets), and from that of a, or the point on the
-   boundary, to the contact's point */
+   wall, to the contact's point */
 static inline vec3 branch_to_b(const struct packing *p, const struct contact *c)
 {
     if (!contact_shaped(p, c)) return v3_scale(branch_b(p, c), c->n);
@@ -38,7 +38,7 @@ static inline vec3 branch_from_a(const struct packing *p, const struct contact *
     return c->a < 0 ? v3(0, 0, 0) : v3_sub(c->x, p->x[c->a]);
 }
 
-/* m: the centre of a, or the point on the boundary; and from there to the centre of b */
+/* m: the centre of a, or the point on the wall; and from there to the centre of b */
 static inline vec3 branch_from(const struct packing *p, const struct contact *c)
 {
     if (contact_shaped(p, c)) return v3_sub(c->x, branch_from_a(p, c));

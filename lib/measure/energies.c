@@ -56,12 +56,12 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-/* What contacts take in the step, and what boundaries give, by the motion at each contact [step/contact_motion.h] */
+/* What contacts take in the step, and what walls give, by the motion at each contact [step/contact_motion.h] */
 static int energies_add_step(double **at, const struct snapshot *s, double *stored,
                              struct failure *failure)
 {
     struct step_start m;
-    double impact = 0, friction = 0, boundaries = 0, kept = 0;
+    double impact = 0, friction = 0, walls = 0, kept = 0;
     if (step_start_init(&m, s, failure)) {
         step_start_free(&m);
         return failure->status;
@@ -79,9 +79,9 @@ static int energies_add_step(double **at, const struct snapshot *s, double *stor
         const struct contact_motion motion = contact_motion(m.p, &m.sum, c);
         const struct contact_loss loss = contact_loss(&motion, c, r, moment);
         impact += times * loss.impact, friction += times * loss.friction;
-        if (c->a < 0) boundaries -= times * contact_wall_work(&motion, c, r, moment);
+        if (c->a < 0) walls -= times * contact_wall_work(&motion, c, r, moment);
     }
-    put(at, impact + friction - kept), put(at, impact), put(at, friction), put(at, boundaries);
+    put(at, impact + friction - kept), put(at, impact), put(at, friction), put(at, walls);
     step_start_free(&m);
     return 0;
 }

@@ -43,7 +43,7 @@ double follow_removed(const struct snapshot *s, int32_t id)
     return s->p->t;
 }
 
-/* A pair of bodies, or of a boundary and a body, is one, in however many places and across whatever edges it touches */
+/* A pair of bodies, or of a wall and a body, is one, in however many places and across whatever edges it touches */
 static struct frame_memory_pair pair_of(const struct packing *p, const struct contact *c)
 {
     const int32_t a = c->a < 0 ? c->a : p->id[c->a], b = p->id[c->b];

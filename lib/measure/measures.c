@@ -15,7 +15,7 @@ static const struct measure *const measures[] = {
     &measure_contact_numbers,
     &measure_fabric,
     &measure_stress,
-    &measure_boundaries,
+    &measure_wall_forces,
     &measure_energy,
     &measure_temperature,
     &measure_profile,

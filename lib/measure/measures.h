@@ -24,7 +24,7 @@ enum needs {
 enum keeps_to {
     KEEPS_TO_NOTHING, /* it is of all bodies, or of none: names of bodies are refused */
     KEEPS_TO_WALLS,   /* walls and parts of them with the names */
-    KEEPS_TO_BODIES,  /* bodies of groups and kinds with the names */
+    KEEPS_TO_BODIES,  /* bodies of groups and materials with the names */
 };
 
 struct measure {
@@ -43,7 +43,7 @@ struct measure {
 };
 
 extern const struct measure measure_fraction, measure_coordination, measure_contact_numbers,
-    measure_fabric, measure_stress, measure_boundaries, measure_energy, measure_temperature,
+    measure_fabric, measure_stress, measure_wall_forces, measure_energy, measure_temperature,
     measure_profile, measure_friction, measure_normal_forces, measure_tangential_forces,
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
     measure_surface, measure_flux, measure_grains, measure_strain, measure_names, measure_sums,

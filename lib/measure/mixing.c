@@ -1,5 +1,5 @@
 /*
- * measure/mixing.c: how well bodies of one kind, or large ones, are mixed with the others. The region is divided into
+ * measure/mixing.c: how well bodies of one material, or large ones, are mixed with the others. The region is divided into
  * samples of the same size. A sample counts by its bodies, so that those at a border, which hold few, count little:
  *
  *     s^2 = sum n_k (p_k - p)^2 / N,   s_0^2 = p (1 - p),   s_R^2 = p (1 - p) K/N,
@@ -57,31 +57,32 @@ static bool mixture_gather(struct mixture *m, const struct snapshot *s)
     return m->body && m->tracer;
 }
 
-/* -1: no such kind */
-static int32_t mixing_kind_named(const struct packing *p, const char *name)
+/* -1: no such material */
+static int32_t mixing_material_named(const struct packing *p, const char *name)
 {
-    for (int32_t k = 0; k < p->kinds; k++)
-        if (!strcmp(p->kind_name[k], name)) return k;
+    for (int32_t k = 0; k < p->materials; k++)
+        if (!strcmp(p->material_name[k], name)) return k;
     return -1;
 }
 
-/* Tracers are of a kind, or larger than the mean. Where nobody has said which, the kind of the first body, unless all
-   are of one kind. */
+/* Tracers are of a material, or larger than the mean. Where nobody has said which, the material of the first body, unless all
+   are of one material. */
 static void mixture_divide(struct mixture *m, const struct snapshot *s)
 {
     const struct packing *p = s->p;
     const char *name = s->asked->tracer;
-    int32_t kind = *name && strcmp(name, "large") ? mixing_kind_named(p, name) : -1;
+    int32_t material = *name && strcmp(name, "large") ? mixing_material_named(p, name) : -1;
     double mean = 0;
     bool alike = true;
     for (int64_t k = 0; k < m->n; k++) {
         mean += p->radius[m->body[k]] / (double)m->n;
-        alike = alike && p->kind[m->body[k]] == p->kind[m->body[0]];
+        alike = alike && p->material[m->body[k]] == p->material[m->body[0]];
     }
-    if (!*name && m->n && !alike) kind = p->kind[m->body[0]];
+    if (!*name && m->n && !alike) material = p->material[m->body[0]];
     for (int64_t k = 0; k < m->n; k++) {
         const int64_t i = m->body[k];
-        m->tracer[k] = kind >= 0 ? p->kind[i] == kind : p->radius[i] > mean * (1 + 1e-12);
+        m->tracer[k] =
+            material >= 0 ? p->material[i] == material : p->radius[i] > mean * (1 + 1e-12);
         m->tracers += m->tracer[k];
     }
 }

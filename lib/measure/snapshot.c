@@ -165,19 +165,20 @@ vec3 frame_memory_way(const struct packing *p, vec3 from, vec3 to)
     return period_shortest(period_of(&period, &p->cell), v3_sub(to, from));
 }
 
-/* Is --tracer a kind of this document? Returns 0 or EX_DATAERR. */
+/* Is --tracer a material of this document? Returns 0 or EX_DATAERR. */
 static int check_tracer(const struct packing *p, const char *tracer, struct failure *failure)
 {
-    char kinds[200];
+    char materials[200];
     size_t at = 0;
     if (!*tracer || !strcmp(tracer, "large")) return 0;
-    for (int32_t k = 0; k < p->kinds; k++) {
-        if (!strcmp(tracer, p->kind_name[k])) return 0;
-        if (at < sizeof kinds)
-            at += (size_t)snprintf(kinds + at, sizeof kinds - at, ", %s", p->kind_name[k]);
+    for (int32_t k = 0; k < p->materials; k++) {
+        if (!strcmp(tracer, p->material_name[k])) return 0;
+        if (at < sizeof materials)
+            at += (size_t)snprintf(materials + at, sizeof materials - at, ", %s",
+                                   p->material_name[k]);
     }
     return failure_set(failure, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer,
-                       kinds, at < sizeof kinds ? "" : "...");
+                       materials, at < sizeof materials ? "" : "...");
 }
 
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,

@@ -53,11 +53,11 @@ struct frame_memory {
     } * body;        /* [n] sorted by id */
     int64_t pairs;
     struct frame_memory_pair {
-        int32_t a, b;      /* ids, a < b; of boundary w a = -1-w */
+        int32_t a, b;      /* ids, a < b; of wall w a = -1-w */
         double began;      /* s */
         bool whole;        /* as above */
     } * pair;              /* [pairs] that touch, sorted; NULL: not looked at */
-    struct wall_sums sums; /* over steps, of boundaries */
+    struct wall_sums sums; /* over steps, of walls */
     /* bodies in front of each pixel, over `covered` frames [measure/silhouette.h]; NULL: not looked at */
     uint32_t *cover;
     int64_t covered;
@@ -96,11 +96,11 @@ struct asked {
     double radius; /* m: of the disc in it that is crossed; INFINITY: the plane */
     int64_t bins;  /* of histograms */
     char only
-        [256]; /* names of walls, groups and kinds, numbers of walls, to which measures keep; "": all */
+        [256]; /* names of walls, groups and materials, numbers of walls, to which measures keep; "": all */
     double wear;     /* 1/Pa: coefficient of wear; 0: that of each wall */
     double distance; /* m: up to which pairs are counted; 0: three mean diameters */
     char tracer
-        [64]; /* the kind whose mixing with the others is measured, or large; "": see measure/mixing.c */
+        [64]; /* the material whose mixing with the others is measured, or large; "": see measure/mixing.c */
     double sample;    /* m: edge of the samples of a mixture; 0: three mean diameters */
     int view;         /* axis of the projection of a silhouette: 0 x, 1 y, 2 z */
     double window[4]; /* m: its left, right, lower and upper edge; all 0: none is asked for */

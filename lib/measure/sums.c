@@ -1,4 +1,4 @@
-/* measure/sums.c: what bodies have done to boundaries since the frame before, over all steps [state/wall_load.h]. */
+/* measure/sums.c: what bodies have done to walls since the frame before, over all steps [state/wall_load.h]. */
 
 #include "measure/measures.h"
 #include "state/face_of.h"
@@ -159,8 +159,8 @@ static int sums_names_rows(struct table *t, const struct snapshot *s, struct fai
         struct sum sum = { 0 };
         for (end = k; end < names->rows && names->row[end].name == names->row[k].name; end++) {
             const struct named *r = &names->row[end];
-            sums_add_faces(&sum, &l, r->boundary, r->first,
-                           r->count ? r->count : sums_count_of(&l, r->boundary));
+            sums_add_faces(&sum, &l, r->wall, r->first,
+                           r->count ? r->count : sums_count_of(&l, r->wall));
         }
         if (s->only.walls && !s->only.name[names->row[k].name]) continue;
         double *at = table_row(t, failure);

@@ -1,5 +1,5 @@
 /*
- * measure/table.h: the numbers of a measure: one row, or a row for each layer, bin, boundary, grain.
+ * measure/table.h: the numbers of a measure: one row, or a row for each layer, bin, wall, grain.
  * A number that there is not is NaN here, and null or nan where it is printed.
  */
 #ifndef NSD_TABLE_H

@@ -77,7 +77,7 @@ static void holders_find(struct holders *h, const struct subdomain *y)
         for (int64_t k = 0; k < y->lent[q].n; k++) h->rank[h->first[y->lent[q].body[k] + 1]++] = q;
 }
 
-/* Body i (own, and moving) of a contact whose other body is `other` (< 0: a boundary): who must be told of
+/* Body i (own, and moving) of a contact whose other body is `other` (< 0: a wall): who must be told of
    what this contact makes of it? Returns how many. */
 static int told(const struct subdomain *y, const struct holders *h, int32_t i, int32_t other,
                 int32_t *rank)

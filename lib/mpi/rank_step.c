@@ -322,7 +322,7 @@ static bool rank_step_is_shared(const struct packing *p, const struct step_opt *
 static bool bounds_impacts(const struct packing *p)
 {
     bool said = false;
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         said = said || p->law[k].impact == IMPACT_BOUNDED;
     return packing_may_gain(p) && (p->shape || said);
 }

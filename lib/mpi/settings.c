@@ -145,7 +145,7 @@ void settings_act(struct comm *t, struct packing *p, const struct packing *whole
     struct parcel o = { 0 };
     struct external_force *to = &p->outside;
     const struct external_force *from = &whole->outside;
-    const size_t pairs = (size_t)p->kinds * (size_t)p->kinds * sizeof *p->mu;
+    const size_t pairs = (size_t)p->materials * (size_t)p->materials * sizeof *p->mu;
     const size_t walls = (size_t)p->walls;
     struct {
         vec3 g;

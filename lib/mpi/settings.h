@@ -10,10 +10,10 @@
 
 /* Collective. Of the first rank's packing; in the others *p is made, with no bodies: freed before. */
 void settings_spread(struct comm *t, struct packing *p);
-/* Time, boundaries and edges of the first rank's packing become those of the others', which are otherwise
+/* Time, walls and edges of the first rank's packing become those of the others', which are otherwise
    the same. */
 void settings_follow(struct comm *t, struct packing *p);
-/* Gravity, friction, the motion of boundaries and the forces on their loads, which a program has changed, of the first
+/* Gravity, friction, the motion of walls and the forces on their loads, which a program has changed, of the first
    rank's `whole` become those of every p; and p has the arrays of forces and torques that whole has, for its bodies. */
 void settings_act(struct comm *t, struct packing *p, const struct packing *whole);
 /* The same of two packings of one rank */

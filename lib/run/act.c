@@ -30,20 +30,20 @@ int nsd_force(struct nsd_run *r, int32_t id, const double force[3], const double
                          (struct wrench){ of(force), of(torque) }, t, failure);
 }
 
-int nsd_boundary_force(struct nsd_run *r, int32_t boundary, double force, enum nsd_term term)
+int nsd_boundary_force(struct nsd_run *r, int32_t wall, double force, enum nsd_term term)
 {
     struct failure *failure = run_why(r);
     enum control_lasting t = failure ? term_of(term, failure) : CONTROL_TERMS;
     if (t == CONTROL_TERMS) return NSD_USAGE;
-    return control_push(&r->driver.acts, &r->f.packing, boundary, force, t, failure);
+    return control_push(&r->driver.acts, &r->f.packing, wall, force, t, failure);
 }
 
-int nsd_boundary_velocity(struct nsd_run *r, int32_t boundary, const double velocity[3])
+int nsd_boundary_velocity(struct nsd_run *r, int32_t wall, const double velocity[3])
 {
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
     if (!velocity) return failure_set(failure, NSD_USAGE, "there is no velocity");
-    return control_velocity(&r->f.packing, boundary, of(velocity), failure);
+    return control_velocity(&r->f.packing, wall, of(velocity), failure);
 }
 
 int nsd_velocity(struct nsd_run *r, int32_t id, const double velocity[3],
@@ -92,7 +92,7 @@ static void act_set(struct packing *p, int64_t i, const struct nsd_bodies *b, in
     if (b->orientation)
         p->q[i] = (quat){ b->orientation[4 * k], b->orientation[4 * k + 1],
                           b->orientation[4 * k + 2], b->orientation[4 * k + 3] };
-    p->kind[i] = b->kind ? b->kind[k] : 0;
+    p->material[i] = b->kind ? b->kind[k] : 0;
     packing_solid(p->dim, b->radius[k], b->mass ? 1 : b->density, &mass, &inertia);
     if (b->mass) inertia *= b->mass[k] / mass, mass = b->mass[k];
     if (b->inertia) inertia = b->inertia[k];

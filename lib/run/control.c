@@ -256,7 +256,7 @@ int control_force(struct control *a, const struct packing *p, int32_t id, struct
     return 0;
 }
 
-/* The boundary of that number, or NULL with the reason */
+/* The wall of that number, or NULL with the reason */
 static struct wall *wall_of(const struct packing *p, int64_t wall, struct failure *failure)
 {
     if (wall >= 0 && wall < p->walls) return &p->wall[wall];
@@ -333,10 +333,11 @@ int control_gravity(struct packing *p, vec3 g, struct failure *failure)
     return 0;
 }
 
-static int32_t control_kind_of(const struct packing *p, const char *name, struct failure *failure)
+static int32_t control_material_of(const struct packing *p, const char *name,
+                                   struct failure *failure)
 {
-    for (int32_t k = 0; k < p->kinds; k++)
-        if (!strcmp(p->kind_name[k], name)) return k;
+    for (int32_t k = 0; k < p->materials; k++)
+        if (!strcmp(p->material_name[k], name)) return k;
     failure_set(failure, EX_DATAERR, "there is no kind '%.100s'", name);
     return -1;
 }
@@ -344,12 +345,13 @@ static int32_t control_kind_of(const struct packing *p, const char *name, struct
 int control_friction(struct packing *p, const char *a, const char *b, double mu,
                      struct failure *failure)
 {
-    int32_t k = control_kind_of(p, a, failure), l = k < 0 ? -1 : control_kind_of(p, b, failure);
+    int32_t k = control_material_of(p, a, failure),
+            l = k < 0 ? -1 : control_material_of(p, b, failure);
     if (l < 0) return failure->status;
     if (!(mu >= 0 && isfinite(mu)))
         return failure_set(failure, EX_DATAERR,
                            "a friction of %g is not a finite number of at least 0", mu);
-    p->mu[k * p->kinds + l] = p->mu[l * p->kinds + k] = mu;
+    p->mu[k * p->materials + l] = p->mu[l * p->materials + k] = mu;
     p->outside.steered = true;
     return 0;
 }

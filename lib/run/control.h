@@ -52,7 +52,7 @@ struct wrench {
 /* In place of what acts on the body of this id for so long */
 int control_force(struct control *acts, const struct packing *p, int32_t id, struct wrench w,
                   enum control_lasting term, struct failure *failure);
-/* N along the axis of its load, N m about it, added to that. EX_DATAERR: the boundary has none. */
+/* N along the axis of its load, N m about it, added to that. EX_DATAERR: the wall has none. */
 int control_push(struct control *acts, const struct packing *p, int64_t wall, double force,
                  enum control_lasting term, struct failure *failure);
 /* m/s: its prescribed velocity from now on; from its present position on. EX_DATAERR: it turns. */
@@ -60,7 +60,7 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
 /* m/s, rad/s: the velocity, or the angular velocity, of the body in row i */
 int control_motion(struct packing *p, int64_t i, bool turns, vec3 v, struct failure *failure);
 int control_gravity(struct packing *p, vec3 g, struct failure *failure);
-/* Between two kinds of material, by their names */
+/* Between two materials, by their names */
 int control_friction(struct packing *p, const char *a, const char *b, double mu,
                      struct failure *failure);
 

@@ -20,7 +20,7 @@ enum {
     FRAME_MEMORY_MOST = 1 << 30 /* bytes of answers between two frames, which are kept in memory */
 };
 
-static const char *command, *replay, *boundaries, *measures;
+static const char *command, *replay, *walls, *measures;
 static int64_t every = 1;
 static double timeout = 60; /* s: a program that computes for a minute before a step is not meant */
 static bool document;
@@ -30,7 +30,7 @@ const struct cli_option options_loop[] = {
       .help = "ask CMD, by lines of JSON, for forces and changes [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "ask before the first and then every K-th step [1]" },
-    { CLI_TEXT, 0, "with-boundaries", &boundaries, "all|NAME,...", .silent = true,
+    { CLI_TEXT, 0, "with-boundaries", &walls, "all|NAME,...", .silent = true,
       .help = "send these walls, by name or number [none]" },
     { CLI_TEXT, 0, "with-measures", &measures, "A,B,...", .silent = true,
       .help = "send these measures of nsd-stat [none]" },
@@ -54,7 +54,7 @@ static struct {
     struct partner *partner;
     const struct measure *chosen[MOST_MEASURES + 1];
     struct asked asked;
-    struct selection told; /* boundaries; none: all */
+    struct selection told; /* walls; none: all */
     struct frame_memory first, before;
     bool remembers;
     struct said *said;
@@ -177,12 +177,12 @@ static void check_answers(const struct packing *p)
             replay, (long long)first, (long long)p->step);
 }
 
-void loop_choose_boundaries(const struct packing *p)
+void loop_choose_walls(const struct packing *p)
 {
     struct failure failure = { 0 };
-    if (!boundaries || !strcmp(boundaries, "all")) return;
-    if (selection_init(&loop.told, p, "--with-boundaries", boundaries, &failure)) die_why(&failure);
-    if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", boundaries);
+    if (!walls || !strcmp(walls, "all")) return;
+    if (selection_init(&loop.told, p, "--with-boundaries", walls, &failure)) die_why(&failure);
+    if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", walls);
 }
 
 void loop_open(const struct packing *p, const volatile sig_atomic_t *stop)
@@ -216,7 +216,7 @@ static void put_vector(FILE *out, const char *name, vec3 x)
     print_number(out, x.z, "null"), fputc(']', out);
 }
 
-/* N: what the bodies do to the boundary; found: of solved contacts */
+/* N: what the bodies do to the wall; found: of solved contacts */
 static vec3 force_on(const struct packing *p, const struct contacts *s, int32_t wall)
 {
     vec3 sum = v3(0, 0, 0);
@@ -226,7 +226,7 @@ static vec3 force_on(const struct packing *p, const struct contacts *s, int32_t 
     return sum;
 }
 
-static void loop_put_boundaries(FILE *out, const struct packing *p, const struct contacts *s)
+static void loop_put_walls(FILE *out, const struct packing *p, const struct contacts *s)
 {
     const char *mark = "";
     fputs(",\"boundaries\":[", out);
@@ -298,7 +298,7 @@ static char *loop_message(const struct frame *f, const struct contacts *s, struc
         fputs(",\"dt\":", out), print_number(out, p->dt, "null");
         fprintf(out, ",\"bodies\":%" PRId64, p->n);
         put_report(out, s ? f : NULL);
-        if (boundaries) loop_put_boundaries(out, p, s);
+        if (walls) loop_put_walls(out, p, s);
         if (measures) put_measures(out, f, s, failure);
         if (document) fprintf(out, ",\"document\":%zu", size);
         fputs("}\n", out);

@@ -18,7 +18,7 @@ void loop_check(void);
 /* Is there a program, or are there answers to replay? */
 bool loop_asks(void);
 /* Ends the tool with EX_DATAERR where --with-boundaries names what is no wall of this packing, that of the run. */
-void loop_choose_boundaries(const struct packing *p);
+void loop_choose_walls(const struct packing *p);
 /* Starts the program, or reads the answers for a run from this packing on; *stop: other than 0 when the run is to end, as by
    a signal. */
 void loop_open(const struct packing *p, const volatile sig_atomic_t *stop);

@@ -70,9 +70,8 @@ struct nsd_bodies {
     const double *angular_velocity; /* [n][3] rad/s */
     const double *mass;             /* [n] kg; 0: fixed; NULL: computed from density */
     const double *inertia;          /* [n] kg m^2; NULL: that of solid balls, in 2D of discs */
-    const int32_t
-        *kind; /* [n] number of the kind of material: 0 "ball", 1 "wall", then as in the scene */
-    double density; /* kg/m^3, in 2D kg/m^2; required if mass is NULL */
+    const int32_t *kind; /* [n] number of the material: 0 "ball", 1 "wall", then as in the scene */
+    double density;      /* kg/m^3, in 2D kg/m^2; required if mass is NULL */
 };
 
 /*
@@ -116,7 +115,7 @@ struct nsd_array {
 /*
  * nsd_read() describes an array by its name. The names are nsd_array_name(0), (1) ... up to NULL. Arrays of bodies are the
  * run's own, without a copy: they stay at their addresses, and show the current state, until bodies are added or
- * removed, by nsd_add(), nsd_remove() or, if nsd_resizes() returns 1, by steps. Arrays of contacts, boundaries and
+ * removed, by nsd_add(), nsd_remove() or, if nsd_resizes() returns 1, by steps. Arrays of contacts, walls and
  * the periodic cell are of the last step, and valid until the next step or until they are read again.
  */
 int nsd_read(struct nsd_run *run, const char *name, struct nsd_array *array);
@@ -152,15 +151,15 @@ enum nsd_term {
    term; NULL: 0. The arrays "force", "torque", "force_once" and "torque_once" of nsd_read() hold these of all bodies. */
 int nsd_force(struct nsd_run *run, int32_t id, const double force[3], const double torque[3],
               enum nsd_term term);
-/* Adds a force (N) along the axis of the boundary's load, or a torque (N m) about it, to the load */
-int nsd_boundary_force(struct nsd_run *run, int32_t boundary, double force, enum nsd_term term);
-/* Prescribes the boundary's velocity (m/s) from now on */
-int nsd_boundary_velocity(struct nsd_run *run, int32_t boundary, const double velocity[3]);
+/* Adds a force (N) along the axis of the wall's load, or a torque (N m) about it, to the load */
+int nsd_boundary_force(struct nsd_run *run, int32_t wall, double force, enum nsd_term term);
+/* Prescribes the wall's velocity (m/s) from now on */
+int nsd_boundary_velocity(struct nsd_run *run, int32_t wall, const double velocity[3]);
 /* Sets the velocity (m/s) and the angular velocity (rad/s), in the axes of space, of the body with this id; NULL: unchanged */
 int nsd_velocity(struct nsd_run *run, int32_t id, const double velocity[3],
                  const double angular_velocity[3]);
 int nsd_gravity(struct nsd_run *run, const double gravity[3]); /* m/s^2 */
-/* Sets the coefficient of friction between two kinds of material, by their names */
+/* Sets the coefficient of friction between two materials, by their names */
 int nsd_friction(struct nsd_run *run, const char *kind, const char *other, double mu);
 /* Adds bodies; id[bodies->n] (NULL: not returned): their new ids. Removes the bodies id[n]. */
 int nsd_add(struct nsd_run *run, const struct nsd_bodies *bodies, int32_t *id);

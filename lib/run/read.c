@@ -14,7 +14,7 @@
 /* ---- arrays ---- */
 
 /* What an array is of; those of bodies are the packing's own, those of acts the run's, others are made */
-enum read_rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_BOUNDARIES, OF_CELL };
+enum read_rows { OF_BODIES, OF_ACTS, OF_CONTACTS, OF_WALLS, OF_CELL };
 
 struct read_row {
     const char *name, *unit;
@@ -65,7 +65,7 @@ OF_EACH_CONTACT(contact_velocities,
                           s->found ? contact_in_space(&s->c[i], s->found[i].u) : v3(0, 0, 0)))
 OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].status : 0)
 
-#define OF_EACH_BOUNDARY(name, ...)                                                                \
+#define OF_EACH_WALL(name, ...)                                                                    \
     static void name(const struct nsd_run *r, void *out)                                           \
     {                                                                                              \
         const struct packing *p = &r->f.packing;                                                   \
@@ -75,13 +75,13 @@ OF_EACH_CONTACT(contact_statuses, ((int8_t *)out)[i] = s->found ? s->found[i].st
         }                                                                                          \
     }
 
-OF_EACH_BOUNDARY(boundary_positions, read_put3(out, i, wall_at(p, w, p->t)))
-OF_EACH_BOUNDARY(boundary_normals, read_put3(out, i, wall_normal(p, w, p->t)))
-OF_EACH_BOUNDARY(boundary_velocities, read_put3(out, i, wall_velocity(p, w, wall_at(p, w, p->t))))
-OF_EACH_BOUNDARY(boundary_spins, read_put3(out, i, wall_spin(p, w)))
+OF_EACH_WALL(wall_positions, read_put3(out, i, wall_at(p, w, p->t)))
+OF_EACH_WALL(wall_normals, read_put3(out, i, wall_normal(p, w, p->t)))
+OF_EACH_WALL(wall_velocities, read_put3(out, i, wall_velocity(p, w, wall_at(p, w, p->t))))
+OF_EACH_WALL(wall_spins, read_put3(out, i, wall_spin(p, w)))
 
-/* N: of the bodies on the boundaries; and N m, of that about where they are */
-static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
+/* N: of the bodies on the walls; and N m, of that about where they are */
+static void sum_walls(const struct nsd_run *r, double *out, bool torque)
 {
     const struct packing *p = &r->f.packing;
     const struct contacts *s = &r->f.contacts;
@@ -95,14 +95,14 @@ static void sum_boundaries(const struct nsd_run *r, double *out, bool torque)
     }
 }
 
-static void boundary_forces(const struct nsd_run *r, void *out)
+static void wall_forces(const struct nsd_run *r, void *out)
 {
-    sum_boundaries(r, out, false);
+    sum_walls(r, out, false);
 }
 
-static void boundary_torques(const struct nsd_run *r, void *out)
+static void wall_torques(const struct nsd_run *r, void *out)
 {
-    sum_boundaries(r, out, true);
+    sum_walls(r, out, true);
 }
 
 static void cell_origin(const struct nsd_run *r, void *out)
@@ -141,12 +141,12 @@ static const struct read_row table[] = {
     { "contact_force", "N", OF_CONTACTS, 'd', 3, 0, contact_forces },
     { "contact_velocity", "m s-1", OF_CONTACTS, 'd', 3, 0, contact_velocities },
     { "contact_status", "1", OF_CONTACTS, 'b', 1, 0, contact_statuses },
-    { "boundary_position", "m", OF_BOUNDARIES, 'd', 3, 0, boundary_positions },
-    { "boundary_normal", "1", OF_BOUNDARIES, 'd', 3, 0, boundary_normals },
-    { "boundary_velocity", "m s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_velocities },
-    { "boundary_angular_velocity", "rad s-1", OF_BOUNDARIES, 'd', 3, 0, boundary_spins },
-    { "boundary_force", "N", OF_BOUNDARIES, 'd', 3, 0, boundary_forces },
-    { "boundary_torque", "N m", OF_BOUNDARIES, 'd', 3, 0, boundary_torques },
+    { "boundary_position", "m", OF_WALLS, 'd', 3, 0, wall_positions },
+    { "boundary_normal", "1", OF_WALLS, 'd', 3, 0, wall_normals },
+    { "boundary_velocity", "m s-1", OF_WALLS, 'd', 3, 0, wall_velocities },
+    { "boundary_angular_velocity", "rad s-1", OF_WALLS, 'd', 3, 0, wall_spins },
+    { "boundary_force", "N", OF_WALLS, 'd', 3, 0, wall_forces },
+    { "boundary_torque", "N m", OF_WALLS, 'd', 3, 0, wall_torques },
     { "cell_origin", "m", OF_CELL, 'd', 1, 0, cell_origin },
     { "cell_edges", "m", OF_CELL, 'd', 3, 0, cell_edges },
     { "cell_rates", "m s-1", OF_CELL, 'd', 3, 0, cell_rates },
@@ -157,7 +157,7 @@ _Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array 
 
 static const char *column_name(int k)
 {
-    return k == BODY_kind ? "kind" : body_columns[k].name; // "species" is H5MD's word
+    return k == BODY_material ? "kind" : body_columns[k].name; // "species" is H5MD's word
 }
 
 const char *nsd_array_name(int k)
@@ -218,10 +218,10 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
         return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
     const struct read_row of_bodies = column_as_row(k < BODY_COLUMNS ? k : 0);
     const struct read_row *t = k < BODY_COLUMNS ? &of_bodies : &table[k - BODY_COLUMNS];
-    int64_t n = t->rows == OF_CONTACTS     ? r->f.contacts.n
-                : t->rows == OF_BOUNDARIES ? r->f.packing.walls
-                : t->rows == OF_CELL       ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
-                                           : r->f.packing.n;
+    int64_t n = t->rows == OF_CONTACTS ? r->f.contacts.n
+                : t->rows == OF_WALLS  ? r->f.packing.walls
+                : t->rows == OF_CELL   ? (cell_repeats(&r->f.packing.cell) ? 3 : 0)
+                                       : r->f.packing.n;
     void *data = data_of(r, t, n, failure);
     if (!data) return failure->status;
     const int64_t size = (int64_t)read_size_of(t->type);
@@ -340,13 +340,13 @@ static bool put_named(json_t *to, const struct names *names)
     for (int32_t k = 0; good && k < names->rows; k++) {
         const struct named *row = &names->row[k], *before = k ? row - 1 : NULL;
         const char *name = names->text[row->name];
-        if (before && before->name == row->name && before->boundary == row->boundary) continue;
+        if (before && before->name == row->name && before->wall == row->wall) continue;
         json_t *walls = json_object_get(to, name);
         if (!walls) {
             good = !json_object_set_new(to, name, json_array());
             walls = json_object_get(to, name);
         }
-        good = good && !json_array_append_new(walls, json_integer(row->boundary));
+        good = good && !json_array_append_new(walls, json_integer(row->wall));
     }
     return good;
 }
@@ -364,16 +364,17 @@ static bool put_groups(json_t *to, const struct packing *p)
 /* NULL: no memory */
 static json_t *names_of(const struct packing *p)
 {
-    json_t *kinds = json_array(), *shapes = json_array(), *walls = json_array(),
+    json_t *materials = json_array(), *shapes = json_array(), *walls = json_array(),
            *groups = json_array(), *named = json_object();
-    bool good = kinds && shapes && walls && groups && named;
-    for (int32_t k = 0; good && k < p->kinds; k++) good = read_put_name(kinds, p->kind_name[k]);
+    bool good = materials && shapes && walls && groups && named;
+    for (int32_t k = 0; good && k < p->materials; k++)
+        good = read_put_name(materials, p->material_name[k]);
     for (int32_t k = 0; good && k < p->shapes.n; k++)
         good = read_put_name(shapes, p->shapes.s[k].name);
     for (int32_t w = 0; good && w < p->walls; w++)
         good = read_put_name(walls, names_of_wall(&p->names, w));
     good = good && put_groups(groups, p) && put_named(named, &p->names);
-    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", kinds, "shapes", shapes,
+    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", materials, "shapes", shapes,
                             "walls", walls, "groups", groups, "named", named);
     if (good) return all;
     json_decref(all);

@@ -124,8 +124,8 @@ static int set_all(const json_t *j, struct control *acts, enum reply_part part, 
     return 0;
 }
 
-static int set_boundary(const json_t *j, struct control *acts, struct packing *p, int64_t wall,
-                        struct failure *failure)
+static int set_wall(const json_t *j, struct control *acts, struct packing *p, int64_t wall,
+                    struct failure *failure)
 {
     const char *key;
     json_t *x;
@@ -148,8 +148,8 @@ static int set_boundary(const json_t *j, struct control *acts, struct packing *p
     return 0;
 }
 
-static int set_boundaries(const json_t *j, struct control *acts, struct packing *p,
-                          struct failure *failure)
+static int set_walls(const json_t *j, struct control *acts, struct packing *p,
+                     struct failure *failure)
 {
     const char *key;
     json_t *x;
@@ -159,14 +159,14 @@ static int set_boundaries(const json_t *j, struct control *acts, struct packing 
         int64_t wall = reply_whole(key); // a name is no number
         for (int32_t k = 0; name >= 0 && k < p->names.rows && !failure->status; k++) {
             const struct named *r = &p->names.row[k];
-            if (r->name == name && !r->count) set_boundary(x, acts, p, wall = r->boundary, failure);
+            if (r->name == name && !r->count) set_wall(x, acts, p, wall = r->wall, failure);
         }
         if (failure->status || (name >= 0 && wall >= 0)) continue;
         if (wall < 0)
             failure_set(failure, EX_DATAERR, "the answer's boundaries: no wall is named '%.60s'",
                         key);
         else
-            set_boundary(x, acts, p, wall, failure);
+            set_wall(x, acts, p, wall, failure);
     }
     return failure->status;
 }
@@ -242,12 +242,12 @@ static bool reply_copy(void *to, const json_t *answer, const char *key, const vo
 static int reply_remember(struct reply_before *b, const json_t *answer, const struct control *acts,
                           const struct packing *p, struct failure *failure)
 {
-    const size_t n = (size_t)p->n, walls = (size_t)p->walls, kinds = (size_t)p->kinds;
+    const size_t n = (size_t)p->n, walls = (size_t)p->walls, materials = (size_t)p->materials;
     *b = (struct reply_before){ .g = p->g, .steered = p->outside.steered };
     if (reply_copy(&b->v, answer, "velocities", p->v, n * sizeof *b->v) &&
         reply_copy(&b->w, answer, "angular_velocities", p->w, n * sizeof *b->w) &&
         reply_copy(&b->wall, answer, "boundaries", p->wall, walls * sizeof *b->wall) &&
-        reply_copy(&b->mu, answer, "friction", p->mu, kinds * kinds * sizeof *b->mu))
+        reply_copy(&b->mu, answer, "friction", p->mu, materials * materials * sizeof *b->mu))
         return control_copy(&b->acts, acts, p->walls, failure);
     return failure_set(failure, EX_SOFTWARE, "no memory for an answer");
 }
@@ -258,7 +258,7 @@ static void reply_restore(struct reply_before *b, struct control *acts, struct p
     if (b->v) memcpy(p->v, b->v, (size_t)p->n * sizeof *b->v);
     if (b->w) memcpy(p->w, b->w, (size_t)p->n * sizeof *b->w);
     if (b->wall) memcpy(p->wall, b->wall, (size_t)p->walls * sizeof *b->wall);
-    if (b->mu) memcpy(p->mu, b->mu, (size_t)(p->kinds * p->kinds) * sizeof *b->mu);
+    if (b->mu) memcpy(p->mu, b->mu, (size_t)(p->materials * p->materials) * sizeof *b->mu);
     p->g = b->g, p->outside.steered = b->steered;
     control_free(acts);
     *acts = b->acts, b->acts = none;
@@ -269,7 +269,7 @@ static int reply_apply_keys(const json_t *answer, struct control *acts, struct p
                             struct failure *failure)
 {
     vec3 g;
-    const json_t *boundaries = json_object_get(answer, "boundaries");
+    const json_t *walls = json_object_get(answer, "boundaries");
     const json_t *gravity = json_object_get(answer, "gravity");
     const json_t *friction = json_object_get(answer, "friction");
     bool forces = json_object_get(answer, "forces") || json_object_get(answer, "torques");
@@ -278,7 +278,7 @@ static int reply_apply_keys(const json_t *answer, struct control *acts, struct p
     for (int k = 0; k < PARTS; k++)
         if (set_all(json_object_get(answer, known[k].key), acts, (enum reply_part)k, p, failure))
             return failure->status;
-    if (boundaries && set_boundaries(boundaries, acts, p, failure)) return failure->status;
+    if (walls && set_walls(walls, acts, p, failure)) return failure->status;
     if (gravity && !vector(gravity, p->dim, &g))
         return reply_wrong(failure, "gravity is a vector [x, y, z]");
     if (gravity && control_gravity(p, g, failure)) return failure->status;

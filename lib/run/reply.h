@@ -18,7 +18,7 @@
 
 /* The JSON of a line, to be freed; NULL: it is none of these (EX_DATAERR), or no memory */
 json_t *reply_parse(const char *line, size_t length, struct failure *failure);
-/* Has it the keys of an answer, with values of their types? Whether the bodies, boundaries and kinds exist that it names is
+/* Has it the keys of an answer, with values of their types? Whether the bodies, walls and materials exist that it names is
    seen when it is applied. Returns 0 or EX_DATAERR. */
 int reply_check(const json_t *answer, struct failure *failure);
 /* Applies it as the packing's next step is to begin. *stop: the run is to end before the step, and nothing else is applied.

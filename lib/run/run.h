@@ -39,7 +39,7 @@ struct nsd_run {
     bool other_bodies; /* than when the trajectory was begun */
     bool noted;
     struct writer *out; /* a trajectory */
-    bool rests;         /* in whose first frame no boundary could move */
+    bool rests;         /* in whose first frame no wall could move */
     char *path;         /* its */
 
     void *made[MADE_MOST]; /* arrays by their place in the table of names; or NULL */

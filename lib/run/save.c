@@ -95,10 +95,10 @@ int nsd_save(struct nsd_run *r, const char *path)
     return failure->status ? back(r, was) : 0;
 }
 
-/* A trajectory whose boundaries rest has no place for their motion. */
+/* A trajectory whose walls rest has no place for their motion. */
 static int check_motion(const struct nsd_run *r, struct failure *failure)
 {
-    if (!r->rests || !boundary_tables_move(&r->f.packing)) return 0;
+    if (!r->rests || !wall_tables_move(&r->f.packing)) return 0;
     return failure_set(failure, NSD_DATA,
                        "%.100s: a boundary moves, and in its first frame none could: "
                        "nsd_finish() ends it, and another one may begin",
@@ -142,7 +142,8 @@ static int check_first(const struct packing *first, const struct packing *p, con
                        struct failure *failure)
 {
     bool same = !first->scene == !p->scene && (!p->scene || !strcmp(first->scene, p->scene));
-    if (!same || first->seed != p->seed || first->walls != p->walls || first->kinds != p->kinds)
+    if (!same || first->seed != p->seed || first->walls != p->walls ||
+        first->materials != p->materials)
         return failure_set(failure, NSD_DATA,
                            "%.200s: belongs to another scene: remove it to begin again", path);
     return 0;
@@ -170,7 +171,7 @@ static int copy_frames(struct nsd_run *r, struct reader *in, struct failure *fai
         if (failure->status ||
             (first && (check_first(q, p, r->path, failure) || note_again(r, &f, failure))))
             break;
-        if (first) r->rests = !boundary_tables_move(q) && !q->outside.steered;
+        if (first) r->rests = !wall_tables_move(q) && !q->outside.steered;
         first = false;
         if (writer_frame(r->out, &f, failure)) break;
     }
@@ -209,7 +210,7 @@ static int first_frame(struct nsd_run *r, const char *path, struct failure *fail
     const struct packing *p = &r->f.packing;
     if (!(r->path = strdup(path)))
         return failure_set(failure, NSD_SOFTWARE, "no memory for a path");
-    r->rests = !boundary_tables_move(p) && !p->outside.steered;
+    r->rests = !wall_tables_move(p) && !p->outside.steered;
     r->other_bodies = false;
     const struct frame f = frame_of(r);
     process_lock();

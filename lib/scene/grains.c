@@ -32,7 +32,7 @@ quat orientation_draw(const struct scene *s, const struct scene_form *form, gsl_
 
 struct grain grain_at(vec3 x, double r)
 {
-    return (struct grain){ .x = x, .q = { 1, 0, 0, 0 }, .r = r, .kind = -1, .id = -1 };
+    return (struct grain){ .x = x, .q = { 1, 0, 0, 0 }, .r = r, .material = -1, .id = -1 };
 }
 
 int grains_add(struct grains *t, const struct grain *g, struct failure *failure)
@@ -53,27 +53,27 @@ void grains_free(struct grains *t)
     *t = (struct grains){ 0 };
 }
 
-/* The scene's kind of this name; -1 where it has none */
-static int32_t grains_kind_named(const struct scene *s, const char *name)
+/* The scene's material of this name; -1 where it has none */
+static int32_t grains_material_named(const struct scene *s, const char *name)
 {
-    for (int32_t k = 0; k < s->kinds; k++)
-        if (!strcmp(s->kind[k].name, name)) return k;
+    for (int32_t k = 0; k < s->materials; k++)
+        if (!strcmp(s->material[k].name, name)) return k;
     return -1;
 }
 
-int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k)
+int32_t grains_material(const struct scene *s, const struct scene_bodies *b, int32_t k)
 {
     const struct packing *p = b->document;
-    if (!b->foreign) return grains_kind_named(s, p->kind_name[k]);
+    if (!b->foreign) return grains_material_named(s, p->material_name[k]);
     for (int32_t i = 0; i < b->types; i++)
-        if (!strcmp(b->type[i].name, p->kind_name[k])) return b->type[i].kind;
-    int32_t kind = grains_kind_named(s, p->kind_name[k]);
-    return kind < 0 && p->kinds == 1 && !b->types ? 0 : kind;
+        if (!strcmp(b->type[i].name, p->material_name[k])) return b->type[i].material;
+    int32_t material = grains_material_named(s, p->material_name[k]);
+    return material < 0 && p->materials == 1 && !b->types ? 0 : material;
 }
 
-/* kind[k]: the scene's kind for kind k of the document */
-static int grains_add_body(struct grains *out, const struct scene_bodies *b, const int32_t *kind,
-                           int64_t i, struct failure *failure)
+/* material[k]: the scene's material for material k of the document */
+static int grains_add_body(struct grains *out, const struct scene_bodies *b,
+                           const int32_t *material, int64_t i, struct failure *failure)
 {
     const struct packing *p = b->document;
     struct grain g = grain_at(p->x[i], p->radius[i]);
@@ -84,16 +84,16 @@ static int grains_add_body(struct grains *out, const struct scene_bodies *b, con
     if (!b->at_rest) g.v = p->v[i], g.w = p->w[i];
     g.weighs = true, g.mass = p->mass[i], g.inertia = p->inertia[i], g.fixed = p->mass[i] == 0;
     if (b->foreign && g.mass == 0) g.weighs = g.fixed = false;
-    g.kind = b->has_kind ? b->kind : kind[p->kind[i]];
-    if (g.kind < 0 && b->foreign)
+    g.material = b->has_material ? b->material : material[p->material[i]];
+    if (g.material < 0 && b->foreign)
         return failure_set(
             failure, EX_DATAERR,
             "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}", b->file,
-            (long long)i, p->kind_name[p->kind[i]], p->kind_name[p->kind[i]]);
-    if (g.kind < 0)
+            (long long)i, p->material_name[p->material[i]], p->material_name[p->material[i]]);
+    if (g.material < 0)
         return failure_set(failure, EX_DATAERR,
                            "%s: body %lld is of kind \"%s\": name it under \"kinds\"", b->file,
-                           (long long)i, p->kind_name[p->kind[i]]);
+                           (long long)i, p->material_name[p->material[i]]);
     return grains_add(out, &g, failure);
 }
 
@@ -105,12 +105,12 @@ int grains_of_document(struct grains *out, const struct scene *s, const struct s
     if (b->document->dim != s->dim)
         return failure_set(failure, EX_DATAERR, "%s: its dim is %d, and the scene's is %d", b->file,
                            b->document->dim, s->dim);
-    int32_t *kind = calloc((size_t)b->document->kinds + 1, sizeof *kind);
-    if (!kind) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
-    for (int32_t k = 0; k < b->document->kinds; k++) kind[k] = grains_kind(s, b, k);
+    int32_t *material = calloc((size_t)b->document->materials + 1, sizeof *material);
+    if (!material) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
+    for (int32_t k = 0; k < b->document->materials; k++) material[k] = grains_material(s, b, k);
     for (int64_t i = 0; i < b->document->n && !failure->status; i++)
-        grains_add_body(out, b, kind, i, failure);
-    free(kind);
+        grains_add_body(out, b, material, i, failure);
+    free(material);
     return failure->status;
 }
 
@@ -143,7 +143,7 @@ enum heading {
     QY,
     QZ,
     ID,
-    KIND,
+    MATERIAL,
     FIXED,
     NAMES
 };
@@ -263,12 +263,12 @@ static int read_number(const struct grains_table *t, enum heading c, const char 
     return 0;
 }
 
-static int read_kind(const struct grains_table *t, const char *word, int32_t *kind,
-                     struct failure *failure)
+static int grains_read_material(const struct grains_table *t, const char *word, int32_t *material,
+                                struct failure *failure)
 {
-    for (int32_t k = 0; k < t->scene->kinds; k++) {
-        if (strcmp(t->scene->kind[k].name, word) != 0) continue;
-        *kind = k;
+    for (int32_t k = 0; k < t->scene->materials; k++) {
+        if (strcmp(t->scene->material[k].name, word) != 0) continue;
+        *material = k;
         return 0;
     }
     return grains_fault(t, failure, "the scene names no kind", word);
@@ -297,7 +297,7 @@ static int read_line(struct grains_table *t, char *line, struct grains *out,
                      struct failure *failure)
 {
     double x[NAMES] = { 0 };
-    int32_t kind = -1;
+    int32_t material = -1;
     char *word, *at = line, *comment = strchr(line, '#');
     struct grain g;
     int n = 0;
@@ -305,8 +305,8 @@ static int read_line(struct grains_table *t, char *line, struct grains *out,
     for (; (word = next_word(&at)); n++) {
         if (n == t->n) break;
         enum heading c = t->column[n];
-        if (c == KIND ? read_kind(t, word, &kind, failure)
-                      : read_number(t, c, word, &x[c], failure))
+        if (c == MATERIAL ? grains_read_material(t, word, &material, failure)
+                          : read_number(t, c, word, &x[c], failure))
             return failure->status;
     }
     if (!n) return 0;
@@ -318,7 +318,7 @@ static int read_line(struct grains_table *t, char *line, struct grains *out,
         return grains_fault(
             t, failure, "too many bodies for a pipe (endless?): put the table into a file", NULL);
     if (make_grain(t, x, &g, failure)) return failure->status;
-    g.kind = kind;
+    g.material = material;
     return grains_add(out, &g, failure);
 }
 

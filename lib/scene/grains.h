@@ -22,7 +22,7 @@ struct grain {
     double r;                         /* m */
     double density;                   /* kg/m^3, in the plane kg/m^2; 0: not said */
     double mass, inertia;             /* kg, kg m^2; 0: not said */
-    int32_t kind, id;                 /* -1: not said */
+    int32_t material, id;             /* -1: not said */
     int32_t shape;                    /* of its document's; 0: a ball */
     int32_t group;                    /* 1 + row of its document's names; 0: none */
     bool has_v, has_w, fixed, weighs; /* weighs: mass and inertia are said, even where they are 0 */
@@ -44,10 +44,10 @@ void grains_free(struct grains *list);
    EX_DATAERR with file:line, EX_NOINPUT or EX_SOFTWARE. */
 int grains_of_table(struct grains *out, const struct scene *s, const char *dir, const char *name,
                     struct failure *failure);
-/* The scene's kind for kind k of a document: of its name; of another program's file as "types" has it, else of its
+/* The scene's material for material k of a document: of its name; of another program's file as "types" has it, else of its
    name, else the first, where it has just one. -1: none */
-int32_t grains_kind(const struct scene *s, const struct scene_bodies *b, int32_t k);
-/* scene/grains.c: those of a document's frame: EX_DATAERR where a kind is none of the scene's. */
+int32_t grains_material(const struct scene *s, const struct scene_bodies *b, int32_t k);
+/* scene/grains.c: those of a document's frame: EX_DATAERR where a material is none of the scene's. */
 int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
                        struct failure *failure);
 

@@ -49,7 +49,7 @@ int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
                            "inlets or outlets, but no scene that describes them");
     if (scene_parse(&f->scene, p->scene, strlen(p->scene), NULL, failure)) return failure->status;
     if (f->scene.pours == p->pours && f->scene.removals == p->removals &&
-        f->scene.kinds == p->kinds && f->scene.dim == p->dim && same_shapes(&f->scene, p) &&
+        f->scene.materials == p->materials && f->scene.dim == p->dim && same_shapes(&f->scene, p) &&
         !find_groups(&f->scene, p))
         return 0;
     flow_free(f);
@@ -90,7 +90,7 @@ static int inlet_by_number(const void *a, const void *b)
 static bool takes(const struct scene_removal *r, const struct packing *p, int64_t i, vec3 x)
 {
     if (p->t < r->from || p->t > r->until) return false;
-    if (r->kind >= 0 && p->kind[i] != r->kind) return false;
+    if (r->material >= 0 && p->material[i] != r->material) return false;
     if (r->group && (!p->group || p->group[i] != r->group)) return false;
     if (r->ids && !bsearch(&p->id[i], r->id, (size_t)r->ids, sizeof *r->id, inlet_by_number))
         return false;
@@ -220,7 +220,7 @@ static vec3 inlet_draw_place(const struct scene_pour *o, int dim, gsl_rng *rng)
 /* The bodies that a grain in the opening may meet, for whom nothing else moves, and the grain behind
    them: it is the only one with a mass, so that only its contacts are found. */
 struct crowd {
-    struct packing p; /* shares walls, kinds and all else but the bodies */
+    struct packing p; /* shares walls, materials and all else but the bodies */
     int64_t *body;    /* [p.n - 1] */
     vec3 *now;        /* [p.n] m: positions, and the predicted ones */
     vec3 *then;
@@ -228,7 +228,7 @@ struct crowd {
 
 static void crowd_free(struct crowd *c)
 {
-    free(c->p.radius), free(c->p.mass), free(c->p.kind), free(c->p.v);
+    free(c->p.radius), free(c->p.mass), free(c->p.material), free(c->p.v);
     free(c->now), free(c->then), free(c->body), free(c->p.q), free(c->p.shape);
 }
 
@@ -276,13 +276,13 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
     *c = (struct crowd){ .p = *p };
     c->p.n = 0;
     c->p.radius = calloc(room, sizeof *c->p.radius), c->p.mass = calloc(room, sizeof *c->p.mass);
-    c->p.kind = calloc(room, sizeof *c->p.kind), c->p.v = calloc(room, sizeof *c->p.v);
+    c->p.material = calloc(room, sizeof *c->p.material), c->p.v = calloc(room, sizeof *c->p.v);
     c->now = calloc(room, sizeof *c->now), c->then = calloc(room, sizeof *c->then);
     c->body = calloc(room, sizeof *c->body);
     c->p.q = calloc(room, sizeof *c->p.q);
     c->p.shape = p->shape ? calloc(room, sizeof *c->p.shape) : NULL;
-    if (!c->p.radius || !c->p.mass || !c->p.kind || !c->p.v || !c->now || !c->then || !c->body ||
-        !c->p.q || (p->shape && !c->p.shape))
+    if (!c->p.radius || !c->p.mass || !c->p.material || !c->p.v || !c->now || !c->then ||
+        !c->body || !c->p.q || (p->shape && !c->p.shape))
         return failure_set(failure, EX_SOFTWARE, "no memory to pour");
     vec3 inverse[3];
     cell_inverse(p->cell.edge, inverse);
@@ -290,7 +290,7 @@ static int crowd_gather(struct crowd *c, const struct packing *p, const struct s
         if (!may_meet(o, p, inverse, i)) continue;
         int64_t k = c->p.n++;
         c->body[k] = i;
-        c->p.radius[k] = p->radius[i], c->p.kind[k] = p->kind[i], c->p.q[k] = p->q[i];
+        c->p.radius[k] = p->radius[i], c->p.material[k] = p->material[i], c->p.q[k] = p->q[i];
         if (p->shape) c->p.shape[k] = p->shape[i];
         c->now[k] = p->x[i], c->then[k] = packing_predict(p, i);
     }
@@ -312,7 +312,7 @@ static bool inlet_is_free(struct crowd *c, const struct scene_pour *o, const str
     int64_t last = c->p.n - 1;
     struct contacts met = { 0 };
     double ahead = step_ahead(&c->p);
-    c->p.radius[last] = g->r, c->p.mass[last] = 1, c->p.kind[last] = o->kind;
+    c->p.radius[last] = g->r, c->p.mass[last] = 1, c->p.material[last] = o->material;
     c->p.q[last] = g->q;
     if (c->p.shape) c->p.shape[last] = o->form.shape;
     c->now[last] = g->x, c->then[last] = v3_axpy(g->x, ahead, o->v);
@@ -340,7 +340,7 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
         return failure_set(failure, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which,
                            r);
     p->x[i] = g->x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
-    p->kind[i] = o->kind, p->id[i] = (int32_t)id, p->q[i] = g->q;
+    p->material[i] = o->material, p->id[i] = (int32_t)id, p->q[i] = g->q;
     if (p->shape) p->shape[i] = o->form.shape;
     if (p->group) p->group[i] = o->group;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];

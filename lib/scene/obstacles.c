@@ -83,17 +83,17 @@ static bool is_free_side(const struct obstacles *all, const struct obstacle *o, 
 {
     const struct wall *w = &all->p->wall[o->wall];
     struct touch t;
-    if (w->shape == BOUNDARY_MESH) return is_within(&o->surface, all->p->dim, c);
-    return !boundary_nearest(w, all->p->dim, c, INFINITY, &t) || t.distance >= 0;
+    if (w->shape == WALL_MESH) return is_within(&o->surface, all->p->dim, c);
+    return !wall_nearest(w, all->p->dim, c, INFINITY, &t) || t.distance >= 0;
 }
 
 static bool has_sides(const struct packing *p, const struct obstacle *o)
 {
     const struct wall *w = &p->wall[o->wall];
-    if (w->shape == BOUNDARY_MESH) return is_closed(p, w, &o->surface);
+    if (w->shape == WALL_MESH) return is_closed(p, w, &o->surface);
     const bool round =
-        w->shape == BOUNDARY_CYLINDER || w->shape == BOUNDARY_CONE || w->shape == BOUNDARY_SPHERE;
-    return w->shape == BOUNDARY_PLANE || (round && w->side != BOUNDARY_BOTH);
+        w->shape == WALL_CYLINDER || w->shape == WALL_CONE || w->shape == WALL_SPHERE;
+    return w->shape == WALL_PLANE || (round && w->side != WALL_BOTH);
 }
 
 /* Does a ball touch it, and where? One of a side that the box does not reach only where its surface is */
@@ -102,16 +102,16 @@ static bool obstacles_touches(const struct obstacles *all, const struct obstacle
 {
     const struct wall *w = &all->p->wall[o->wall];
     struct touch t;
-    if (w->shape == BOUNDARY_MESH) return surface_is_at(&o->surface, c, NULL, r);
-    return boundary_nearest(w, all->p->dim, c, r, &t) && t.distance < r;
+    if (w->shape == WALL_MESH) return surface_is_at(&o->surface, c, NULL, r);
+    return wall_nearest(w, all->p->dim, c, r, &t) && t.distance < r;
 }
 
 static int find_touches(const struct obstacles *all, const struct obstacle *o, vec3 c, double r,
                         struct touch touch[TOUCHES_MOST])
 {
     const struct wall *w = &all->p->wall[o->wall];
-    if (w->shape == BOUNDARY_MESH) return surface_touches(&o->surface, c, r, touch);
-    return boundary_nearest(w, all->p->dim, c, r, &touch[0]) && touch[0].distance < r;
+    if (w->shape == WALL_MESH) return surface_touches(&o->surface, c, r, touch);
+    return wall_nearest(w, all->p->dim, c, r, &touch[0]) && touch[0].distance < r;
 }
 
 bool obstacles_meet(const struct obstacles *all, vec3 x, double r)
@@ -189,7 +189,7 @@ static void obstacles_judge_sides(struct obstacles *all, const struct scene_box 
                            obstacles_place_of(all, o, obstacles_sample(box, cell, all->p->dim, i)))
                   ? &o->has_free
                   : &o->has_other) = true;
-        const bool mesh = all->p->wall[o->wall].shape == BOUNDARY_MESH;
+        const bool mesh = all->p->wall[o->wall].shape == WALL_MESH;
         o->hollow = !mesh || !o->has_other || (!cell && contains(all, o, box));
         o->sided = o->sided && o->has_free && o->has_other;
         any = any || o->sided;
@@ -217,8 +217,8 @@ int obstacles_init(struct obstacles *all, const struct packing *p, const struct 
         if (!wall_there(wall, p->t)) continue;
         struct obstacle *o = &all->o[all->n++];
         o->wall = w, o->pose = wall_pose(p, wall, p->t);
-        if (wall->shape == BOUNDARY_MESH && surface_init(&o->surface, &p->mesh, wall->first_element,
-                                                         wall->elements, wall->weld, failure))
+        if (wall->shape == WALL_MESH && surface_init(&o->surface, &p->mesh, wall->first_element,
+                                                     wall->elements, wall->weld, failure))
             return failure->status;
         o->surface.seen = &all->seen, o->surface.seen_most = OBSTACLES_SEEN;
         o->sided = has_sides(p, o);

@@ -7,7 +7,7 @@
 
 void scene_free(struct scene *s)
 {
-    for (int32_t k = 0; k < s->kinds; k++) free(s->kind[k].name);
+    for (int32_t k = 0; k < s->materials; k++) free(s->material[k].name);
     for (int64_t i = 0; i < s->groups; i++) {
         struct scene_bodies *b = &s->bodies[i];
         scene_size_free(&b->size);
@@ -26,7 +26,8 @@ void scene_free(struct scene *s)
     for (int32_t k = 0; k < s->meshes; k++) free(s->mesh_file[k].file);
     for (int32_t k = 0; k < s->fits; k++) free(s->fit[k].shape);
     free(s->mesh_file), free(s->fit), free(s->part);
-    free(s->kind), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item), free(s->text);
+    free(s->material), free(s->law), free(s->bodies), free(s->wall), free(s->wall_item),
+        free(s->text);
     *s = (struct scene){ 0 };
 }
 

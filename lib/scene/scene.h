@@ -22,7 +22,7 @@
 
 #include <stddef.h>
 
-struct scene_kind {
+struct scene_material {
     char *name;
     double density; /* kg/m^3, in the plane kg/m^2 */
 };
@@ -61,12 +61,12 @@ struct scene_bodies {
     bool at_rest;  /* SCENE_DOCUMENT: without its velocities */
     bool foreign;  /* SCENE_DOCUMENT: the file is another program's, and a mass of 0 is none */
     bool has_repeats, repeats[3];
-    int32_t types; /* kinds that its types are */
+    int32_t types; /* materials that its types are */
     struct scene_type {
         char *name; /* as the file counts it: "1" */
-        int32_t kind;
-    } * type;                                            /* [types] */
-    bool has_v, has_w, has_kind, has_density, has_fixed; /* given for all bodies of the group */
+        int32_t material;
+    } * type;                                                /* [types] */
+    bool has_v, has_w, has_material, has_density, has_fixed; /* given for all bodies of the group */
     /* SCENE_DOCUMENT: the frame, which whoever can read documents puts here before the scene is
        built; owned */
     struct packing *document;
@@ -77,7 +77,7 @@ struct scene_bodies {
     vec3 v, w;                       /* m/s, rad/s */
     double density, mass;            /* kg/m^3 or kg/m^2; kg a body, 0: from the density */
     bool fixed;
-    int32_t kind;
+    int32_t material;
     int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
 };
@@ -95,7 +95,7 @@ struct scene_pour {
     struct scene_size size;
     vec3 v, w;            /* m/s, rad/s */
     double density, mass; /* as of struct scene_bodies */
-    int32_t kind;
+    int32_t material;
     int32_t group; /* 1 + row of the scene's names; 0: it has no name */
     struct scene_form form;
     struct flow_count poured; /* what it has brought before the scene begins */
@@ -106,7 +106,7 @@ struct scene_removal {
     enum scene_region { REGION_OUTSIDE, REGION_INSIDE, REGION_BELOW, REGION_ALL } region;
     struct scene_box box;
     vec3 point, normal; /* m; unit vector: REGION_BELOW, on the side away from the normal */
-    int32_t kind;       /* only bodies of this kind; -1: of all */
+    int32_t material;   /* only bodies of this material; -1: of all */
     int32_t ids;        /* only bodies with these numbers; 0: all */
     int32_t *id;        /* [ids], rising */
     int32_t group;      /* only bodies of this group, 1 + row of the scene's names; 0: of all */
@@ -114,7 +114,7 @@ struct scene_removal {
     struct flow_count removed; /* what it has taken before the scene begins */
 };
 
-/* A boundary whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the
+/* A wall whose triangles are in a file: whoever can read it adds them, with mesh_grow(), before the
    scene is built. */
 struct scene_mesh {
     int32_t wall;
@@ -129,7 +129,7 @@ struct scene_mesh {
 struct scene_part {
     int32_t wall;        /* that they are of */
     int64_t first, last; /* among its elements */
-    int32_t kind;
+    int32_t material;
     vec3 belt; /* m/s */
 };
 
@@ -156,9 +156,9 @@ struct scene {
     uint64_t seed;
     bool overlap;
 
-    int32_t kinds;
-    struct scene_kind *kind; /* [kinds] 0 is "ball", 1 is "wall" */
-    struct scene_law *law;   /* [kinds * kinds], symmetric */
+    int32_t materials;
+    struct scene_material *material; /* [materials] 0 is "ball", 1 is "wall" */
+    struct scene_law *law;           /* [materials * materials], symmetric */
 
     int64_t groups;
     struct scene_bodies *bodies; /* [groups] */
@@ -192,7 +192,7 @@ struct scene {
 
     /* while it is parsed: */
     const char *title;
-    double density;          /* kg/m^3: of kinds that have none of their own */
+    double density;          /* kg/m^3: of materials that have none of their own */
     struct scene_law common; /* of pairs that have none of their own */
     bool boxed;              /* a wall is a box: */
     struct scene_box box;    /* the first of them */

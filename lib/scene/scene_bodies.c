@@ -51,7 +51,7 @@ static int fill_cell(jnode o, const struct scene_cell *of, struct scene_bodies *
 static const struct key group_key[] = {
     { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
     { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
-    { "kind", &key_kind, AT(kind), "-", "\"ball\"", "\"steel\"", "Kind of material." },
+    { "kind", &key_material, AT(material), "-", "\"ball\"", "\"steel\"", "Kind of material." },
     { "density", &key_positive, AT(density), "kg/m^3", "of the kind", "2600",
       "Density; in 2D in kg/m^2." },
     { "mass", &key_positive, AT(mass), "kg", "by density", "1e-3", "Mass, instead of density.",
@@ -68,9 +68,9 @@ static int finish_group(jnode o, struct scene *s, void *out)
 {
     struct scene_bodies *b = out;
     b->has_v = keys_has(&o, "v"), b->has_w = keys_has(&o, "w");
-    b->has_kind = keys_has(&o, "kind"), b->has_fixed = keys_has(&o, "fixed");
+    b->has_material = keys_has(&o, "kind"), b->has_fixed = keys_has(&o, "fixed");
     b->has_density = keys_has(&o, "density");
-    if (!b->has_density) b->density = s->kind[b->kind].density;
+    if (!b->has_density) b->density = s->material[b->material].density;
     return 0;
 }
 
@@ -254,7 +254,7 @@ static int finish_document(jnode o, struct scene *s, void *out)
 
 static const struct keys document_keys = { "document", document_key, .finish = finish_document };
 
-/* "types": which kind each type of the file is */
+/* "types": which material each type of the file is */
 static int read_types(jnode o, struct scene *s, void *out)
 {
     struct scene_bodies *b = out;
@@ -268,7 +268,7 @@ static int read_types(jnode o, struct scene *s, void *out)
         if (!strcmp(name, "comment")) continue;
         if (!*name || strspn(name, "0123456789") != strlen(name))
             return json_node_fault(n, "types are whole numbers");
-        if (key_kind.read(n, NULL, s, &b->type[b->types].kind)) return 1;
+        if (key_material.read(n, NULL, s, &b->type[b->types].material)) return 1;
         if (!(b->type[b->types++].name = strdup(name)))
             return failure_set(o.in->failure, EX_SOFTWARE, "no memory for the types of a file");
     }

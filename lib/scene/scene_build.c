@@ -34,7 +34,7 @@ static int scene_build_set_body(struct packing *p, int64_t i, const struct scene
     p->x[i] = x, p->v[i] = b->v, p->w[i] = b->w;
     p->radius[i] = r;
     p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
-    p->kind[i] = b->kind;
+    p->material[i] = b->material;
     if (p->shape) p->shape[i] = b->form.shape;
     if (p->group) p->group[i] = b->group;
     return 0;
@@ -104,17 +104,18 @@ static int scene_build_find_rows(struct scene_build_rows *to, const struct packi
     return 0;
 }
 
-/* What is said of a grain comes before what its kind is; what its group says, before both. */
+/* What is said of a grain comes before what its material is; what its group says, before both. */
 static int set_grain(struct packing *p, int64_t i, const struct scene *s,
                      const struct scene_bodies *b, const struct grain *g,
                      const struct scene_build_rows *to, struct failure *failure)
 {
     struct scene_bodies one = *b;
-    if (!b->has_kind && g->kind >= 0) one.kind = g->kind;
+    if (!b->has_material && g->material >= 0) one.material = g->material;
     if (!b->has_v && g->has_v) one.v = g->v;
     if (!b->has_w && g->has_w) one.w = g->w;
     if (!b->has_fixed) one.fixed = g->fixed;
-    if (!b->has_density) one.density = g->density > 0 ? g->density : s->kind[one.kind].density;
+    if (!b->has_density)
+        one.density = g->density > 0 ? g->density : s->material[one.material].density;
     if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
     if (g->shape && to->shape) one.form.shape = to->shape[g->shape];
     if (g->group && to->group && !b->group) one.group = to->group[g->group];
@@ -295,12 +296,12 @@ static int check_removals(const struct scene *s, const bool *of_bodies, struct f
     return 0;
 }
 
-/* Walls, groups of bodies and kinds have names of their own. */
+/* Walls, groups of bodies and materials have names of their own. */
 static int check_names(const struct packing *p, const struct scene *s, struct failure *failure)
 {
     for (int32_t k = 0; k < p->names.n; k++)
-        for (int32_t kind = 0; kind < p->kinds; kind++)
-            if (!strcmp(p->names.text[k], p->kind_name[kind]))
+        for (int32_t material = 0; material < p->materials; material++)
+            if (!strcmp(p->names.text[k], p->material_name[material]))
                 return failure_set(failure, EX_DATAERR,
                                    "\"%s\" is a kind: walls and groups have other names",
                                    p->names.text[k]);
@@ -316,10 +317,10 @@ static int check_names(const struct packing *p, const struct scene *s, struct fa
     return check_removals(s, of_bodies, failure);
 }
 
-/* Has any pair of kinds a law beyond friction and restitution? */
+/* Has any pair of materials a law beyond friction and restitution? */
 static bool goes_beyond(const struct scene *s)
 {
-    for (int32_t k = 0; k < s->kinds * s->kinds; k++)
+    for (int32_t k = 0; k < s->materials * s->materials; k++)
         if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
             s->law[k].pair_law.impact > 0 || pair_law_springs(&s->law[k].pair_law))
             return true;
@@ -332,7 +333,8 @@ static int set_parameters(struct packing *p, const struct scene *s, struct failu
     if (packing_alloc_passages(p, s->pours, s->removals, failure) || set_shapes(p, s, failure) ||
         set_names(p, s, failure))
         return failure->status;
-    if (packing_alloc_walls(p, s->walls, failure) || packing_alloc_kinds(p, s->kinds, failure))
+    if (packing_alloc_walls(p, s->walls, failure) ||
+        packing_alloc_materials(p, s->materials, failure))
         return failure->status;
     for (int32_t i = 0; i < s->walls; i++) p->wall[i] = s->wall[i];
     if (drives_copy(&p->drives, &s->drives, failure) ||
@@ -342,17 +344,18 @@ static int set_parameters(struct packing *p, const struct scene *s, struct failu
     if (s->cell.given && !s->cell.goes_on &&
         (cell_copy(&p->cell, &s->cell.cell) || packing_alloc_images(p, failure)))
         goto fail;
-    for (int32_t k = 0; k < s->kinds; k++) {
-        free(p->kind_name[k]);
-        if (!(p->kind_name[k] = strdup(s->kind[k].name))) goto fail;
+    for (int32_t k = 0; k < s->materials; k++) {
+        free(p->material_name[k]);
+        if (!(p->material_name[k] = strdup(s->material[k].name))) goto fail;
     }
-    for (int32_t k = 0; k < s->kinds * s->kinds; k++) {
+    for (int32_t k = 0; k < s->materials * s->materials; k++) {
 #define SET(member, ...) p->member[k] = s->law[k].member;
         EVERY_PAIR_COLUMN(SET)
 #undef SET
     }
     if (goes_beyond(s) && packing_alloc_laws(p, failure)) return failure->status;
-    for (int32_t k = 0; p->law && k < s->kinds * s->kinds; k++) p->law[k] = s->law[k].pair_law;
+    for (int32_t k = 0; p->law && k < s->materials * s->materials; k++)
+        p->law[k] = s->law[k].pair_law;
     if ((p->scene = strdup(s->text))) return 0;
 fail:
     return failure_set(failure, EX_SOFTWARE, "no memory for the scene");
@@ -476,7 +479,7 @@ static int check_forces(const struct packing *p, struct failure *failure)
     if (p->n) memcpy(id, p->id, (size_t)p->n * sizeof *id);
     qsort(id, (size_t)p->n, sizeof *id, scene_build_by_number);
     for (int32_t k = 0; k < p->pulls.n && !failure->status; k++) {
-        const int32_t wanted = p->pulls.drive[k].boundary;
+        const int32_t wanted = p->pulls.drive[k].wall;
         if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, scene_build_by_number))
             failure_set(failure, EX_DATAERR,
                         "forces: no body has the id %d (nsd-info -p shows them)", wanted);
@@ -512,11 +515,11 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         *w = from->wall[i];
         w->x = v3_axpy(w->x, from->t - s->t, w->v);
         w->until -= from->t - s->t;
-        w->kind = grains_kind(s, b, from->wall[i].kind);
-        if (w->kind < 0)
+        w->material = grains_material(s, b, from->wall[i].material);
+        if (w->material < 0)
             return failure_set(failure, EX_DATAERR,
                                "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
-                               from->kind_name[from->wall[i].kind]);
+                               from->material_name[from->wall[i].material]);
     }
     if (drives_copy(&p->drives, &from->drives, failure) ||
         drives_copy(&p->pushes, &from->pushes, failure) ||
@@ -526,8 +529,7 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
     for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
     for (int32_t k = 0; k < from->names.rows; k++) {
         const struct named *r = &from->names.row[k];
-        if (names_give(&p->names, from->names.text[r->name], r->boundary, r->first, r->count,
-                       failure))
+        if (names_give(&p->names, from->names.text[r->name], r->wall, r->first, r->count, failure))
             return failure->status;
     }
     return 0;

@@ -1,4 +1,4 @@
-/* scene/scene_drives.c: the motions of a boundary, and loads in time, from their JSON. */
+/* scene/scene_drives.c: the motions of a wall, and loads in time, from their JSON. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -123,7 +123,7 @@ const struct keys scene_drive_keys = { "drive", drive_key, .finish = finish_driv
 static int scene_drives_read_drive(jnode o, struct scene *s, void *out)
 {
     struct signal x = {
-        .d = { .boundary = s->walls, .axis = v3(0, 0, 1), .from = -INFINITY, .until = INFINITY },
+        .d = { .wall = s->walls, .axis = v3(0, 0, 1), .from = -INFINITY, .until = INFINITY },
         .list = &s->drives
     };
     (void)out;
@@ -160,7 +160,7 @@ static int read_signal(jnode o, struct scene *s, struct signal *x)
 int scene_read_push(jnode o, struct scene *s, int32_t wall, struct load *l)
 {
     if (!json_is_object(o.json)) return json_node_number(o, J_ANY, &l->force);
-    struct signal x = { .d = { .boundary = wall,
+    struct signal x = { .d = { .wall = wall,
                                .turns = l->way == LOAD_TURNS,
                                .axis = l->axis,
                                .from = -INFINITY,
@@ -180,7 +180,7 @@ static int add_pull(jnode o, struct scene *s, struct drive d)
 {
     if (s->pulls.n >= PULLS_MOST) return json_node_fault(o, "more than %d forces", PULLS_MOST);
     if (add_signal(o, &s->pulls, d)) return 1;
-    for (int32_t k = s->pulls.n - 1; k > 0 && s->pulls.drive[k - 1].boundary > d.boundary; k--)
+    for (int32_t k = s->pulls.n - 1; k > 0 && s->pulls.drive[k - 1].wall > d.wall; k--)
         s->pulls.drive[k] = s->pulls.drive[k - 1], s->pulls.drive[k - 1] = d;
     return 0;
 }
@@ -248,7 +248,7 @@ static int finish_force(jnode o, struct scene *s, void *out)
     d->turns = keys_has(&o, "torque");
     if (scene_check_span(o, d->from, d->until)) return 1;
     for (size_t i = 0; i < json_array_size(bodies.json); i++) {
-        d->boundary = (int32_t)json_number_value(json_array_get(bodies.json, i));
+        d->wall = (int32_t)json_number_value(json_array_get(bodies.json, i));
         if (read_pull(json_node_key(&o, d->turns ? "torque" : "force"), s, *d)) return 1;
     }
     return 0;

@@ -80,7 +80,7 @@ static const struct key pour_key[] = {
     { "name", &key_group, AT(group), "-", "none", "\"charge\"",
       "Name of the group that the new bodies belong to. Several pours and groups of bodies may "
       "have the same name." },
-    { "kind", &key_kind, AT(kind), "-", "\"ball\"", "\"steel\"", "Kind of material." },
+    { "kind", &key_material, AT(material), "-", "\"ball\"", "\"steel\"", "Kind of material." },
     { "density", &key_positive, AT(density), "kg/m^3", "of the kind", "2600",
       "Density; in 2D in kg/m^2." },
     { "mass", &key_positive, AT(mass), "kg", "by density", "1e-3",
@@ -103,7 +103,7 @@ static int finish_pour(jnode o, struct scene *s, void *out)
     p->by_mass = keys_has(&o, "mass_rate");
     // nothing is due from before the scene begins, but to a pour that has begun
     if (!keys_has(&o, "poured")) p->from = fmax(p->from, s->t);
-    if (!keys_has(&o, "density")) p->density = s->kind[p->kind].density;
+    if (!keys_has(&o, "density")) p->density = s->material[p->material].density;
     return scene_finish_grain(o, s, &p->form, &p->size);
 }
 
@@ -172,8 +172,8 @@ static const struct key removal_key[] = {
     { "below", &key_object, 0, "m", "-", "{\"point\": [0, 0, 0], ...}",
       "Remove bodies whose centre is below this plane, on the side away from its normal.",
       .choice = -1, .some = true, .object = &below_keys },
-    { "kind", &key_kind, AT(kind), "-", "all", "\"steel\"", "Remove bodies of this kind only.",
-      .some = true },
+    { "kind", &key_material, AT(material), "-", "all", "\"steel\"",
+      "Remove bodies of this kind only.", .some = true },
     { "id", &key_ids, 0, "-", "all", "[3, 17]", "Remove bodies with these ids only.", .some = true,
       .read = read_ids },
     { "name", &key_group, AT(group), "-", "all", "\"charge\"",
@@ -206,7 +206,7 @@ static int read_removal(jnode o, struct scene *s, void *out)
 {
     struct scene_removal *r = &s->removal[s->removals++];
     (void)out;
-    *r = (struct scene_removal){ .kind = -1, .from = -INFINITY, .until = INFINITY };
+    *r = (struct scene_removal){ .material = -1, .from = -INFINITY, .until = INFINITY };
     return keys_read(o, &scene_removal_keys, s, r);
 }
 

@@ -1,4 +1,4 @@
-/* scene/scene_material.c: materials: kinds, and the law of each pair of them, from their JSON. */
+/* scene/scene_material.c: materials, and the law of each pair of them, from their JSON. */
 
 #include "contact/spring.h"
 #include "scene/scene_read.h"
@@ -6,46 +6,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int32_t find_kind(const struct scene *s, const char *name)
+static int32_t find_material(const struct scene *s, const char *name)
 {
-    for (int32_t k = 0; k < s->kinds; k++)
-        if (!strcmp(s->kind[k].name, name)) return k;
+    for (int32_t k = 0; k < s->materials; k++)
+        if (!strcmp(s->material[k].name, name)) return k;
     return -1;
 }
 
-static int scene_material_read_kind(jnode n, const struct key *k, struct scene *s, void *member)
+static int scene_material_read(jnode n, const struct key *k, struct scene *s, void *member)
 {
     const char *name = NULL;
-    int32_t *kind = member;
+    int32_t *material = member;
     (void)k;
     if (json_node_text(n, &name)) return 1;
-    *kind = find_kind(s, name);
-    return *kind < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
+    *material = find_material(s, name);
+    return *material < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
 }
 
-const struct key_type key_kind = { "string", "{'type': 'string'}", scene_material_read_kind, NULL };
+const struct key_type key_material = { "string", "{'type': 'string'}", scene_material_read, NULL };
 
 /* "kinds" */
 
-static const struct key kind_key[] = {
+static const struct key scene_material_key[] = {
     { "density", &key_positive, 0, "kg/m^3", "of the scene", "7800",
       "Density of the kind; in 2D in kg/m^2." },
     { 0 },
 };
-const struct keys scene_kind_keys = { "kind", kind_key };
+const struct keys scene_material_keys = { "kind", scene_material_key };
 
-static int add_kind(jnode n, struct scene *s, const char *name, double density)
+static int add_material(jnode n, struct scene *s, const char *name, double density)
 {
-    const char *trouble = name_trouble_of_kind(name, strlen(name));
+    const char *trouble = name_trouble_of_material(name, strlen(name));
     if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
-    s->kind[s->kinds] = (struct scene_kind){ strdup(name), density };
-    if (!s->kind[s->kinds].name)
+    s->material[s->materials] = (struct scene_material){ strdup(name), density };
+    if (!s->material[s->materials].name)
         return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
-    s->kinds++;
+    s->materials++;
     return 0;
 }
 
-int scene_read_kinds(jnode o, struct scene *s, void *out)
+int scene_read_materials(jnode o, struct scene *s, void *out)
 {
     const char *name;
     json_t *value;
@@ -53,20 +53,21 @@ int scene_read_kinds(jnode o, struct scene *s, void *out)
     (void)out;
     if (o.json && !json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
     if (count > most) return json_node_fault(o, "more than %zu kinds", most);
-    if (!(s->kind = scene_alloc(o, count + 2, sizeof *s->kind))) return 1;
-    if (add_kind(o, s, "ball", s->density) || add_kind(o, s, "wall", s->density)) return 1;
+    if (!(s->material = scene_alloc(o, count + 2, sizeof *s->material))) return 1;
+    if (add_material(o, s, "ball", s->density) || add_material(o, s, "wall", s->density)) return 1;
     json_object_foreach(o.json, name, value)
     {
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
-        if (find_kind(s, name) < 0 && add_kind(n, s, name, s->density)) return 1;
-        if (keys_read(n, &scene_kind_keys, s, &s->kind[find_kind(s, name)].density)) return 1;
+        if (find_material(s, name) < 0 && add_material(n, s, name, s->density)) return 1;
+        if (keys_read(n, &scene_material_keys, s, &s->material[find_material(s, name)].density))
+            return 1;
     }
     return 0;
 }
 
 /*
- * What a pair of kinds does beyond friction and restitution: each law is an object of its own, which takes the place
+ * What a pair of materials does beyond friction and restitution: each law is an object of its own, which takes the place
  * of the one for all pairs.
  */
 #define AT(member) offsetof(struct pair_law, member)
@@ -257,7 +258,7 @@ const struct keys scene_law_keys = { "law", law_key, .finish = finish_law };
 /* ---- "pairs" ---- */
 
 struct pair_read {
-    int32_t kind[2];
+    int32_t material[2];
     bool acts;
     struct scene_law law;
 };
@@ -265,10 +266,12 @@ struct pair_read {
 #undef AT
 #define AT(member) offsetof(struct pair_read, member)
 
-static const struct key_type key_two_kinds = { ARRAY("two kinds", &key_kind, 2, sizeof(int32_t)) };
+static const struct key_type key_two_materials = { ARRAY("two kinds", &key_material, 2,
+                                                         sizeof(int32_t)) };
 
 static const struct key pair_key[] = {
-    { "pair", &key_two_kinds, AT(kind), "-", REQUIRED, "[\"steel\", \"ball\"]", "The two kinds." },
+    { "pair", &key_two_materials, AT(material), "-", REQUIRED, "[\"steel\", \"ball\"]",
+      "The two kinds." },
     { "acts", &key_bool, AT(acts), "-", "true", "false",
       "false: the pair has no contacts, and no other key." },
     { "", &key_include, AT(law), .object = &scene_law_keys },
@@ -294,7 +297,8 @@ static int read_pair(jnode o, struct scene *s, void *out)
     bool *given = out;
     struct pair_read p = { .acts = true, .law = s->common };
     if (keys_read(o, &scene_pair_keys, s, &p)) return 1;
-    const int32_t ab = p.kind[0] * s->kinds + p.kind[1], ba = p.kind[1] * s->kinds + p.kind[0];
+    const int32_t ab = p.material[0] * s->materials + p.material[1],
+                  ba = p.material[1] * s->materials + p.material[0];
     if (given[ab]) return json_node_fault(json_node_key(&o, "pair"), "this pair was given before");
     given[ab] = given[ba] = true;
     s->law[ab] = s->law[ba] = p.law;
@@ -303,7 +307,7 @@ static int read_pair(jnode o, struct scene *s, void *out)
 
 int scene_read_pairs(jnode a, struct scene *s, void *out)
 {
-    const size_t k2 = (size_t)s->kinds * (size_t)s->kinds;
+    const size_t k2 = (size_t)s->materials * (size_t)s->materials;
     bool *given = scene_alloc(a, k2, sizeof *given);
     (void)out;
     if (!given || !(s->law = scene_alloc(a, k2, sizeof *s->law))) return free(given), 1;
@@ -322,8 +326,8 @@ static int read_name(jnode n, const struct key *k, struct scene *s, void *member
     if (json_node_text(n, out)) return 1;
     const char *trouble = name_trouble(*out, strlen(*out));
     if (trouble) return json_node_fault(n, "a name %s", trouble);
-    for (int32_t i = 0; i < s->kinds; i++)
-        if (!strcmp(s->kind[i].name, *out))
+    for (int32_t i = 0; i < s->materials; i++)
+        if (!strcmp(s->material[i].name, *out))
             return json_node_fault(n, "\"%s\" is a kind: walls and groups have other names", *out);
     return 0;
 }

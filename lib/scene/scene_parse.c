@@ -69,7 +69,7 @@ static const struct key_type key_dt = {
     "{'anyOf': [{'type': 'number', 'exclusiveMinimum': 0}, {'const': 'auto'}]}", NULL, NULL
 };
 
-/* In the order in which they are read: bodies refer to kinds, names, shapes, the cell and the walls. */
+/* In the order in which they are read: bodies refer to materials, names, shapes, the cell and the walls. */
 static const struct key scene_key[] = {
     { "title", &key_text, AT(title), "-", "none", "\"A drum\"",
       "Title, shown in pictures and pages." },
@@ -93,7 +93,7 @@ static const struct key scene_key[] = {
     { "", &key_include, AT(common), .object = &scene_law_keys },
     { "kinds", &key_map, 0, "-", "none", "{\"steel\": {}}",
       "Kinds of material by name. The kinds ball and wall always exist.",
-      .object = &scene_kind_keys, .always = true, .read = scene_read_kinds },
+      .object = &scene_material_keys, .always = true, .read = scene_read_materials },
     { LIST(pairs, pair, "Exceptions for pairs of kinds.") },
     { "overlap", &key_bool, AT(overlap), "-", "false", "true",
       "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "

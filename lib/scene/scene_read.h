@@ -15,16 +15,16 @@ void *scene_alloc(jnode node, size_t count, size_t size);
 /* scene/scene_parse.c: the scene itself */
 extern const struct keys scene_keys;
 
-/* scene/scene_material.c: mu, e_n, e_t and the laws beyond; kinds and pairs of them; names of walls, of parts of their
+/* scene/scene_material.c: mu, e_n, e_t and the laws beyond; materials and pairs of them; names of walls, of parts of their
    surfaces and of groups of bodies */
-extern const struct keys scene_law_keys, scene_kind_keys, scene_pair_keys, scene_part_keys;
-extern const struct key_type key_kind;  /* int32_t, a row of the kinds */
-extern const struct key_type key_name;  /* const char *, borrowed */
-extern const struct key_type key_group; /* int32_t: 1 + the row of the scene's names */
-extern const struct key_type key_faces; /* int64_t[2], which scene_check_faces() checks */
+extern const struct keys scene_law_keys, scene_material_keys, scene_pair_keys, scene_part_keys;
+extern const struct key_type key_material; /* int32_t, a row of the materials */
+extern const struct key_type key_name;     /* const char *, borrowed */
+extern const struct key_type key_group;    /* int32_t: 1 + the row of the scene's names */
+extern const struct key_type key_faces;    /* int64_t[2], which scene_check_faces() checks */
 int scene_check_faces(jnode object, const int64_t face[2]);
 extern const struct key_type key_parts, key_mesh_parts;
-int scene_read_kinds(jnode n, struct scene *s, void *out);
+int scene_read_materials(jnode n, struct scene *s, void *out);
 int scene_read_pairs(jnode n, struct scene *s, void *out);
 /* Of the wall that comes next; of a mesh: or *groups = whether they are the groups of its file */
 int scene_read_parts(jnode n, struct scene *s, void *out);

@@ -1,4 +1,4 @@
-/* scene/scene_shapes.c: the shapes of boundaries from their JSON. */
+/* scene/scene_shapes.c: the shapes of walls from their JSON. */
 #include "scene/scene_read.h"
 
 #include <stdlib.h>
@@ -26,8 +26,7 @@ static const struct key_type key_two = { ARRAY("two numbers >= 0", &key_not_nega
 #define RADIUS(at) "radius", &key_positive, AT(at), "m", REQUIRED, "0.1", "Radius."
 #define SIDE                                                                                       \
     "side", &key_word, AT(side), "-", "\"inside\"", "\"both\"",                                    \
-        "Side on which bodies stay; both: a surface without thickness.",                           \
-        .words = boundary_side_name
+        "Side on which bodies stay; both: a surface without thickness.", .words = wall_side_name
 #define ALONG(need, text) "along", &key_direction, AT(along), "-", need, "[1, 0, 0]", text
 #define ARC(need)                                                                                  \
     "arc", &key_positive, AT(arc), "rad", need, "3.14",                                            \
@@ -39,7 +38,7 @@ static const struct key_type key_two = { ARRAY("two numbers >= 0", &key_not_nega
 
 /* ---- in space ---- */
 
-static int settle(struct wall *w, enum boundary_shape shape)
+static int settle(struct wall *w, enum wall_shape shape)
 {
     w->shape = shape;
     w->along = scene_shapes_across(w->n, w->along);
@@ -60,7 +59,7 @@ static const struct key rectangle_key[] = {
     { "sides", &key_two_positive, AT(size), "m", REQUIRED, "[0.2, 0.1]", "Sides [a, b]." },
     { 0 },
 };
-FINISH(rectangle, BOUNDARY_RECTANGLE)
+FINISH(rectangle, WALL_RECTANGLE)
 const struct keys scene_rectangle_keys = { "rectangle", rectangle_key, .finish = finish_rectangle };
 
 static const struct key disc_key[] = {
@@ -75,7 +74,7 @@ static int scene_shapes_finish_disc(jnode o, struct scene *s, void *out)
 {
     struct wall *w = out;
     (void)s;
-    w->shape = BOUNDARY_DISC;
+    w->shape = WALL_DISC;
     if (w->size[0] < w->size[1]) return 0;
     return json_node_fault(json_node_key(&o, "hole"), "must be smaller than the radius");
 }
@@ -94,7 +93,7 @@ static const struct key cylinder_key[] = {
     { ARC(ALL) },
     { 0 },
 };
-FINISH(cylinder, BOUNDARY_CYLINDER)
+FINISH(cylinder, WALL_CYLINDER)
 const struct keys scene_cylinder_keys = { "cylinder", cylinder_key, .finish = finish_cylinder };
 
 static const struct key cone_key[] = {
@@ -115,7 +114,7 @@ static int finish_cone(jnode o, struct scene *s, void *out)
     (void)s;
     if (!(w->size[0] + w->size[1] > 0))
         return json_node_fault(json_node_key(&o, "radii"), "must not both be 0");
-    return settle(w, BOUNDARY_CONE);
+    return settle(w, WALL_CONE);
 }
 
 const struct keys scene_cone_keys = { "cone", cone_key, .finish = finish_cone };
@@ -125,7 +124,7 @@ static const struct key sphere_key[] = { { CENTER }, { RADIUS(size[0]) }, { SIDE
 static int finish_round(jnode o, struct scene *s, void *out)
 {
     (void)o;
-    ((struct wall *)out)->shape = s->dim == 2 ? BOUNDARY_CYLINDER : BOUNDARY_SPHERE;
+    ((struct wall *)out)->shape = s->dim == 2 ? WALL_CYLINDER : WALL_SPHERE;
     return 0;
 }
 
@@ -147,7 +146,7 @@ int scene_read_segment(jnode a, struct scene *s, void *out)
     struct wall *w = out;
     const struct key ends = { .type = &key_segment };
     vec3 end[2] = { 0 };
-    w->shape = BOUNDARY_RECTANGLE;
+    w->shape = WALL_RECTANGLE;
     if (keys_read_array(a, &ends, s, end)) return 1;
     vec3 d = v3_sub(end[1], end[0]);
     double length = v3_norm(d);
@@ -182,7 +181,7 @@ int scene_read_mesh(jnode o, struct scene *s, void *out)
     s->mesh_file = more;
     struct scene_mesh *m = &more[s->meshes++];
     *m = (struct scene_mesh){ .wall = s->walls };
-    w->shape = BOUNDARY_MESH;
+    w->shape = WALL_MESH;
     if (keys_read(o, &scene_mesh_keys, s, m)) return 1;
     w->x = m->at;
     return 0;
@@ -235,7 +234,7 @@ int scene_read_polygon(jnode o, struct scene *s, void *out)
     int32_t(*element)[3];
     if (keys_read(o, &scene_polygon_keys, s, &p)) return 1;
     const int32_t segments = p.points - !(p.closed && p.points > 2);
-    w->shape = BOUNDARY_MESH, w->first_element = s->mesh.elements, w->elements = segments;
+    w->shape = WALL_MESH, w->first_element = s->mesh.elements, w->elements = segments;
     if (mesh_grow(&s->mesh, 0, segments, &vertex, &element, o.in->failure)) return 1;
     vertex = s->mesh.vertex + p.first;
     for (int32_t k = 0; k < segments; k++) {

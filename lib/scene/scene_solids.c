@@ -582,7 +582,7 @@ int scene_read_shapes(jnode o, struct scene *s, void *out)
     {
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
-        const char *trouble = name_trouble_of_kind(name, strlen(name));
+        const char *trouble = name_trouble_of_material(name, strlen(name));
         if (trouble) return json_node_fault(n, "the name of a shape %s", trouble);
         if (!strcmp(name, "ball")) return json_node_fault(n, "a ball is a ball");
         if (scene_solids_read_shape(n, s, name)) return 1;

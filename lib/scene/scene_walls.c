@@ -1,4 +1,4 @@
-/* scene/scene_walls.c: boundaries, and boxes of planes, from their JSON. */
+/* scene/scene_walls.c: walls, and boxes of planes, from their JSON. */
 
 #include "scene/scene_read.h"
 
@@ -52,7 +52,7 @@ static int read_box(jnode n, const struct key *k, struct scene *s, void *member)
 
 const struct key_type key_box = { "BOX", "{'$ref': 'box'}", read_box, NULL, &box_keys };
 
-/* ---- what a boundary yields to ---- */
+/* ---- what a wall yields to ---- */
 
 #define AT(member) offsetof(struct wall, load.member)
 
@@ -86,7 +86,7 @@ static int finish_load(jnode o, struct scene *s, void *out)
 {
     struct wall *w = out;
     struct load *l = &w->load;
-    const bool plane = w->shape == BOUNDARY_PLANE, turns = keys_has(&o, "about");
+    const bool plane = w->shape == WALL_PLANE, turns = keys_has(&o, "about");
     jnode pressure = json_node_key(&o, "pressure");
     l->way = turns ? LOAD_TURNS : LOAD_GLIDES;
     if (pressure.json && !plane)
@@ -143,11 +143,11 @@ static int add_box(jnode o, struct scene *s, const struct wall_read *r)
     return 0;
 }
 
-/* ---- faces that are of another kind, or move along themselves otherwise ---- */
+/* ---- faces that are of another material, or move along themselves otherwise ---- */
 
 struct material_read {
     int64_t face[2];
-    int32_t kind;
+    int32_t material;
     vec3 belt;
 };
 
@@ -157,7 +157,7 @@ struct material_read {
 static const struct key material_key[] = {
     { "faces", &key_faces, AT(face), "-", REQUIRED, "[0, 11]",
       "Range of triangles or segments, counted as for parts; ranges must not overlap." },
-    { "kind", &key_kind, AT(kind), "-", "of the wall", "\"rubber\"",
+    { "kind", &key_material, AT(material), "-", "of the wall", "\"rubber\"",
       "Kind of material of these faces." },
     { "belt", &key_vector, AT(belt), "m/s", "of the wall", "[0.5, 0, 0]", "Belt of these faces." },
     { 0 },
@@ -167,12 +167,12 @@ static const struct keys material_keys = { "materials", material_key };
 static int read_material(jnode o, struct scene *s, void *out)
 {
     const struct wall *w = out;
-    struct material_read m = { .kind = w->kind, .belt = w->belt };
+    struct material_read m = { .material = w->material, .belt = w->belt };
     if (keys_read(o, &material_keys, s, &m) || scene_check_faces(o, m.face)) return 1;
     struct scene_part *more = realloc(s->part, ((size_t)s->parts + 1) * sizeof *more);
     if (!more) return failure_set(o.in->failure, EX_SOFTWARE, "no memory for parts of a surface");
     s->part = more;
-    more[s->parts++] = (struct scene_part){ s->walls, m.face[0], m.face[1], m.kind, m.belt };
+    more[s->parts++] = (struct scene_part){ s->walls, m.face[0], m.face[1], m.material, m.belt };
     return 0;
 }
 
@@ -228,7 +228,7 @@ static const struct key wall_key[] = {
       "Velocity with which the surface moves along itself while its shape stays: a conveyor "
       "belt. It rotates with the wall. Its component normal to the surface at a contact has no "
       "effect." },
-    { "kind", &key_kind, AT(w.kind), "-", "\"wall\"", "\"steel\"", "Kind of material." },
+    { "kind", &key_material, AT(w.material), "-", "\"wall\"", "\"steel\"", "Kind of material." },
     { "drives", &key_drives, 0, "-", "none", "see below",
       "Prescribed motions, applied one after the other." },
     { "until", &key_number, AT(w.until), "s", "never", "0.4",
@@ -265,7 +265,7 @@ const struct keys scene_wall_keys = { "wall", wall_key, .finish = finish_wall };
 
 static int read_wall(jnode o, struct scene *s, void *out)
 {
-    struct wall_read r = { .w = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 1) };
+    struct wall_read r = { .w = wall_plane(v3(0, 0, 0), v3(0, 0, 1), 1) };
     int32_t *item = out;
     const int32_t first = s->walls;
     if (keys_read(o, &scene_wall_keys, s, &r)) return 1;
@@ -318,7 +318,7 @@ static int add_named(jnode n, struct scene *s, bool *in)
         if (!own || strcmp(own, name) != 0) continue;
         const struct wall *wall = &s->wall[w];
         if (in[w]) return json_node_fault(n, "names walls[%d] twice", s->wall_item[w]);
-        if (wall->shape != BOUNDARY_PLANE)
+        if (wall->shape != WALL_PLANE)
             return json_node_fault(n, "walls[%d] is no plane: a room has planes, or boxes of them",
                                    s->wall_item[w]);
         if (wall->load.way)
@@ -350,8 +350,7 @@ static int32_t facing(const struct scene *s, const bool *in, int32_t w)
     int32_t found = -1;
     for (int32_t k = 0; k < s->walls; k++) {
         const struct wall *other = &s->wall[k];
-        if (other->shape != BOUNDARY_PLANE || v3_dot(other->n, s->wall[w].n) > -1 + UPRIGHT)
-            continue;
+        if (other->shape != WALL_PLANE || v3_dot(other->n, s->wall[w].n) > -1 + UPRIGHT) continue;
         if (in[k]) return k;
         if (found < 0) found = k;
     }
@@ -428,13 +427,13 @@ static void sort_pushes(struct scene *s)
 {
     struct drive *d = s->pushes.drive;
     for (int32_t k = 1; k < s->pushes.n; k++)
-        for (int32_t i = k; i > 0 && d[i - 1].boundary > d[i].boundary; i--) {
+        for (int32_t i = k; i > 0 && d[i - 1].wall > d[i].wall; i--) {
             struct drive one = d[i];
             d[i] = d[i - 1], d[i - 1] = one;
         }
     for (int32_t w = 0; w < s->walls; w++) s->wall[w].first_push = s->wall[w].pushes = 0;
     for (int32_t k = 0; k < s->pushes.n; k++) {
-        struct wall *w = &s->wall[d[k].boundary];
+        struct wall *w = &s->wall[d[k].wall];
         if (!w->pushes++) w->first_push = k;
     }
 }

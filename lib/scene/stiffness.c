@@ -85,14 +85,14 @@ int stiffness_read(double *k, const char *text, const struct packing *p, struct 
 
 int stiffness_set(struct packing *p, double k, struct failure *failure)
 {
-    const int32_t pairs = p->kinds * p->kinds;
+    const int32_t pairs = p->materials * p->materials;
     if (!p->law && !(k > 0)) return 0;
     if (!p->law && packing_alloc_laws(p, failure)) return failure->status;
     for (int32_t i = 0; i < pairs; i++)
         if (k > 0 && pair_law_adheres(&p->law[i]))
-            return failure_set(failure, EX_DATAERR,
-                               "%s and %s adhere: such contacts have no stiffness",
-                               p->kind_name[i / p->kinds], p->kind_name[i % p->kinds]);
+            return failure_set(
+                failure, EX_DATAERR, "%s and %s adhere: such contacts have no stiffness",
+                p->material_name[i / p->materials], p->material_name[i % p->materials]);
     for (int32_t i = 0; i < pairs; i++) p->law[i].kn = k, p->law[i].kt = SPRING_ACROSS * k;
     for (int64_t i = 0; !(k > 0) && i < p->bonds.n; i++)
         p->bonds.bond[i].pressed = 0, p->bonds.bond[i].rest = 0;
@@ -102,7 +102,7 @@ int stiffness_set(struct packing *p, double k, struct failure *failure)
 void stiffness_range(const struct packing *p, double k[2])
 {
     k[0] = k[1] = 0;
-    for (int32_t i = 0; p->law && i < p->kinds * p->kinds; i++) {
+    for (int32_t i = 0; p->law && i < p->materials * p->materials; i++) {
         const double kn = p->law[i].kn;
         k[0] = i ? fmin(k[0], kn) : kn, k[1] = fmax(k[1], kn);
     }

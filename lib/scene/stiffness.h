@@ -27,7 +27,7 @@ int stiffness_needed(double *k, const struct packing *p, struct failure *failure
 /* *k by a text, as --stiffness has it: a number above 0 (N/m), "rigid" (0) or "auto" (needed). The same returns, and EX_USAGE
    where it is none of these. */
 int stiffness_read(double *k, const char *text, const struct packing *p, struct failure *failure);
-/* Sets k_n = k and k_t of all pairs of kinds; k = 0: rigid, and springs are forgotten. Returns 0, EX_SOFTWARE, or EX_DATAERR
+/* Sets k_n = k and k_t of all pairs of materials; k = 0: rigid, and springs are forgotten. Returns 0, EX_SOFTWARE, or EX_DATAERR
    where pairs adhere. */
 int stiffness_set(struct packing *p, double k, struct failure *failure);
 /* The compliance of two bodies of the mean mass, in units of their W_nn; the stiffest pair; 0: rigid */

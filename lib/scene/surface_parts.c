@@ -132,7 +132,7 @@ static int copy_drives(struct scene *s, struct wall *w, struct failure *failure)
     d->drive = more;
     for (int32_t k = 0; k < n; k++) {
         d->drive[d->n] = d->drive[first + k];
-        d->drive[d->n++].boundary = s->walls;
+        d->drive[d->n++].wall = s->walls;
     }
     return 0;
 }
@@ -178,7 +178,7 @@ static int surface_parts_add_part(struct scene *s, int32_t k, int32_t first, int
     const struct scene_part *part = &s->part[k];
     struct wall w = s->wall[part->wall];
     if (surface_parts_grow(s, failure) || copy_drives(s, &w, failure)) return failure->status;
-    w.kind = part->kind, w.belt = part->belt, w.first_element = first, w.elements = n;
+    w.material = part->material, w.belt = part->belt, w.first_element = first, w.elements = n;
     s->wall_item[s->walls] = s->wall_item[part->wall];
     s->wall[s->walls++] = w;
     return 0;
@@ -202,7 +202,7 @@ static int split(struct scene *s, int32_t w, struct failure *failure)
             if (k < 0)
                 s->wall[w].elements = at;
             else if (!s->wall[w].elements) // all are of parts: the surface is the first of them
-                s->wall[w].kind = s->part[k].kind, s->wall[w].belt = s->part[k].belt,
+                s->wall[w].material = s->part[k].material, s->wall[w].belt = s->part[k].belt,
                 s->wall[w].elements = at;
             else
                 surface_parts_add_part(s, k, first + from, at - from, failure);

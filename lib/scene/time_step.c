@@ -149,7 +149,7 @@ static double above_planes(const struct packing *p, vec3 x, vec3 up)
     double least = INFINITY;
     for (int32_t k = 0; k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        if (w->shape != BOUNDARY_PLANE || !wall_there(w, p->t)) continue;
+        if (w->shape != WALL_PLANE || !wall_there(w, p->t)) continue;
         vec3 n = wall_normal(p, w, p->t);
         double slope = v3_dot(n, up), h = v3_dot(n, v3_sub(x, wall_at(p, w, p->t)));
         if (slope > 0.5 && h >= 0) least = dmin(least, h / slope);
@@ -164,22 +164,22 @@ static double lowest_of(const struct packing *p, const struct wall *w, vec3 up)
     vec3 x = wall_at(p, w, p->t), n = wall_normal(p, w, p->t), a = quat_turn(at.q, w->along);
     double tilt = sqrt(dmax(0, 1 - v3_dot(n, up) * v3_dot(n, up))), low = INFINITY;
     switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         return v3_dot(x, up) -
                (w->size[0] * fabs(v3_dot(a, up)) + w->size[1] * fabs(v3_dot(v3_cross(n, a), up))) /
                    2;
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         return v3_dot(x, up) - w->size[1] * tilt;
-    case BOUNDARY_CYLINDER:
-    case BOUNDARY_CONE:
+    case WALL_CYLINDER:
+    case WALL_CONE:
         for (int end = 0; end < 2 && (w->size[2] > 0 || tilt == 1); end++) {
-            double r = w->size[w->shape == BOUNDARY_CONE && end];
+            double r = w->size[w->shape == WALL_CONE && end];
             low = dmin(low, v3_dot(v3_axpy(x, end * w->size[2], n), up) - r * tilt);
         }
         return low;
-    case BOUNDARY_SPHERE:
+    case WALL_SPHERE:
         return v3_dot(x, up) - w->size[0];
-    case BOUNDARY_MESH:
+    case WALL_MESH:
         for (int32_t k = 0; k < w->elements; k++)
             for (int c = 0; c < p->dim; c++) {
                 vec3 v = p->mesh.vertex[p->mesh.element[w->first_element + k][c]];
@@ -200,7 +200,7 @@ static double lowest_surface(const struct packing *p, vec3 up)
     return low;
 }
 
-/* Boundaries, and the surfaces of meshes, below bodies that fall */
+/* Walls, and the surfaces of meshes, below bodies that fall */
 struct time_step_ground {
     const struct packing *p;
     vec3 up;
@@ -215,7 +215,7 @@ static struct time_step_ground ground_of(const struct packing *p, vec3 up)
     g.surface = calloc((size_t)p->walls + 1, sizeof *g.surface);
     for (int32_t k = 0; g.surface && k < p->walls; k++) {
         const struct wall *w = &p->wall[k];
-        if (w->shape != BOUNDARY_MESH || !wall_there(w, p->t)) continue;
+        if (w->shape != WALL_MESH || !wall_there(w, p->t)) continue;
         if (surface_init(&g.surface[k], &p->mesh, w->first_element, w->elements, w->weld, &failure))
             g.surface[k].n = 0;
     }
@@ -235,19 +235,17 @@ static double above_surface(const struct time_step_ground *g, int32_t k, vec3 x,
 {
     const struct packing *p = g->p;
     const struct wall *w = &p->wall[k];
-    const bool mesh = w->shape == BOUNDARY_MESH;
+    const bool mesh = w->shape == WALL_MESH;
     const struct surface *s = mesh && g->surface ? &g->surface[k] : NULL;
-    if (mesh ? !s || !s->n : w->shape != BOUNDARY_RECTANGLE && w->shape != BOUNDARY_DISC)
-        return INFINITY;
+    if (mesh ? !s || !s->n : w->shape != WALL_RECTANGLE && w->shape != WALL_DISC) return INFINITY;
     const struct pose at = wall_pose(p, w, p->t);
     const vec3 from = quat_turn_back(at.q, v3_sub(x, wall_at(p, w, p->t))),
                down = quat_turn_back(at.q, v3_scale(-1, g->up));
     double near = 0, far = most;
-    if (!boundary_between(w, p->dim, s, from, v3_axpy(from, far, down))) return INFINITY;
+    if (!wall_between(w, p->dim, s, from, v3_axpy(from, far, down))) return INFINITY;
     for (int i = 0; i < HALVINGS; i++) {
         double middle = (near + far) / 2;
-        *(boundary_between(w, p->dim, s, from, v3_axpy(from, middle, down)) ? &far : &near) =
-            middle;
+        *(wall_between(w, p->dim, s, from, v3_axpy(from, middle, down)) ? &far : &near) = middle;
     }
     return far;
 }

@@ -45,11 +45,11 @@ static const char *table_trouble(const struct drives *d, const struct drive *k)
     return NULL;
 }
 
-static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boundaries, int dim)
+static const char *drive_trouble(const struct drives *d, int32_t k, int32_t walls, int dim)
 {
     const struct drive *s = &d->drive[k];
-    if (s->boundary < 0 || s->boundary >= boundaries) return "its boundary does not exist";
-    if (k && s->boundary < s[-1].boundary) return "drives are not in the order of the boundaries";
+    if (s->wall < 0 || s->wall >= walls) return "its boundary does not exist";
+    if (k && s->wall < s[-1].wall) return "drives are not in the order of the boundaries";
     if (s->turns != 0 && s->turns != 1) return "it neither rotates nor translates";
     if (s->signal < 0 || s->signal >= DRIVE_SIGNALS) return "no such signal";
     if (!(fabs(v3_dot(s->axis, s->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
@@ -64,17 +64,17 @@ static const char *drive_trouble(const struct drives *d, int32_t k, int32_t boun
     return s->signal == DRIVE_TABLE ? table_trouble(d, s) : NULL;
 }
 
-int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+int drives_check(const struct drives *d, int32_t walls, int dim, const char *what,
                  struct failure *failure)
 {
     int64_t rows = 0; // of all tables: none is another's, too
     for (int32_t k = 0, of_one = 0; k < d->n; k++) {
         const struct drive *s = &d->drive[k];
-        of_one = k && s->boundary == s[-1].boundary ? of_one + 1 : 1;
+        of_one = k && s->wall == s[-1].wall ? of_one + 1 : 1;
         rows += s->signal == DRIVE_TABLE && s->rows > 0 ? s->rows : 0;
         const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
                               : rows > d->rows     ? "its table is missing or another drive's"
-                                                   : drive_trouble(d, k, boundaries, dim);
+                                                   : drive_trouble(d, k, walls, dim);
         if (trouble) return failure_set(failure, EX_DATAERR, "%s %d: %s", what, k, trouble);
     }
     return 0;

@@ -1,8 +1,8 @@
 /*
  * shape/drive.h: motions that are prescribed, each a signal in time along or about an axis.
  *
- * The way s(t) is closed in t, so that a boundary is where its time says, however it came there.
- * Over a step the velocity is the mean, (s(then) - s(t))/dt: bodies at rest on a boundary then
+ * The way s(t) is closed in t, so that a wall is where its time says, however it came there.
+ * Over a step the velocity is the mean, (s(then) - s(t))/dt: bodies at rest on a wall then
  * stay on it, whatever its acceleration.
  *
  * The same signals say what the force of a load is in time [shape/drive.h]; then the way is a force, N
@@ -18,10 +18,10 @@
 #include <stdint.h>
 
 /*
- * What a boundary yields to that is free along or about one axis: a force, as a
+ * What a wall yields to that is free along or about one axis: a force, as a
  * piston at constant pressure, or a torque.
  *
- * How it moves besides is prescribed: the load's speed adds to the boundary's own velocity.
+ * How it moves besides is prescribed: the load's speed adds to the wall's own velocity.
  *
  * The walls of a room [state/servo_box.h] have one load together: the size of the room.
  */
@@ -57,7 +57,7 @@ static inline bool load_grows_too_fast(const struct load *l, double dt)
 enum drive_signal { DRIVE_SPEED, DRIVE_SINE, DRIVE_TABLE, DRIVE_SIGNALS };
 
 struct drive {
-    int32_t boundary;    /* that it moves, or pushes */
+    int32_t wall;        /* that it moves, or pushes */
     int32_t turns;       /* 1: about the axis, 0: along it */
     int32_t signal;      /* enum drive_signal */
     vec3 axis, point;    /* unit vector; m: a point on the axis, of one that turns */
@@ -76,7 +76,7 @@ struct drive_row {
 
 struct drives {
     int32_t n, rows;
-    struct drive *drive;   /* [n] those of a boundary follow one another, in the order they act */
+    struct drive *drive;   /* [n] those of a wall follow one another, in the order they act */
     struct drive_row *row; /* [rows] */
 };
 
@@ -85,10 +85,10 @@ int drives_alloc(struct drives *d, int32_t n, int32_t rows, struct failure *fail
 void drives_free(struct drives *d);
 /* to = a copy; EX_SOFTWARE with nothing to free */
 int drives_copy(struct drives *to, const struct drives *from, struct failure *failure);
-enum { DRIVES_MOST = 1000 }; /* of one boundary: each place of it asks them all */
-/* Are all of them drives, in a packing of so many boundaries? what: they are called in messages. Returns 0 or
+enum { DRIVES_MOST = 1000 }; /* of one wall: each place of it asks them all */
+/* Are all of them drives, in a packing of so many walls? what: they are called in messages. Returns 0 or
    EX_DATAERR. */
-int drives_check(const struct drives *d, int32_t boundaries, int dim, const char *what,
+int drives_check(const struct drives *d, int32_t walls, int dim, const char *what,
                  struct failure *failure);
 
 /* m, rad: the way at the packing's time t (s) */
@@ -106,7 +106,7 @@ static inline vec3 pose_of(const struct pose *p, vec3 x)
     return v3_add(quat_turn(p->q, x), p->shift);
 }
 
-/* What drives first .. first+n-1 have made of a boundary at time t (s), one after the other */
+/* What drives first .. first+n-1 have made of a wall at time t (s), one after the other */
 struct pose drives_pose(const struct drives *d, int32_t first, int32_t n, double t);
 /* A time step from t to `then`, which is t + dt but for its rounding [packing_time()] */
 struct drive_step {

@@ -83,7 +83,7 @@ static inline bool surface_walk_next(struct surface_walk *w, const struct surfac
 
 struct mesh {
     int32_t vertices, elements;
-    vec3 *vertex;          /* [vertices] m, from the point of reference of their boundary */
+    vec3 *vertex;          /* [vertices] m, from the point of reference of their wall */
     int32_t (*element)[3]; /* [elements] vertices; in the plane the third is that of the second */
 };
 
@@ -99,7 +99,7 @@ int mesh_copy(struct mesh *to, const struct mesh *from, struct failure *failure)
    with the first that is not. */
 int mesh_check(const struct mesh *m, int dim, struct failure *failure);
 
-/* The elements of one boundary that have an extent, ordered so that those near a place are found at once */
+/* The elements of one wall that have an extent, ordered so that those near a place are found at once */
 struct surface {
     int32_t n;        /* elements with an extent; */
     int32_t elements; /* all */
@@ -129,7 +129,7 @@ enum {
     STAR_MOST = 4096, /* elements that meet at a corner: to look at all pairs has to end */
     TOUCHES_MOST = 64 /* of a ball and a surface: beyond it the last ones are left out */
 };
-/* The places at most `most` (m) from c (m, from the boundary's point of reference) at which the distance has
+/* The places at most `most` (m) from c (m, from the wall's point of reference) at which the distance has
    a minimum, sorted by feature; returns how many. t.n points from the place to c. Triangles that lie on each
    other have one. */
 int surface_touches(const struct surface *s, vec3 c, double most, struct touch touch[TOUCHES_MOST]);

@@ -89,7 +89,7 @@ void rims_near(struct rims *out, const struct wall *w, int dim, const struct sur
     out->n = 0;
     if (surface)
         of_surface(out, surface, dim, c, reach);
-    else if (w->shape == BOUNDARY_RECTANGLE)
+    else if (w->shape == WALL_RECTANGLE)
         of_rectangle(out, w, dim, c, reach);
 }
 
@@ -178,19 +178,19 @@ void surface_groove(struct grooves *out, const struct surface *s, int dim, const
     }
 }
 
-bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
-                      const struct touch *t)
+bool wall_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
+                  const struct touch *t)
 {
     const double tiny = 1e-9;
     if (surface) return surface_ends(surface, dim, t->feature);
-    if (w->shape == BOUNDARY_RECTANGLE || w->shape == BOUNDARY_DISC)
+    if (w->shape == WALL_RECTANGLE || w->shape == WALL_DISC)
         return v3_norm(v3_cross(t->n, w->n)) > tiny;
-    bool round = w->shape == BOUNDARY_CYLINDER || w->shape == BOUNDARY_CONE;
+    bool round = w->shape == WALL_CYLINDER || w->shape == WALL_CONE;
     if (!round) return false;
     // at its end the way to the place is not across the surface: it leads along it
     vec3 place = v3_axpy(c, -t->distance, t->n);
     vec3 radius = wall_edge_unit(v3_axpy(place, -v3_dot(place, w->n), w->n));
-    double end = w->shape == BOUNDARY_CONE ? w->size[1] : w->size[0];
+    double end = w->shape == WALL_CONE ? w->size[1] : w->size[0];
     vec3 line = wall_edge_unit(v3_axpy(v3_scale(end - w->size[0], radius), w->size[2], w->n));
     return fabs(v3_dot(t->n, v3_cross(w->n, radius))) > tiny || fabs(v3_dot(t->n, line)) > tiny;
 }
@@ -242,11 +242,11 @@ static bool in_surface(const struct surface *s, int dim, vec3 a, vec3 b)
     return false;
 }
 
-bool boundary_between(const struct wall *w, int dim, const struct surface *surface, vec3 a, vec3 b)
+bool wall_between(const struct wall *w, int dim, const struct surface *surface, vec3 a, vec3 b)
 {
     if (surface) return in_surface(surface, dim, a, b);
-    bool rectangle = w->shape == BOUNDARY_RECTANGLE;
-    if (!rectangle && w->shape != BOUNDARY_DISC) return true;
+    bool rectangle = w->shape == WALL_RECTANGLE;
+    if (!rectangle && w->shape != WALL_DISC) return true;
     double ha = v3_dot(a, w->n), hb = v3_dot(b, w->n);
     if (!opposite(ha, hb)) return false;
     vec3 x = ha != hb ? v3_axpy(a, ha / (ha - hb), v3_sub(b, a)) : b;

@@ -1,5 +1,5 @@
 /*
- * shape/wall_edge.h: the rims of boundaries that end, and the ridges of those that bend: the lines which
+ * shape/wall_edge.h: the rims of walls that end, and the ridges of those that bend: the lines which
  * faces and edges of bodies meet, where corners of bodies do not. In the plane, points.
  *
  * Those of rectangles, segments, surfaces of triangles and chains. A rim is next to a body only where the
@@ -15,13 +15,13 @@
 
 enum { RIM_SIDES_MOST = 4, RIMS_MOST = 64 /* near a body: of more the first */ };
 
-/* As its boundary is described, before any motion */
+/* As its wall is described, before any motion */
 struct rim {
     int32_t n;                 /* ends: 2, in the plane 1 */
-    vec3 v[2];                 /* m, from the point of reference of the boundary */
+    vec3 v[2];                 /* m, from the point of reference of the wall */
     int32_t sides;             /* surfaces that meet there */
     vec3 into[RIM_SIDES_MOST]; /* unit vectors from the rim into each, across it */
-    int32_t key, corner[2];    /* which it is of the boundary, and its ends */
+    int32_t key, corner[2];    /* which it is of the wall, and its ends */
 };
 
 struct rims {
@@ -29,14 +29,14 @@ struct rims {
     struct rim rim[RIMS_MOST];
 };
 
-/* Those at most `reach` (m) from c (m, from the boundary's point of reference). surface: of a mesh. */
+/* Those at most `reach` (m) from c (m, from the wall's point of reference). surface: of a mesh. */
 void rims_near(struct rims *out, const struct wall *w, int dim, const struct surface *surface,
                vec3 c, double reach);
 
-/* Does the boundary end at the place t that is next to c (m, from its point of reference)? There it has no
+/* Does the wall end at the place t that is next to c (m, from its point of reference)? There it has no
    other side. */
-bool boundary_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
-                      const struct touch *t);
+bool wall_ends_at(const struct wall *w, int dim, const struct surface *surface, vec3 c,
+                  const struct touch *t);
 /* Do the elements that meet at a feature of a surface lie in different planes? Then rims are there. */
 bool surface_bends(const struct surface *s, int dim, int32_t feature);
 /* Elements of grooves, as they are next to a point behind them; of more than there is room for the first */
@@ -49,11 +49,11 @@ struct grooves {
 void surface_groove(struct grooves *out, const struct surface *s, int dim, const struct touch *t,
                     vec3 c, vec3 middle);
 
-/* Whether a boundary of two sides lies between two places: a corner of a body on the
+/* Whether a wall of two sides lies between two places: a corner of a body on the
    other side than its middle has gone through. */
 
-/* Does the way from a to b (m, from the boundary's point of reference, before any motion) cross the
-   boundary? Of rectangles, discs and meshes (surface); of others that is not looked at: true. */
-bool boundary_between(const struct wall *w, int dim, const struct surface *surface, vec3 a, vec3 b);
+/* Does the way from a to b (m, from the wall's point of reference, before any motion) cross the
+   wall? Of rectangles, discs and meshes (surface); of others that is not looked at: true. */
+bool wall_between(const struct wall *w, int dim, const struct surface *surface, vec3 a, vec3 b);
 
 #endif

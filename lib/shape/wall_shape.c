@@ -1,19 +1,19 @@
-/* shape/wall_shape.c: the place of a boundary's surface that is next to a point
+/* shape/wall_shape.c: the place of a wall's surface that is next to a point
    [shape/wall_shape.h]. */
 #include "shape/wall_shape.h"
 
-const char *const boundary_shape_name[] = { "plane", "rectangle", "disc", "cylinder",
-                                            "cone",  "sphere",    "mesh", NULL };
-const char *const boundary_side_name[] = { "inside", "outside", "both", NULL };
+const char *const wall_shape_name[] = { "plane", "rectangle", "disc", "cylinder",
+                                        "cone",  "sphere",    "mesh", NULL };
+const char *const wall_side_name[] = { "inside", "outside", "both", NULL };
 
-struct wall boundary_plane(vec3 x, vec3 n, int32_t kind)
+struct wall wall_plane(vec3 x, vec3 n, int32_t material)
 {
-    return (struct wall){ .x = x, .n = n, .kind = kind, .until = INFINITY };
+    return (struct wall){ .x = x, .n = n, .material = material, .until = INFINITY };
 }
 
 static bool is_round(const struct wall *w)
 {
-    return w->shape == BOUNDARY_CYLINDER || w->shape == BOUNDARY_CONE;
+    return w->shape == WALL_CYLINDER || w->shape == WALL_CONE;
 }
 
 static const char *size_trouble(const struct wall *w, int dim)
@@ -22,41 +22,41 @@ static const char *size_trouble(const struct wall *w, int dim)
     for (int k = 0; k < 3; k++)
         if (!(s[k] >= 0 && isfinite(s[k]))) return "a size is negative or not finite";
     switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         return s[0] > 0 && (dim == 2 || s[1] > 0) ? NULL : "its sides must be positive";
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         return s[1] > s[0] ? NULL : "its radius must be above that of its hole";
-    case BOUNDARY_CYLINDER:
-    case BOUNDARY_SPHERE:
+    case WALL_CYLINDER:
+    case WALL_SPHERE:
         return s[0] > 0 ? NULL : "its radius must be positive";
-    case BOUNDARY_CONE:
+    case WALL_CONE:
         return s[2] > 0 && s[0] + s[1] > 0 ? NULL : "its length and a radius must be positive";
-    case BOUNDARY_MESH:
+    case WALL_MESH:
         return w->elements > 0 ? NULL : "its mesh is empty";
     default:
         return NULL;
     }
 }
 
-const char *boundary_trouble(const struct wall *w, int dim)
+const char *wall_shape_trouble(const struct wall *w, int dim)
 {
-    if (w->shape < 0 || w->shape >= BOUNDARY_SHAPES) return "no such shape";
-    if (w->side < 0 || w->side >= BOUNDARY_SIDES) return "no such side";
+    if (w->shape < 0 || w->shape >= WALL_SHAPES) return "no such shape";
+    if (w->side < 0 || w->side >= WALL_SIDES) return "no such side";
     if (!v3_finite(w->x) || !v3_finite(w->v)) return "point or velocity is not finite";
     if (!(fabs(v3_dot(w->n, w->n) - 1) < 1e-6)) return "normal is not a unit vector";
     if (!(w->until > -INFINITY)) return "the time of its removal is not a number";
-    bool flat = w->shape == BOUNDARY_PLANE || w->shape == BOUNDARY_RECTANGLE;
+    bool flat = w->shape == WALL_PLANE || w->shape == WALL_RECTANGLE;
     if (dim == 2) {
         if (w->v.z != 0 || w->x.z != 0 || (flat && w->n.z != 0))
             return "leaves the plane, and dim is 2";
-        if (w->shape == BOUNDARY_DISC || w->shape == BOUNDARY_CONE || w->shape == BOUNDARY_SPHERE)
+        if (w->shape == WALL_DISC || w->shape == WALL_CONE || w->shape == WALL_SPHERE)
             return "a shape of space, and dim is 2";
-        if (w->shape == BOUNDARY_CYLINDER && (w->n.z != 1 || w->size[2] != 0))
+        if (w->shape == WALL_CYLINDER && (w->n.z != 1 || w->size[2] != 0))
             return "in the plane a cylinder is a circle around z";
     }
     if (!(w->weld >= 0 && isfinite(w->weld))) return "its weld tolerance is out of range";
     if (!(w->arc >= 0 && w->arc < 2 * M_PI)) return "its arc is out of range";
-    bool directed = w->shape == BOUNDARY_RECTANGLE || (is_round(w) && w->arc > 0);
+    bool directed = w->shape == WALL_RECTANGLE || (is_round(w) && w->arc > 0);
     if (directed &&
         !(fabs(v3_dot(w->along, w->along) - 1) < 1e-6 && fabs(v3_dot(w->along, w->n)) < 1e-6))
         return "its direction is not a unit vector across its normal";
@@ -64,19 +64,19 @@ const char *boundary_trouble(const struct wall *w, int dim)
     return size_trouble(w, dim);
 }
 
-double boundary_reach(const struct wall *w)
+double wall_reach(const struct wall *w)
 {
     const double *s = w->size;
     switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         return 0.5 * sqrt(s[0] * s[0] + s[1] * s[1]);
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         return s[1];
-    case BOUNDARY_CYLINDER:
+    case WALL_CYLINDER:
         return s[2] > 0 ? sqrt(s[0] * s[0] + s[2] * s[2]) : INFINITY;
-    case BOUNDARY_CONE:
+    case WALL_CONE:
         return fmax(s[0], sqrt(s[1] * s[1] + s[2] * s[2]));
-    case BOUNDARY_SPHERE:
+    case WALL_SPHERE:
         return s[0];
     default:
         return INFINITY;
@@ -137,7 +137,7 @@ struct generatrix {
 
 static struct generatrix generatrix_of(const struct wall *w)
 {
-    double end = w->shape == BOUNDARY_CONE ? w->size[1] : w->size[0];
+    double end = w->shape == WALL_CONE ? w->size[1] : w->size[0];
     return (struct generatrix){ w->size[0], end - w->size[0], w->size[2] };
 }
 
@@ -172,9 +172,9 @@ static vec3 near_generatrix(const struct wall *w, vec3 d, vec3 c, bool *inner)
 static bool sided(const struct wall *w, vec3 outward, double out, double r, bool ends,
                   struct touch *t)
 {
-    bool inward = w->side == BOUNDARY_INSIDE || (w->side == BOUNDARY_BOTH && out < 0);
+    bool inward = w->side == WALL_INSIDE || (w->side == WALL_BOTH && out < 0);
     *t = (struct touch){ inward ? v3_scale(-1, outward) : outward, inward ? -out : out, 0 };
-    return !ends || w->side == BOUNDARY_BOTH || t->distance >= -r;
+    return !ends || w->side == WALL_BOTH || t->distance >= -r;
 }
 
 static bool near_round(const struct wall *w, vec3 c, double r, struct touch *t)
@@ -203,20 +203,20 @@ static bool near_round(const struct wall *w, vec3 c, double r, struct touch *t)
     return sided(w, outward, out, r, g.dz > 0 || w->arc > 0, t);
 }
 
-bool boundary_nearest(const struct wall *w, int dim, vec3 c, double r, struct touch *t)
+bool wall_nearest(const struct wall *w, int dim, vec3 c, double r, struct touch *t)
 {
     double distance;
     switch (w->shape) {
-    case BOUNDARY_PLANE:
+    case WALL_PLANE:
         *t = (struct touch){ w->n, v3_dot(c, w->n), 0 };
         return true;
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         *t = near_rectangle(w, dim, c);
         return true;
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         *t = near_disc(w, c);
         return true;
-    case BOUNDARY_SPHERE:
+    case WALL_SPHERE:
         distance = v3_norm(c);
         return sided(w, distance > 0 ? v3_scale(1 / distance, c) : w->n, distance - w->size[0], r,
                      false, t);

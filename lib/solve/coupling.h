@@ -12,9 +12,7 @@
 
 #include "state/freedom.h"
 
-enum {
-    COUPLINGS_MAX = 10
-}; /* of a contact: a boundary's, and nine components of the cell's edges */
+enum { COUPLINGS_MAX = 10 }; /* of a contact: a wall's, and nine components of the cell's edges */
 
 struct coupling {
     int32_t freedom, contact;
@@ -33,7 +31,7 @@ int couplings_init(struct couplings *c, const struct packing *p, const struct co
                    struct failure *failure);
 void couplings_free(struct couplings *c);
 
-/* How many pairs of contacts share a boundary's freedom, each contact with itself too; a pair counts for each
+/* How many pairs of contacts share a wall's freedom, each contact with itself too; a pair counts for each
    freedom that it shares. */
 double couplings_pairs(const struct couplings *c);
 

@@ -103,7 +103,7 @@ void fill_ball(const struct slot_filling *f)
     p->rho[i / BUNDLE][k] = lambda <= 0 ? 1 : alpha > 0 ? alpha / im : rho_factor / lambda;
 }
 
-/* The rows G_i of a body with this arm; a boundary's (i < 0) are 0. */
+/* The rows G_i of a body with this arm; a wall's (i < 0) are 0. */
 static void set_rows(const struct slot_filling *f, double G[9][BUNDLE], int32_t i, vec3 arm)
 {
     const struct packing *pack = f->of->p->packing;
@@ -208,7 +208,7 @@ void fill_bond(const struct slot_filling *f)
     x->rho[k] = *rho * lambda / rolling_lambda(&q);
 }
 
-/* The rows R_i of a body, or a boundary */
+/* The rows R_i of a body, or a wall */
 static void set_turning(double R[9][BUNDLE], int k, const struct packing *pack, int32_t i,
                         const struct contact *c, const quat *half)
 {

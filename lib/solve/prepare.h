@@ -1,7 +1,7 @@
 /*
  * solve/prepare.h: the contact problem of a packing, whichever form it needs.
  *
- * Where loads push boundaries or the cell, and contacts touch these, the problem is given by the W
+ * Where loads push walls or the cell, and contacts touch these, the problem is given by the W
  * in which the freedoms' speeds are unknowns too [solve/assembly.h]:
  *
  *     D u~ = W r + q,   W = H^T M^-1 H with a row of H for each freedom.

@@ -40,7 +40,7 @@ static struct attraction_hold hold_of(const struct packing *p, const struct cont
     h.flush = FLUSH * p->radius[h.body];
     if (c->a >= 0) return h;
     const struct wall *w = &p->wall[-1 - c->a];
-    double weld = w->weld > 0 ? w->weld : WELD * boundary_reach(w);
+    double weld = w->weld > 0 ? w->weld : WELD * wall_reach(w);
     if (isfinite(weld)) h.flush = fmax(h.flush, weld);
     return h;
 }
@@ -212,7 +212,7 @@ static void attraction_clip(struct flat *f, const struct flat *by)
 static bool common_face(const struct surface_hold *y, struct flat *f)
 {
     const struct contact *c = &y->s->c[y->hold[0].i];
-    bool plane = c->a < 0 && y->p->wall[-1 - c->a].shape == BOUNDARY_PLANE;
+    bool plane = c->a < 0 && y->p->wall[-1 - c->a].shape == WALL_PLANE;
     struct flat of_a;
     vec3 edge[3];
     double most = 0;
@@ -337,11 +337,11 @@ static void share_pull(const struct attraction_run *y, struct attraction *of, in
 static bool passes(const struct packing *p, int32_t w, vec3 x, double radius, double near)
 {
     const struct wall *wall = &p->wall[w];
-    if (wall->shape == BOUNDARY_PLANE || wall->shape == BOUNDARY_MESH) return false;
+    if (wall->shape == WALL_PLANE || wall->shape == WALL_MESH) return false;
     const struct pose pose = wall_pose(p, wall, p->t + step_ahead(p));
     struct touch t;
     vec3 c = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), wall->x);
-    return boundary_nearest(wall, p->dim, c, radius, &t) && fabs(t.distance) <= near;
+    return wall_nearest(wall, p->dim, c, radius, &t) && fabs(t.distance) <= near;
 }
 
 /* Is hold i with the end of a wall where another wall goes on, which has a place nearer to the body? */

@@ -20,7 +20,7 @@ typedef int32_t edge_count[3];
  *   mass     0: immovable or prescribed
  *   inertia  the mean of the principal moments
  *   id       a number that stays with the body
- *   kind     row of the material tables
+ *   material     row of the material tables
  *   shape    row of the packing's shapes; NULL: all are balls
  *   group    1 + row of the packing's names; 0: of no group; NULL: all are
  *   q        orientation
@@ -31,7 +31,7 @@ typedef int32_t edge_count[3];
     X(double, mass, F64, 1, "mass", "kg", NOT_NEGATIVE, FIELD_SAME)                                \
     X(double, inertia, F64, 1, "inertia", "kg m2", NOT_NEGATIVE, FIELD_SAME)                       \
     X(int32_t, id, I32, 1, "id", "1", ANY, FIELD_SAME)                                             \
-    X(int32_t, kind, I32, 1, "species", "1", ANY, FIELD_SAME)                                      \
+    X(int32_t, material, I32, 1, "species", "1", ANY, FIELD_SAME)                                  \
     X(int32_t, shape, I32, 1, "shape", "1", ANY, FIELD_SAME | FIELD_BY_SETTINGS)                   \
     X(int32_t, group, I32, 1, "group", "1", ANY, FIELD_SAME | FIELD_OPTIONAL)                      \
     X(vec3, x, F64, 3, "position", "m", FINITE, FIELD_MOVES)                                       \

@@ -24,7 +24,7 @@ struct bond {
     double rest;    /* m, at most 0: the gap at which the spring does not push */
     /* Of grains that are no balls, a bond keeps the place where it was made [contact/bond_anchor.h]. */
     double area;     /* m^2; 0: none has been kept, and what follows is 0 */
-    vec3 at_a, at_b; /* m: in the frames of a, a body or a boundary, and of b */
+    vec3 at_a, at_b; /* m: in the frames of a, a body or a wall, and of b */
     vec3 axis;       /* the normal in the frame of b */
 };
 

@@ -10,14 +10,14 @@
 #include <stdint.h>
 
 struct contact {
-    int32_t a, b;    /* bodies; the normal points from a to b. Boundary w is -1-w and always a. */
+    int32_t a, b;    /* bodies; the normal points from a to b. Wall w is -1-w and always a. */
     int32_t feature; /* tells apart the contacts of one pair, and lasts from step to step: a
                         triangle of a mesh; 0 where a pair has one contact */
     int8_t shift[3]; /* of the cell: b is met at x_b + sum of shift[k] edge[k] */
     vec3 x;          /* m: the point of contact, between the bodies at their predicted positions */
     vec3 n, t1;      /* of the right-handed basis (n, t1, t2); in the plane t1 = z x n, t2 = z */
     double gap;      /* m, predicted; < 0: overlap */
-    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et: of the kinds of its bodies */
+    EACH_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et: of the materials of its bodies */
 };
 
 /* What a solver finds at a contact. Apart, so that it takes memory only after a solve. */
@@ -86,7 +86,7 @@ static inline bool contact_shifted(const struct contact *c)
     return c->shift[0] || c->shift[1] || c->shift[2];
 }
 
-/* Sorted by their keys, a first, so that boundaries come first; each key occurs once. */
+/* Sorted by their keys, a first, so that walls come first; each key occurs once. */
 struct contacts {
     int64_t n, room;     /* contacts; how many c has memory for */
     struct contact *c;   /* [n] */

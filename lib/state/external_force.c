@@ -11,7 +11,7 @@ static int32_t external_force_first_of(const struct drives *d, int32_t id)
     int32_t lo = 0, hi = d->n;
     while (lo < hi) {
         int32_t middle = lo + (hi - lo) / 2;
-        if (d->drive[middle].boundary < id)
+        if (d->drive[middle].wall < id)
             lo = middle + 1;
         else
             hi = middle;
@@ -22,7 +22,7 @@ static int32_t external_force_first_of(const struct drives *d, int32_t id)
 vec3 pulls_on(const struct drives *d, int32_t id, double t, bool turns)
 {
     vec3 sum = v3(0, 0, 0);
-    for (int32_t k = external_force_first_of(d, id); k < d->n && d->drive[k].boundary == id; k++) {
+    for (int32_t k = external_force_first_of(d, id); k < d->n && d->drive[k].wall == id; k++) {
         const struct drive *s = &d->drive[k];
         if (s->turns == turns && t >= s->from && t < s->until)
             sum = v3_axpy(sum, drive_way(d, s, t), s->axis);
@@ -44,8 +44,8 @@ double pulls_most(const struct drives *d, int64_t n, const int32_t *id, const do
     double most = 0;
     for (int64_t i = 0; d->n && i < n; i++) {
         double sum = 0;
-        for (int32_t k = external_force_first_of(d, id[i]);
-             k < d->n && d->drive[k].boundary == id[i]; k++)
+        for (int32_t k = external_force_first_of(d, id[i]); k < d->n && d->drive[k].wall == id[i];
+             k++)
             if (!d->drive[k].turns) sum += external_force_largest(d, &d->drive[k]);
         if (mass[i] > 0) most = fmax(most, sum / mass[i]);
     }

@@ -1,6 +1,6 @@
 /*
  * state/external_force.h: forces and torques on single bodies as functions of time, which a scene has: signals in N, N m along
- * and about an axis, each of the body whose id is its `boundary`, in the order of these ids. A step sees them at its
+ * and about an axis, each of the body whose id is its `wall`, in the order of these ids. A step sees them at its
  * middle, beside gravity.
  */
 #ifndef NSD_EXTERNAL_FORCE_H
@@ -26,7 +26,7 @@ int pulls_check(const struct drives *pulls, double most, int dim, struct failure
  *
  *     M (v+ - v) = dt (M g + F) + H r
  *
- * and those of boundaries add to their loads. All is of the step to come. A packing without any has none of the arrays.
+ * and those of walls add to their loads. All is of the step to come. A packing without any has none of the arrays.
  */
 
 /* Forces that act until they are changed: they go with documents, and a step of them makes its own [run/control.h]. */
@@ -38,9 +38,9 @@ struct lasting {
 struct external_force {
     vec3 *force, *torque; /* [n] N, N m, in space; NULL: none, of either */
     double most;          /* m/s^2: no body gains more by them; outside_measure() keeps it */
-    double *push;         /* [walls] N, N m: added to the load of a boundary; NULL: none */
+    double *push;         /* [walls] N, N m: added to the load of a wall; NULL: none */
     struct lasting lasts;
-    bool steered; /* gravity, friction or the motion of a boundary may differ from frame to frame */
+    bool steered; /* gravity, friction or the motion of a wall may differ from frame to frame */
     int64_t length, room; /* bytes of words */
     char *words; /* what was answered since the last frame: JSON lines, not ended by a 0; or NULL */
 };

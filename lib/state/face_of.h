@@ -1,5 +1,5 @@
 /*
- * state/face_of.h: on which face of a boundary [state/wall_faces.h] a contact lies. One on an edge or at a corner is on
+ * state/face_of.h: on which face of a wall [state/wall_faces.h] a contact lies. One on an edge or at a corner is on
  * the first face that it belongs to, by the order of the mesh.
  */
 #ifndef NSD_FACE_OF_H
@@ -11,7 +11,7 @@
 /* meshes: contacts are to be found on the faces of meshes; else all are on face 0. Returns as wall_faces_init(). */
 int face_of_init(struct wall_faces *f, const struct packing *p, bool meshes,
                  struct failure *failure);
-/* The face of a contact with a boundary, counted from the boundary's first one; ahead (s): from the packing's time to
+/* The face of a contact with a wall, counted from the wall's first one; ahead (s): from the packing's time to
    where the contact acts */
 int32_t face_of_contact(const struct wall_faces *f, const struct packing *p,
                         const struct contact *c, double ahead);

@@ -55,7 +55,7 @@ static bool any_shapes(const void *of)
 {
     const struct packing *p = of;
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape != BOUNDARY_PLANE || p->wall[w].until < INFINITY) return true;
+        if (p->wall[w].shape != WALL_PLANE || p->wall[w].until < INFINITY) return true;
     return false;
 }
 
@@ -63,7 +63,7 @@ const struct field wall_fields[] = {
     FIELD(struct wall, x, F64, 3, "point", "m", FIELD_SAME | FIELD_STEERED),
     FIELD(struct wall, n, F64, 3, "normal", "1", FIELD_SAME),
     FIELD(struct wall, v, F64, 3, "velocity", "m s-1", FIELD_SAME | FIELD_STEERED),
-    FIELD(struct wall, kind, I32, 1, "species", "1", FIELD_SAME),
+    FIELD(struct wall, material, I32, 1, "species", "1", FIELD_SAME),
     FIELD(struct wall, shape, I32, 1, "shape", "1", FIELD_SAME, .when = any_shapes),
     FIELD(struct wall, side, I32, 1, "side", "1", FIELD_SAME, .when = any_shapes),
     FIELD(struct wall, along, F64, 3, "along", "1", FIELD_SAME, .when = any_shapes),
@@ -98,7 +98,7 @@ const struct field load_motion_fields[] = {
 
 /* /particles/boundary/drive/NAME and, where a load is one in time, push/NAME [drives][width] */
 const struct field drive_fields[] = {
-    FIELD(struct drive, boundary, I32, 1, "boundary", "1", FIELD_SAME),
+    FIELD(struct drive, wall, I32, 1, "boundary", "1", FIELD_SAME),
     FIELD(struct drive, turns, I32, 1, "turns", "1", FIELD_SAME),
     FIELD(struct drive, signal, I32, 1, "signal", "1", FIELD_SAME),
     FIELD(struct drive, axis, F64, 3, "axis", "1", FIELD_SAME),
@@ -115,7 +115,7 @@ const struct field drive_fields[] = {
 
 /* /nsd/force/NAME [forces][width]: forces and torques on bodies, and their tables in /nsd/force/row */
 const struct field pull_fields[] = {
-    FIELD(struct drive, boundary, I32, 1, "id", "1", FIELD_SAME),
+    FIELD(struct drive, wall, I32, 1, "id", "1", FIELD_SAME),
     FIELD(struct drive, turns, I32, 1, "turns", "1", FIELD_SAME),
     FIELD(struct drive, signal, I32, 1, "signal", "1", FIELD_SAME),
     FIELD(struct drive, axis, F64, 3, "axis", "1", FIELD_SAME),
@@ -147,12 +147,12 @@ const struct field element_fields[] = {
 /* /nsd/names/NAME [rows][width], where any wall has a name */
 const struct field named_fields[] = {
     FIELD(struct named, name, I32, 1, "name", "1", FIELD_SAME),
-    FIELD(struct named, boundary, I32, 1, "boundary", "1", FIELD_SAME),
+    FIELD(struct named, wall, I32, 1, "boundary", "1", FIELD_SAME),
     FIELD(struct named, first, I32, 2, "faces", "1", FIELD_SAME),
     { 0 },
 };
 
-/* ---- materials: /nsd/law/NAME [kinds][kinds] where any pair has a law beyond friction and restitution ---- */
+/* ---- materials: /nsd/law/NAME [materials][materials] where any pair has a law beyond friction and restitution ---- */
 
 #define MATERIAL(member, name, unit, key, most, ...)                                               \
     FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME,                                  \
@@ -160,7 +160,7 @@ const struct field named_fields[] = {
 #define OPTIONAL(member, name, unit, key, most, ...)                                               \
     FIELD(struct packing, member, F64, 1, name, unit, FIELD_SAME | FIELD_OPTIONAL,                 \
           .range = (most) == 1 ? FIELD_FRACTION : FIELD_NOT_NEGATIVE),
-/* /nsd/material/NAME [kinds][kinds]: pointers in struct packing */
+/* /nsd/material/NAME [materials][materials]: pointers in struct packing */
 const struct field material_fields[] = {
     EACH_PAIR_COLUMN(MATERIAL) EACH_OPTIONAL_PAIR_COLUMN(OPTIONAL){ 0 },
 };

@@ -15,7 +15,8 @@ extern const struct field wall_fields[], load_fields[], load_motion_fields[]; /*
 extern const struct field drive_fields[], pull_fields[]; /* of struct drive: of walls, of bodies */
 extern const struct field drive_row_fields[], gradient_fields[], factor_fields[];
 extern const struct field vertex_fields[], element_fields[], named_fields[], law_fields[];
-extern const struct field material_fields[]; /* of struct packing: pointers to [kinds][kinds] */
+extern const struct field
+    material_fields[]; /* of struct packing: pointers to [materials][materials] */
 
 extern const struct field bond_fields[], recall_fields[], sum_fields[];
 extern const struct field poured_fields[], removed_fields[], event_fields[];

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { EDGE = -1, SIZE = -2, ROOM = -3 }; /* in place of a boundary */
+enum { EDGE = -1, SIZE = -2, ROOM = -3 }; /* in place of a wall */
 
 bool freedoms_in(const struct packing *p)
 {
@@ -26,7 +26,7 @@ static double middle(const struct packing *p, bool ended)
 static struct freedom wall_freedom(const struct packing *p, int32_t w, double t)
 {
     const struct load *l = &p->wall[w].load;
-    return (struct freedom){ .boundary = w,
+    return (struct freedom){ .wall = w,
                              .turns = l->way == LOAD_TURNS,
                              .axis = l->axis,
                              .point = l->point,
@@ -41,7 +41,7 @@ static struct freedom edge_freedom(const struct packing *p, int k, int i, const 
 {
     const struct cell *c = &p->cell;
     const double *row = c->stress[i], rate[3] = { c->rate[k].x, c->rate[k].y, c->rate[k].z };
-    struct freedom f = { .boundary = EDGE,
+    struct freedom f = { .wall = EDGE,
                          .edge = k,
                          .inverse = inverse[k],
                          .axis = v3(i == 0, i == 1, i == 2),
@@ -53,7 +53,7 @@ static struct freedom edge_freedom(const struct packing *p, int k, int i, const 
     return f;
 }
 
-/* Loads of boundaries that each move by themselves */
+/* Loads of walls that each move by themselves */
 static bool moves_alone(const struct wall *w)
 {
     return w->load.way && !servo_box_has(w);
@@ -62,7 +62,7 @@ static bool moves_alone(const struct wall *w)
 /* The size of the room with these levers */
 static struct freedom room_freedom(const struct packing *p, const double *lever, double t)
 {
-    return (struct freedom){ .boundary = ROOM,
+    return (struct freedom){ .wall = ROOM,
                              .mass = servo_box_mass(p),
                              .force = servo_box_force(p, lever, t),
                              .speed = servo_box_growth(p),
@@ -94,7 +94,7 @@ static double freedom_volume_of(const struct packing *p, const vec3 edge[3])
 static struct freedom size_freedom(const struct packing *p, const vec3 edge[3], double t)
 {
     const struct cell *c = &p->cell;
-    struct freedom f = { .boundary = SIZE, .mass = c->size_mass };
+    struct freedom f = { .wall = SIZE, .mass = c->size_mass };
     f.force = -p->dim * freedom_volume_of(p, edge) * c->mean * cell_factor_at(c, t);
     f.speed = cell_growth(c, step_after(p));
     for (int k = 0; k < p->dim; k++) f.gain[k] = edge[k];
@@ -233,12 +233,12 @@ static vec3 branch_of(const struct packing *p, const struct contact *c, double a
 vec3 freedom_direction(const struct freedom *f, const struct packing *p, const struct contact *c,
                        double ahead, const vec3 edge[3])
 {
-    if (f->boundary == SIZE) return branch_of(p, c, ahead, edge);
-    if (f->boundary == ROOM && c->a < 0)
+    if (f->wall == SIZE) return branch_of(p, c, ahead, edge);
+    if (f->wall == ROOM && c->a < 0)
         return v3_scale(-f->lever[-1 - c->a], p->wall[-1 - c->a].load.axis);
-    if (f->boundary == ROOM) return v3(0, 0, 0);
+    if (f->wall == ROOM) return v3(0, 0, 0);
     if (freedom_common(f)) return v3_scale(edges_between(f, p, c, ahead, edge), f->axis);
-    if (c->a != -1 - f->boundary) return v3(0, 0, 0);
+    if (c->a != -1 - f->wall) return v3(0, 0, 0);
     return v3_scale(-1, f->turns ? v3_cross(f->axis, v3_sub(c->x, f->point)) : f->axis);
 }
 
@@ -266,10 +266,10 @@ void freedom_move(const struct freedom *f, struct packing *p, double change, boo
 {
     if (freedom_of_cell(f))
         edge_move(p, f, change, back);
-    else if (f->boundary == ROOM)
+    else if (f->wall == ROOM)
         servo_box_move(p, f->lever, change, back);
     else
-        wall_move(p, &p->wall[f->boundary].load, change, back);
+        wall_move(p, &p->wall[f->wall].load, change, back);
 }
 
 void freedoms_move_rates(const struct freedoms *list, struct packing *p, bool back)
@@ -285,10 +285,10 @@ void freedoms_displace(const struct freedoms *list, struct packing *p, const dou
         const struct freedom *f = &list->f[k];
         if (freedom_of_cell(f))
             freedom_gain(f, way[k], gain);
-        else if (f->boundary == ROOM)
+        else if (f->wall == ROOM)
             servo_box_displace(p, f->lever, way[k]);
         else
-            p->wall[f->boundary].load.travel += way[k];
+            p->wall[f->wall].load.travel += way[k];
     }
     cell_flow_init(&flow, &p->cell, p->cell.edge, gain);
     for (int64_t i = 0; flow.changes && i < p->n; i++)

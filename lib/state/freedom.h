@@ -1,5 +1,5 @@
 /*
- * state/freedom.h: degrees of freedom beyond those of the grains: a boundary that a load pushes
+ * state/freedom.h: degrees of freedom beyond those of the grains: a wall that a load pushes
  * along an axis or turns about one, the size of a room between walls that yields to a mean pressure,
  * an edge of the cell that yields to a stress.
  *
@@ -39,10 +39,10 @@
 
 struct freedom {
     int32_t
-        boundary; /* the boundary that it moves; -1: the cell's edge; -2: its size; -3: the room of walls */
-    int edge;            /* of the cell; it yields along an axis of space */
+        wall; /* the wall that it moves; -1: the cell's edge; -2: its size; -3: the room of walls */
+    int edge; /* of the cell; it yields along an axis of space */
     vec3 inverse;        /* 1/m: counts edges, inverse . d, where the contacts act */
-    vec3 gain[3];        /* of the cell's rates, a unit of speed; of a boundary 0 */
+    vec3 gain[3];        /* of the cell's rates, a unit of speed; of a wall 0 */
     bool turns;          /* about the axis, not along it */
     vec3 axis, point;    /* unit vector; m: a point on the axis, of the predicted position */
     double mass;         /* kg, or kg m^2 */
@@ -53,9 +53,8 @@ struct freedom {
 
 struct freedoms {
     int32_t n;
-    struct freedom
-        *f; /* [n] boundaries first, in their order, then the room, then edges, or the size */
-    double *lever; /* [walls] of a room that may not yield; NULL: there is none */
+    struct freedom *f; /* [n] walls first, in their order, then the room, then edges, or the size */
+    double *lever;     /* [walls] of a room that may not yield; NULL: there is none */
 };
 
 /* Whether the packing has any, or a room that moves by rates alone. */
@@ -76,13 +75,13 @@ double freedoms_calm(const struct packing *p);
    of a size. */
 static inline bool freedom_common(const struct freedom *f)
 {
-    return f->boundary < 0;
+    return f->wall < 0;
 }
 
 /* Do all bodies follow it? Of the cell. */
 static inline bool freedom_of_cell(const struct freedom *f)
 {
-    return f->boundary == -1 || f->boundary == -2;
+    return f->wall == -1 || f->wall == -2;
 }
 
 /* m/s: gain[3] of the cell's edges += what a change of its speed makes of their rates */
@@ -94,20 +93,20 @@ static inline void freedom_gain(const struct freedom *f, double change, vec3 gai
 }
 
 /* Of the packing's contact c, whose bodies are `ahead` (s) from where it acts, the cell's edges (m) there:
-   the velocity of b relative to a per unit speed: -axis for a boundary that glides, -axis x (x_c - point)
+   the velocity of b relative to a per unit speed: -axis for a wall that glides, -axis x (x_c - point)
    for one that turns, -lever axis for a room, (inverse . d) axis for an edge; 0 for others. */
 vec3 freedom_direction(const struct freedom *f, const struct packing *p, const struct contact *c,
                        double ahead, const vec3 edge[3]);
 
 /*
- * The speed changes where the contacts act, at the predicted position. A boundary also makes its
+ * The speed changes where the contacts act, at the predicted position. A wall also makes its
  * way along or about the axis, dt s + theta dt change, while an edge gets theta dt change alone:
  * the rest, dt rate, is the motion of the cell. back: the inverse.
  */
 void freedom_move(const struct freedom *f, struct packing *p, double change, bool back);
 /* The step of a room's walls, if there is a room and no freedom of it, by its rates alone; back: the inverse. */
 void freedoms_move_rates(const struct freedoms *list, struct packing *p, bool back);
-/* What they move is displaced by way[n] (m; of a room in levers) along their axes, without a velocity: boundaries, edges, and the
+/* What they move is displaced by way[n] (m; of a room in levers) along their axes, without a velocity: walls, edges, and the
    bodies that follow these. */
 void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way);
 

@@ -60,7 +60,7 @@ static size_t names_character(const unsigned char *s, size_t n)
     return length;
 }
 
-const char *name_trouble_of_kind(const char *text, size_t n)
+const char *name_trouble_of_material(const char *text, size_t n)
 {
     if (!n) return "is empty";
     if (n > NAME_BYTES) return "is longer than 60 bytes";
@@ -74,7 +74,7 @@ const char *name_trouble_of_kind(const char *text, size_t n)
 
 const char *name_trouble(const char *text, size_t n)
 {
-    const char *trouble = name_trouble_of_kind(text, n);
+    const char *trouble = name_trouble_of_material(text, n);
     if (trouble) return trouble;
     return strspn(text, "0123456789") >= n ? "is a number, as walls have without a name" : NULL;
 }
@@ -99,7 +99,7 @@ int names_add(struct names *s, const char *text, int32_t *which, struct failure 
     return add_text(s, text, n, failure);
 }
 
-int names_give(struct names *s, const char *text, int32_t boundary, int32_t first, int32_t count,
+int names_give(struct names *s, const char *text, int32_t wall, int32_t first, int32_t count,
                struct failure *failure)
 {
     int32_t name;
@@ -107,14 +107,14 @@ int names_give(struct names *s, const char *text, int32_t boundary, int32_t firs
     if (s->rows == NAMED_MOST)
         return failure_set(failure, EX_DATAERR, "names of more than %d ranges of faces",
                            NAMED_MOST);
-    return names_add_row(s, (struct named){ name, boundary, first, count }, failure);
+    return names_add_row(s, (struct named){ name, wall, first, count }, failure);
 }
 
 static int names_compare(const void *a, const void *b)
 {
     const struct named *x = a, *y = b;
     if (x->name != y->name) return x->name < y->name ? -1 : 1;
-    if (x->boundary != y->boundary) return x->boundary < y->boundary ? -1 : 1;
+    if (x->wall != y->wall) return x->wall < y->wall ? -1 : 1;
     if ((x->count == 0) != (y->count == 0)) return x->count ? 1 : -1; // a whole one first
     return (x->first > y->first) - (x->first < y->first);
 }
@@ -125,7 +125,7 @@ void names_settle(struct names *s)
     if (s->rows) qsort(s->row, (size_t)s->rows, sizeof *s->row, names_compare);
     for (int32_t k = 0; k < s->rows; k++) {
         struct named *last = n ? &s->row[n - 1] : NULL, now = s->row[k];
-        bool same = last && last->name == now.name && last->boundary == now.boundary;
+        bool same = last && last->name == now.name && last->wall == now.wall;
         if (same && !last->count) continue;
         if (same && now.first <= last->first + last->count) {
             int32_t end = now.first + now.count;
@@ -148,16 +148,16 @@ int names_check(const struct names *s, int32_t walls, const struct wall *wall,
     }
     for (int32_t k = 0; k < s->rows; k++) {
         const struct named *r = &s->row[k], *last = k ? r - 1 : NULL;
-        if (r->name < 0 || r->name >= s->n || r->boundary < 0 || r->boundary >= walls)
+        if (r->name < 0 || r->name >= s->n || r->wall < 0 || r->wall >= walls)
             return failure_set(failure, EX_DATAERR, "names: no such name, or no such wall");
-        const struct wall *w = &wall[r->boundary];
-        int32_t faces = w->shape == BOUNDARY_MESH ? w->elements : 0;
+        const struct wall *w = &wall[r->wall];
+        int32_t faces = w->shape == WALL_MESH ? w->elements : 0;
         if (r->first < 0 || r->count < 0 || r->first > faces || r->count > faces - r->first ||
             (!r->count && r->first))
             return failure_set(failure, EX_DATAERR,
                                "name \"%s\": wall %d has no such faces, it has %d",
-                               s->text[r->name], r->boundary, faces);
-        bool same = last && last->name == r->name && last->boundary == r->boundary;
+                               s->text[r->name], r->wall, faces);
+        bool same = last && last->name == r->name && last->wall == r->wall;
         if (last && (names_compare(last, r) >= 0 ||
                      (same && (!last->count || r->first < last->first + last->count))))
             return failure_set(failure, EX_DATAERR, "names: not sorted, or a face twice");
@@ -165,20 +165,20 @@ int names_check(const struct names *s, int32_t walls, const struct wall *wall,
     return 0;
 }
 
-const char *names_of_wall(const struct names *s, int32_t boundary)
+const char *names_of_wall(const struct names *s, int32_t wall)
 {
     for (int32_t k = 0; k < s->rows; k++)
-        if (s->row[k].boundary == boundary && !s->row[k].count) return s->text[s->row[k].name];
+        if (s->row[k].wall == wall && !s->row[k].count) return s->text[s->row[k].name];
     return NULL;
 }
 
-const char *names_of_face(const struct names *s, int32_t boundary, int32_t face)
+const char *names_of_face(const struct names *s, int32_t wall, int32_t face)
 {
     for (int32_t k = s->rows - 1; k >= 0;
          k--) { // an object's name comes before those of its groups
         const struct named *r = &s->row[k];
-        if (r->boundary == boundary && face >= r->first && face < r->first + r->count)
+        if (r->wall == wall && face >= r->first && face < r->first + r->count)
             return s->text[r->name];
     }
-    return names_of_wall(s, boundary);
+    return names_of_wall(s, wall);
 }

@@ -12,7 +12,7 @@ static bool may_bend(const struct packing *p, const struct contact *c)
 {
     if (c->a >= 0 || !overlap_sees_gaps(p->overlap) || overlap_pushes(p->overlap)) return false;
     int32_t shape = p->wall[-1 - c->a].shape;
-    bool round = shape == BOUNDARY_CYLINDER || shape == BOUNDARY_CONE || shape == BOUNDARY_SPHERE;
+    bool round = shape == WALL_CYLINDER || shape == WALL_CONE || shape == WALL_SPHERE;
     return round && !packing_shape(p, c->b);
 }
 
@@ -31,7 +31,7 @@ static double bend_of(const struct packing *p, const struct contact *c)
     vec3 x = v3_axpy(v3_axpy(c->x, c->gap + r, c->n), p->dt, p->v[c->b]);
     vec3 at = v3_sub(quat_turn_back(pose.q, v3_sub(x, pose.shift)), w->x);
     struct touch t;
-    if (!boundary_nearest(w, p->dim, at, r, &t)) return 0;
+    if (!wall_nearest(w, p->dim, at, r, &t)) return 0;
     double bend = c->gap + p->dt * opening_of(p, c, ahead) - (t.distance - r);
     return fmin(fmax(0, bend), BEND_MOST * r);
 }

@@ -27,8 +27,8 @@ void events_free(struct events *s)
 
 const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
                                                   "push", "project", "gap-project" };
-/* Boundaries that bodies may have: each body asks each, which takes up to 40 ns; for many bodies, and for few */
-enum { BOUNDARIES_BODY = 4096, BOUNDARIES_LEAST = 1 << 26 };
+/* Walls that bodies may have: each body asks each, which takes up to 40 ns; for many bodies, and for few */
+enum { WALLS_BODY = 4096, WALLS_LEAST = 1 << 26 };
 enum { IMAGES_MOST = 1 << 30 }; /* so that sums and differences of images are numbers too */
 
 static void *array(int64_t n, size_t size)
@@ -89,7 +89,7 @@ int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
     for (int k = 0; k < BODY_COLUMNS && !failure->status; k++)
         if (!is_optional(&body_columns[k])) packing_alloc_column(p, k, failure);
     if (failure->status || packing_alloc_walls(p, 0, failure) ||
-        packing_alloc_kinds(p, 1, failure)) {
+        packing_alloc_materials(p, 1, failure)) {
         packing_free(p);
         return failure->status;
     }
@@ -98,11 +98,11 @@ int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
     return 0;
 }
 
-static void kinds_free(struct packing *p)
+static void materials_free(struct packing *p)
 {
-    for (int32_t k = 0; p->kind_name && k < p->kinds; k++) free(p->kind_name[k]);
-    free(p->kind_name), free(p->law);
-    p->kind_name = NULL, p->law = NULL, p->kinds = 0;
+    for (int32_t k = 0; p->material_name && k < p->materials; k++) free(p->material_name[k]);
+    free(p->material_name), free(p->law);
+    p->material_name = NULL, p->law = NULL, p->materials = 0;
 #define FREE(member, ...) free(p->member), p->member = NULL;
     EVERY_PAIR_COLUMN(FREE)
 #undef FREE
@@ -117,27 +117,27 @@ int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure)
     return p->wall ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d walls", k);
 }
 
-int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure)
+int packing_alloc_materials(struct packing *p, int32_t k, struct failure *failure)
 {
-    kinds_free(p);
-    p->kind_name = array(k, sizeof *p->kind_name);
-    bool allocated = p->kind_name;
+    materials_free(p);
+    p->material_name = array(k, sizeof *p->material_name);
+    bool allocated = p->material_name;
 #define ALLOC(member, ...)                                                                         \
     p->member = array((int64_t)k * k, sizeof *p->member);                                          \
     allocated = allocated && p->member;
     EVERY_PAIR_COLUMN(ALLOC)
 #undef ALLOC
-    for (p->kinds = 0; allocated && p->kinds < k; p->kinds++) {
+    for (p->materials = 0; allocated && p->materials < k; p->materials++) {
         char name[16];
-        snprintf(name, sizeof name, "%d", p->kinds);
-        allocated = (p->kind_name[p->kinds] = strdup(name));
+        snprintf(name, sizeof name, "%d", p->materials);
+        allocated = (p->material_name[p->materials] = strdup(name));
     }
     return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", k);
 }
 
 bool packing_has_springs(const struct packing *p)
 {
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_springs(&p->law[k])) return true;
     return false;
 }
@@ -150,27 +150,27 @@ bool packing_springs(const struct packing *p, const struct contact *c)
 int packing_alloc_laws(struct packing *p, struct failure *failure)
 {
     free(p->law);
-    p->law = array((int64_t)p->kinds * p->kinds, sizeof *p->law);
-    return p->law ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", p->kinds);
+    p->law = array((int64_t)p->materials * p->materials, sizeof *p->law);
+    return p->law ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", p->materials);
 }
 
 bool packing_sticks(const struct packing *p)
 {
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; k < p->materials * p->materials; k++)
         if (p->mu_s[k] > 0) return true;
     return false;
 }
 
 bool packing_rolls(const struct packing *p)
 {
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_rolls(&p->law[k])) return true;
     return false;
 }
 
 bool packing_may_gain(const struct packing *p)
 {
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++)
+    for (int32_t k = 0; k < p->materials * p->materials; k++)
         if (p->mu[k] > 0 && p->en[k] > 0) return true;
     return false;
 }
@@ -300,14 +300,14 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
     if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
         return "rotates out of the plane, and dim is 2";
-    if (p->kind[i] < 0 || p->kind[i] >= p->kinds) return "kind has no material";
+    if (p->material[i] < 0 || p->material[i] >= p->materials) return "kind has no material";
     if (p->group && (p->group[i] < 0 || p->group[i] > p->names.n)) return "group has no name";
     return NULL;
 }
 
 enum {
     SPREAD_MOST = 1000
-}; /* boundaries, each of which may bound the face of each that a pressure is on */
+}; /* walls, each of which may bound the face of each that a pressure is on */
 
 static const char *packing_load_trouble(const struct packing *p, const struct wall *w)
 {
@@ -320,7 +320,7 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     if (!isfinite(l->rate) || (!room && l->rate != 0))
         return "it has a strain rate that is not finite, or no room";
     if (room && l->mass > 0 && !l->spread) return "the load of its room is no pressure";
-    if (room && w->shape != BOUNDARY_PLANE) return "it belongs to a room, and is no plane";
+    if (room && w->shape != WALL_PLANE) return "it belongs to a room, and is no plane";
     if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
         return "its load is not finite";
     if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
@@ -328,7 +328,7 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     bool leaves = turns ? l->axis.x != 0 || l->axis.y != 0 : l->axis.z != 0;
     if (p->dim == 2 && (leaves || l->point.z != 0))
         return "its load leaves the plane, and dim is 2";
-    if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != BOUNDARY_PLANE)))
+    if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != WALL_PLANE)))
         return "its pressure is not on a plane that translates";
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
@@ -337,7 +337,7 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     if (l->spread && !(wall_face(p, w, p->t) > 0))
         return "its pressure needs planes on all sides of its face, or a periodic cell: "
                "give a force";
-    if (turns && w->shape == BOUNDARY_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
+    if (turns && w->shape == WALL_PLANE && !(v3_norm(v3_cross(l->axis, w->n)) < 1e-6))
         return "it rotates about another axis than its normal";
     return NULL;
 }
@@ -380,13 +380,13 @@ static int check_room(const struct packing *p, struct failure *failure)
 
 static const char *wall_trouble(const struct packing *p, const struct wall *w)
 {
-    const char *trouble = boundary_trouble(w, p->dim);
+    const char *trouble = wall_shape_trouble(w, p->dim);
     if (trouble) return trouble;
-    bool mesh = w->shape == BOUNDARY_MESH;
+    bool mesh = w->shape == WALL_MESH;
     if (mesh && (w->first_element < 0 || w->first_element > p->mesh.elements ||
                  w->elements > p->mesh.elements - w->first_element))
         return "its mesh is missing";
-    if (w->kind < 0 || w->kind >= p->kinds) return "kind has no material";
+    if (w->material < 0 || w->material >= p->materials) return "kind has no material";
     if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
     return packing_load_trouble(p, w);
 }
@@ -396,9 +396,9 @@ static bool repeats_along(const struct packing *p, const struct wall *w, vec3 ed
 {
     double tiny = 1e-9 * v3_norm(edge);
     for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns && w->shape == BOUNDARY_PLANE) return false;
-    if (w->shape == BOUNDARY_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
-    if (w->shape != BOUNDARY_CYLINDER || w->size[2] > 0) return false;
+        if (p->drives.drive[k].turns && w->shape == WALL_PLANE) return false;
+    if (w->shape == WALL_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
+    if (w->shape != WALL_CYLINDER || w->size[2] > 0) return false;
     return v3_norm(v3_cross(edge, w->n)) <= tiny;
 }
 
@@ -462,7 +462,7 @@ int packing_check_bodies(const struct packing *p, int64_t first, struct failure 
                : 0;
 }
 
-/* The numbers of a pair of kinds */
+/* The numbers of a pair of materials */
 static int check_pair(const struct packing *p, int32_t i, struct failure *failure)
 {
     const struct field *bad = NULL;
@@ -475,8 +475,8 @@ static int check_pair(const struct packing *p, int32_t i, struct failure *failur
     if (!trouble && p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
     if (!trouble) return 0;
     return failure_set(failure, EX_DATAERR, "the material of kinds %s and %s: %s%s%s",
-                       p->kind_name[i / p->kinds], p->kind_name[i % p->kinds], bad ? bad->name : "",
-                       bad ? " " : "", trouble);
+                       p->material_name[i / p->materials], p->material_name[i % p->materials],
+                       bad ? bad->name : "", bad ? " " : "", trouble);
 }
 
 int packing_check(const struct packing *p, struct failure *failure)
@@ -492,14 +492,14 @@ int packing_check(const struct packing *p, struct failure *failure)
     if (external_force_check(&p->outside, p->dim, p->n, p->walls, failure)) return failure->status;
     if (p->dim == 2 && p->g.z != 0)
         return failure_set(failure, EX_DATAERR, "gravity leaves the plane, and dim is 2");
-    for (int32_t i = 0; i < p->kinds * p->kinds; i++)
+    for (int32_t i = 0; i < p->materials * p->materials; i++)
         if (check_pair(p, i, failure)) return failure->status;
     if (packing_check_each_body(p, 0, failure)) return failure->status;
-    if (p->walls > BOUNDARIES_BODY && (p->walls - BOUNDARIES_BODY) * p->n > BOUNDARIES_LEAST)
+    if (p->walls > WALLS_BODY && (p->walls - WALLS_BODY) * p->n > WALLS_LEAST)
         return failure_set(
             failure, EX_DATAERR,
             "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
-            (long long)p->n, p->walls, BOUNDARIES_BODY);
+            (long long)p->n, p->walls, WALLS_BODY);
     if (drives_check(&p->drives, p->walls, p->dim, "drive", failure) ||
         drives_check(&p->pushes, p->walls, p->dim, "push", failure))
         return failure->status; // before any wall is asked where it is
@@ -514,7 +514,7 @@ int packing_check(const struct packing *p, struct failure *failure)
         sums_check(&p->sums, p->walls, p->wall, failure))
         return failure->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
-        if (!p->wall[p->pushes.drive[i].boundary].load.way)
+        if (!p->wall[p->pushes.drive[i].wall].load.way)
             return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled",
                                i);
     if (pulls_check(&p->pulls, p->pulls_most, p->dim, failure)) return failure->status;

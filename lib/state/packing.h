@@ -132,7 +132,7 @@ struct packing {
     enum overlap overlap;
 
     EACH_BODY_COLUMN(
-        BODY_POINTER) /* radius, mass, inertia, id, kind, shape, x, v, w, q, image: [n] */
+        BODY_POINTER) /* radius, mass, inertia, id, material, shape, x, v, w, q, image: [n] */
 
     struct shapes shapes; /* of bodies; radius is that of the ball around them */
 
@@ -143,15 +143,17 @@ struct packing {
     struct drives pulls;   /* forces and torques on bodies [state/external_force.h] */
     double pulls_most;     /* m/s^2: no body gains more by them */
     struct mesh mesh;      /* of those that are meshes */
-    struct names names;    /* of boundaries, of parts of them and of groups of bodies */
+    struct names names;    /* of walls, of parts of them and of groups of bodies */
     struct wall_sums sums; /* over steps, of what bodies do to them */
     struct cell cell;
 
-    int32_t kinds;
-    char **kind_name;               /* [kinds] */
-    EVERY_PAIR_COLUMN(PAIR_POINTER) /* mu, en, et, mu_s, v_s, inert: [kinds * kinds], symmetric */
-    struct pair_law *law; /* [kinds * kinds], symmetric: what is beyond these; NULL: nothing */
-    struct bonds bonds;   /* what lasts of pairs by these laws */
+    int32_t materials;
+    char **material_name; /* [materials] */
+    EVERY_PAIR_COLUMN(
+        PAIR_POINTER) /* mu, en, et, mu_s, v_s, inert: [materials * materials], symmetric */
+    struct pair_law
+        *law; /* [materials * materials], symmetric: what is beyond these; NULL: nothing */
+    struct bonds bonds; /* what lasts of pairs by these laws */
 
     struct memory memory;          /* the reactions that the next step starts from */
     struct external_force outside; /* what acts from outside in the step to come */
@@ -180,17 +182,17 @@ struct whole packing_whole(const struct packing *p);
 /* kg: of the bodies that move; 1 where none does */
 double packing_mean_mass(const struct packing *p);
 
-/* n bodies (orientation 1, id = index), no wall and one kind "0"; theta = 1/2; all else is zero,
+/* n bodies (orientation 1, id = index), no wall and one material "0"; theta = 1/2; all else is zero,
    dt too. Returns 0 or EX_SOFTWARE. */
 int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure);
 void packing_free(struct packing *p);
 
-/* k walls, k kinds, in place of the old ones; their numbers are 0 and kinds are named "0", "1" ...
+/* k walls, k materials, in place of the old ones; their numbers are 0 and materials are named "0", "1" ...
    Each returns 0 or EX_SOFTWARE. */
 int packing_alloc_walls(struct packing *p, int32_t k, struct failure *failure);
-int packing_alloc_kinds(struct packing *p, int32_t k, struct failure *failure);
+int packing_alloc_materials(struct packing *p, int32_t k, struct failure *failure);
 
-/* law[kinds * kinds], all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
+/* law[materials * materials], all zero, in place of the old ones. Returns 0 or EX_SOFTWARE. */
 int packing_alloc_laws(struct packing *p, struct failure *failure);
 
 /* Accounts of so many pours and removals, all zero, in place of the old ones. Returns 0 or
@@ -204,13 +206,13 @@ static inline bool packing_varies(const struct packing *p)
     return p->pours > 0 || p->removals > 0;
 }
 
-/* Has any pair of kinds static friction of its own? */
+/* Has any pair of materials static friction of its own? */
 bool packing_sticks(const struct packing *p);
-/* Has any pair of kinds rolling or pivoting friction? */
+/* Has any pair of materials rolling or pivoting friction? */
 bool packing_rolls(const struct packing *p);
 /* May an impact gain energy [step/balance.h]? It needs restitution and friction. */
 bool packing_may_gain(const struct packing *p);
-/* Have contacts of any pair of kinds, and has this one, a stiffness [contact/spring.h]? */
+/* Have contacts of any pair of materials, and has this one, a stiffness [contact/spring.h]? */
 bool packing_has_springs(const struct packing *p);
 bool packing_springs(const struct packing *p, const struct contact *c);
 /* Is Newton's law to be bounded for the contact [step/balance.h]? */
@@ -355,19 +357,19 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 
-/* Where mu, en, et and law have what body a (< 0: boundary -1-a) and body b do to each other */
+/* Where mu, en, et and law have what body a (< 0: wall -1-a) and body b do to each other */
 static inline int32_t packing_pair(const struct packing *p, int32_t a, int32_t b)
 {
-    return (a < 0 ? p->wall[-1 - a].kind : p->kind[a]) * p->kinds + p->kind[b];
+    return (a < 0 ? p->wall[-1 - a].material : p->material[a]) * p->materials + p->material[b];
 }
 
-/* May body a (< 0: boundary -1-a) and body b have contacts: does one of them move, and do their kinds act on each other? */
+/* May body a (< 0: wall -1-a) and body b have contacts: does one of them move, and do their materials act on each other? */
 static inline bool packing_may_meet(const struct packing *p, int32_t a, int32_t b)
 {
     return (p->mass[b] > 0 || (a >= 0 && p->mass[a] > 0)) && p->inert[packing_pair(p, a, b)] == 0;
 }
 
-/* The contact's friction and restitution, of the kinds of its bodies */
+/* The contact's friction and restitution, of the materials of its bodies */
 static inline void packing_set_law(const struct packing *p, struct contact *c)
 {
     int32_t k = packing_pair(p, c->a, c->b);

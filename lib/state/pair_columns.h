@@ -1,6 +1,5 @@
 /*
- * state/pair_columns.h: the table of the contact law's parameters, numbers that each pair of kinds of
- * material has. A row makes a symmetric matrix of struct packing, [kinds * kinds], a key of scenes and a dataset; and
+ * state/pair_columns.h: the table of the contact law's parameters, numbers that each pair of materials has. A row makes a symmetric matrix of struct packing, [materials * materials], a key of scenes and a dataset; and
  * of the first table the number of struct contact that is taken from it, and its dataset.
  */
 #ifndef NSD_PAIR_COLUMNS_H

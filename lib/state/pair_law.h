@@ -1,13 +1,13 @@
 /*
- * state/pair_law.h: what two kinds of material do to each other beyond Coulomb's friction and Newton's
- * restitution: a row of a table for each pair of kinds.
+ * state/pair_law.h: what two materials do to each other beyond Coulomb's friction and Newton's
+ * restitution: a row of a table for each pair of materials.
  *
  * Cohesion: a constant pull f_c while the gap is below a range, and liquid bridges. A bridge of
  * volume V is made where two bodies touch, and ruptures at a distance; before it pulls with
  *
  *     f(g) = 2 pi R sigma cos(theta) (1 - g / sqrt(g^2 + c^2)),   c^2 = 2 V / (pi R)
  *
- * [Pitois, Moucheront & Chateau 2000, (7)], with R = 2 R_a R_b/(R_a + R_b), and 2 R_b at a boundary
+ * [Pitois, Moucheront & Chateau 2000, (7)], with R = 2 R_a R_b/(R_a + R_b), and 2 R_b at a wall
  * [Derjaguin], down to g = D = (1 + theta/2) V^(1/3) [Lian, Thornton & Adams 1993]. Its energy is
  * minus the integral of f from g to D, in closed form.
  *
@@ -72,7 +72,7 @@ static inline bool pair_law_attracts(const struct pair_law *l)
     return l->cohesion > 0 || pair_law_wets(l) || pair_law_adheres(l);
 }
 
-/* m: R of the bridge between bodies of these radii, or, b alone, between b and a boundary */
+/* m: R of the bridge between bodies of these radii, or, b alone, between b and a wall */
 double bridge_radius(double a, double b);
 /* m: where it ruptures */
 double bridge_reach(const struct pair_law *law);

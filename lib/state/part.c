@@ -43,14 +43,15 @@
 #define STEERED(member)                                                                            \
     (offsetof(struct packing, member) == offsetof(struct packing, mu) ? FIELD_STEERED : 0)
 #define PAIR(member, name, unit, ...)                                                              \
-    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, member, PART_SQUARE, kinds, 0,          \
+    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, member, PART_SQUARE, materials, 0,      \
           ALONE(F64, 1, name, unit, FIELD_SAME | STEERED(member))),
 
 const struct part packing_parts[] = {
     EACH_BODY_COLUMN(BODY) // rows of macros end with commas
-    TEXTS("kind", "kinds", PART_SETTING, kind_name, PART_I32, kinds),
+    TEXTS("kind", "kinds", PART_SETTING, material_name, PART_I32, materials),
     EVERY_PAIR_COLUMN(PAIR) // these, too
-    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE, kinds, 0, law_fields),
+    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE, materials, 0,
+          law_fields),
     SETTING("wall", "walls", wall, walls, wall_fields),
     ARRAY("load", "walls", PART_SETTING | PART_AGAIN, wall, PART_I32, walls, 0, load_fields),
     SETTING("drive", "drives", drives.drive, drives.n, drive_fields),
@@ -203,8 +204,8 @@ static int same_fields(const struct field *fields, const char *row, const void *
 static void name_of_row(const struct part *a, const struct packing *p, int64_t i, char text[200])
 {
     if (a->how == PART_SQUARE)
-        snprintf(text, 200, "kinds %.80s and %.80s: ", p->kind_name[i / p->kinds],
-                 p->kind_name[i % p->kinds]);
+        snprintf(text, 200, "kinds %.80s and %.80s: ", p->material_name[i / p->materials],
+                 p->material_name[i % p->materials]);
     else
         snprintf(text, 200, "%s %lld: ", a->name, (long long)i);
 }

@@ -1,4 +1,4 @@
-/* state/placement.h: where bodies, the cell's edges and boundaries are when contacts are sought. */
+/* state/placement.h: where bodies, the cell's edges and walls are when contacts are sought. */
 #ifndef NSD_PLACEMENT_H
 #define NSD_PLACEMENT_H
 
@@ -10,7 +10,7 @@ struct positions {
     const vec3 *x; /* [p->n] m: the bodies' centres */
     const quat *q; /* [p->n] how shaped bodies are turned */
     vec3 edge[3];  /* m: of the cell */
-    double t;      /* s: at which boundaries are placed */
+    double t;      /* s: at which walls are placed */
 };
 
 /* Of a packing at its time; borrows its arrays. */

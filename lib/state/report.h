@@ -51,7 +51,7 @@ struct err {
 /* How deep bodies are in one another */
 struct depth {
     double deepest;    /* radii; 0: nothing overlaps */
-    int32_t pair[2];   /* the ids of a and b there; boundary w is -1-w */
+    int32_t pair[2];   /* the ids of a and b there; wall w is -1-w */
     int64_t wedged;    /* bodies */
     int32_t wedged_id; /* the first of them */
 };
@@ -75,7 +75,7 @@ struct balance {
        step; and its change in the step */
     double peculiar, peculiar_change;
     double momentum[3]; /* N s: of the bodies, after the step */
-    double impulse[3];  /* N s: of boundaries and fixed bodies on the others, in the step */
+    double impulse[3];  /* N s: of walls and fixed bodies on the others, in the step */
 };
 
 /* What would be infinite or no number after a step, for which the step is not made; the first found */
@@ -118,7 +118,7 @@ struct report {
     int64_t safeguarded; /* local solves that ended with the exact solution instead */
     int64_t gave_up;     /* local solves that did not satisfy the law */
     bool watched; /* passed is known: there is what bodies may go through [contact/tunnelling.h] */
-    int64_t passed; /* bodies that went through a boundary or another body in this step */
+    int64_t passed; /* bodies that went through a wall or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
     struct endless endless;            /* for which the step was not made */

@@ -8,7 +8,7 @@
 
 void selection_free(struct selection *c)
 {
-    free(c->wall), free(c->name), free(c->kind);
+    free(c->wall), free(c->name), free(c->material);
     *c = (struct selection){ 0 };
 }
 
@@ -17,8 +17,8 @@ static void list_all(const struct packing *p, char *text, size_t room)
 {
     size_t at = 0;
     text[0] = 0;
-    for (int32_t k = 0; k < p->names.n + p->kinds && at < room; k++) {
-        const char *name = k < p->names.n ? p->names.text[k] : p->kind_name[k - p->names.n];
+    for (int32_t k = 0; k < p->names.n + p->materials && at < room; k++) {
+        const char *name = k < p->names.n ? p->names.text[k] : p->material_name[k - p->names.n];
         at += (size_t)snprintf(text + at, room - at, "%s%s", k ? ", " : "", name);
     }
     if (p->walls && at < room)
@@ -47,13 +47,13 @@ static bool selection_choose(struct selection *c, const struct packing *p, const
         c->name[name] = true;
         for (int32_t k = 0; k < p->names.rows; k++)
             if (p->names.row[k].name == name && !p->names.row[k].count)
-                c->wall[p->names.row[k].boundary] = true;
+                c->wall[p->names.row[k].wall] = true;
         return true;
     }
-    for (int32_t k = 0; k < p->kinds; k++) {
-        if (strncmp(p->kind_name[k], word, n) != 0 || p->kind_name[k][n]) continue;
-        c->kind[k] = true;
-        for (int32_t w = 0; w < p->walls; w++) c->wall[w] = c->wall[w] || p->wall[w].kind == k;
+    for (int32_t k = 0; k < p->materials; k++) {
+        if (strncmp(p->material_name[k], word, n) != 0 || p->material_name[k][n]) continue;
+        c->material[k] = true;
+        for (int32_t w = 0; w < p->walls; w++) c->wall[w] = c->wall[w] || p->wall[w].material == k;
         return true;
     }
     return false;
@@ -74,8 +74,9 @@ int selection_init(struct selection *c, const struct packing *p, const char *opt
     if (!list) return 0;
     c->wall = calloc((size_t)p->walls + 1, sizeof *c->wall);
     c->name = calloc((size_t)p->names.n + 1, sizeof *c->name);
-    c->kind = calloc((size_t)p->kinds + 1, sizeof *c->kind);
-    if (!c->wall || !c->name || !c->kind) failure_set(failure, EX_SOFTWARE, "no memory for names");
+    c->material = calloc((size_t)p->materials + 1, sizeof *c->material);
+    if (!c->wall || !c->name || !c->material)
+        failure_set(failure, EX_SOFTWARE, "no memory for names");
     for (const char *s = list; !failure->status; s++) {
         size_t n = strcspn(s, ",");
         char all[240];
@@ -89,7 +90,7 @@ int selection_init(struct selection *c, const struct packing *p, const char *opt
     }
     if (failure->status) return selection_free(c), failure->status;
     for (int32_t w = 0; w < p->walls; w++) c->walls = c->walls || selection_wall(c, p, w);
-    for (int32_t k = 0; k < p->kinds; k++) c->bodies = c->bodies || c->kind[k];
+    for (int32_t k = 0; k < p->materials; k++) c->bodies = c->bodies || c->material[k];
     for (int32_t k = 0; k < p->names.n; k++)
         c->bodies = c->bodies || (c->name[k] && !is_of_walls(p, k));
     return 0;
@@ -100,8 +101,7 @@ bool selection_face(const struct selection *c, const struct packing *p, int32_t 
     if (!c->any || c->wall[wall]) return true;
     for (int32_t k = 0; k < p->names.rows; k++) {
         const struct named *r = &p->names.row[k];
-        if (c->name[r->name] && r->boundary == wall && face >= r->first &&
-            face < r->first + r->count)
+        if (c->name[r->name] && r->wall == wall && face >= r->first && face < r->first + r->count)
             return true;
     }
     return false;
@@ -111,13 +111,13 @@ bool selection_wall(const struct selection *c, const struct packing *p, int32_t 
 {
     if (!c->any || c->wall[wall]) return true;
     for (int32_t k = 0; k < p->names.rows; k++)
-        if (c->name[p->names.row[k].name] && p->names.row[k].boundary == wall) return true;
+        if (c->name[p->names.row[k].name] && p->names.row[k].wall == wall) return true;
     return false;
 }
 
 bool selection_body(const struct selection *c, const struct packing *p, int64_t i)
 {
-    if (!c->any || c->kind[p->kind[i]]) return true;
+    if (!c->any || c->material[p->material[i]]) return true;
     return p->group && p->group[i] > 0 && c->name[p->group[i] - 1];
 }
 

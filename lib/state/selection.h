@@ -1,6 +1,6 @@
 /*
- * state/selection.h: which boundaries, faces and bodies a list of names means: "floor,blade,3". A word is the number of
- * a wall, or a name: of walls, of parts of them, of a group of bodies, or of a kind, which walls and bodies have.
+ * state/selection.h: which walls, faces and bodies a list of names means: "floor,blade,3". A word is the number of
+ * a wall, or a name: of walls, of parts of them, of a group of bodies, or of a material, which walls and bodies have.
  */
 #ifndef NSD_CHOSEN_H
 #define NSD_CHOSEN_H
@@ -9,12 +9,12 @@
 #include "state/wall_faces.h"
 
 struct selection {
-    bool any;    /* a list is given; else all are chosen */
-    bool walls;  /* it names a wall, or a part of one */
-    bool bodies; /* it names a group of bodies or a kind */
-    bool *wall;  /* [walls] as a whole */
-    bool *name;  /* [names.n] */
-    bool *kind;  /* [kinds] */
+    bool any;       /* a list is given; else all are chosen */
+    bool walls;     /* it names a wall, or a part of one */
+    bool bodies;    /* it names a group of bodies or a material */
+    bool *wall;     /* [walls] as a whole */
+    bool *name;     /* [names.n] */
+    bool *material; /* [materials] */
 };
 
 /* list NULL: all. option: "--only", for the message, which lists what there is. Returns 0, EX_DATAERR or EX_SOFTWARE

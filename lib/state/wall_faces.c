@@ -11,7 +11,7 @@ void wall_faces_free(struct wall_faces *f)
 
 static bool is_mesh(const struct wall *w)
 {
-    return w->shape == BOUNDARY_MESH;
+    return w->shape == WALL_MESH;
 }
 
 int wall_faces_init(struct wall_faces *f, int32_t walls, const struct wall *wall,

@@ -1,5 +1,5 @@
 /*
- * state/wall_faces.h: the faces of boundaries. A face is a triangle of a mesh, in the plane a segment; any other boundary
+ * state/wall_faces.h: the faces of walls. A face is a triangle of a mesh, in the plane a segment; any other wall
  * is one face. Which face a contact is on is in state/face_of.h.
  */
 #ifndef NSD_WALL_FACES_H
@@ -9,9 +9,9 @@
 #include "shape/wall_shape.h"
 
 struct wall_faces {
-    int32_t n; /* faces of all boundaries */
+    int32_t n; /* faces of all walls */
     int32_t walls;
-    int32_t *first;          /* [walls + 1] the faces of boundary w are first[w] .. first[w+1]-1 */
+    int32_t *first;          /* [walls + 1] the faces of wall w are first[w] .. first[w+1]-1 */
     struct surface *surface; /* [walls] of meshes; NULL: not found among their faces */
 };
 

@@ -1,5 +1,5 @@
 /*
- * state/wall_load.h: what bodies do to the faces of boundaries [state/wall_faces.h], summed over all steps of a run since the
+ * state/wall_load.h: what bodies do to the faces of walls [state/wall_faces.h], summed over all steps of a run since the
  * sums began, not only over the frames that are kept. The difference of two frames is what was done between them.
  *
  * A step counts by its reactions r and, for works, by the mean of the velocities before and after it, by which the
@@ -28,7 +28,7 @@ struct face_sums {
 };
 
 struct wall_sums {
-    int32_t n;                /* faces of all boundaries; 0: no sums are kept */
+    int32_t n;                /* faces of all walls; 0: no sums are kept */
     struct face_sums *face;   /* [n] */
     double since;             /* s: the time at which they began */
     struct wall_faces *faces; /* where contacts are found on them, once a step has asked; owned */

@@ -1,4 +1,4 @@
-/* state/wall_motion.c: where boundaries are, and how they move [state/packing.h]. */
+/* state/wall_motion.c: where walls are, and how they move [state/packing.h]. */
 #include "state/packing.h"
 
 double wall_lever(const struct packing *p, const struct wall *w, double t)
@@ -42,7 +42,7 @@ struct pose wall_pose(const struct packing *p, const struct wall *w, double t)
 /* Planes that only glide, which most walls are: no rotation, whose rounding would show */
 static bool only_glides(const struct wall *w)
 {
-    return !w->drives && (w->load.way != LOAD_TURNS || w->shape == BOUNDARY_PLANE);
+    return !w->drives && (w->load.way != LOAD_TURNS || w->shape == WALL_PLANE);
 }
 
 vec3 wall_at(const struct packing *p, const struct wall *w, double t)
@@ -84,7 +84,7 @@ vec3 wall_held(const struct packing *p, const struct wall *w, vec3 x)
     }
     if (!w->drives) return w->v;
     vec3 y = v3_axpy(x, -(p->t + p->dt / 2), w->v);
-    // drives move the boundary first, and what they made the load moves
+    // drives move the wall first, and what they made the load moves
     double travel = l->travel + p->dt / 2 * l->speed;
     quat q = { 1, 0, 0, 0 };
     if (l->way == LOAD_GLIDES) y = v3_axpy(y, -travel, l->axis);
@@ -133,7 +133,7 @@ static double width_along(const struct packing *p, vec3 d, double t)
     }
     for (int32_t i = 0; i < p->walls; i++) {
         const struct wall *w = &p->wall[i];
-        if (w->shape != BOUNDARY_PLANE || !wall_there(w, t)) continue;
+        if (w->shape != WALL_PLANE || !wall_there(w, t)) continue;
         double along = v3_dot(wall_normal(p, w, t), d), at = v3_dot(wall_at(p, w, t), d);
         if (along > 1 - UPRIGHT) lo = fmax(lo, at);
         if (along < -1 + UPRIGHT) hi = fmin(hi, at);
@@ -150,7 +150,7 @@ static bool direction_across(const struct packing *p, vec3 n, double t, vec3 *d)
         if (p->cell.repeats[k] && fabs(v3_dot(*d, n)) <= UPRIGHT) return true;
     }
     for (int32_t i = 0; i < p->walls; i++) {
-        if (p->wall[i].shape != BOUNDARY_PLANE) continue;
+        if (p->wall[i].shape != WALL_PLANE) continue;
         *d = wall_normal(p, &p->wall[i], t);
         if (fabs(v3_dot(*d, n)) <= UPRIGHT) return true;
     }
@@ -178,7 +178,7 @@ double wall_force(const struct packing *p, const struct wall *w, double t)
 /* m: of its points that bodies may touch from a place */
 static double wall_motion_farthest(const struct packing *p, const struct wall *w, vec3 from)
 {
-    double reach = boundary_reach(w), most = 0;
+    double reach = wall_reach(w), most = 0;
     if (isfinite(reach)) return v3_norm(v3_sub(w->x, from)) + reach;
     for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(p->x[i], from)));
     return most;

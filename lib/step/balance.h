@@ -10,7 +10,7 @@
  *     gravity      dt sum m g . (v+ + v-)/2
  *     loads        dt sum f (s+ + s-)/2, of the freedoms [state/freedom.h] and of forces from outside
  *                  [state/external_force.h]
- *     drives       - sum r . w: w is what the motions that are prescribed (boundaries, fixed
+ *     drives       - sum r . w: w is what the motions that are prescribed (walls, fixed
  *                  bodies, the cell) are in the velocity of the contact, their mean over the
  *                  step; and what the flow of the cell does to bodies
  *     dissipation  - sum r . (u+ + u-)/2
@@ -24,7 +24,7 @@
  *     U+ - U- = projection - gravity,    U = - sum m g . x, with theta = 1/2
  *
  * Each of the four is a sum of its own, none a difference of the others. Momentum changes by the
- * weight, dt sum m g, by forces from outside and by the impulse of boundaries, fixed bodies and the cell's flow. Where
+ * weight, dt sum m g, by forces from outside and by the impulse of walls, fixed bodies and the cell's flow. Where
  * the cell repeats, T- is not T+ of the step before: a body that is replaced by its image has
  * another velocity; the energy of the peculiar velocities is the same. balance_step() leaves -T'- in peculiar_change, to
  * which the end of the step adds T'+.

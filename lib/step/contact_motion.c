@@ -19,14 +19,14 @@ static struct velocity of_body(const struct packing *p, const struct impulses *s
                                       rotation_spin(p, i, q, sum->moment[i])) };
 }
 
-/* m/s: of the boundary's material, with what its load makes of it */
+/* m/s: of the wall's material, with what its load makes of it */
 static vec3 of_wall(const struct packing *p, const struct impulses *sum, const struct contact *c)
 {
     const struct wall *w = &p->wall[-1 - c->a];
     vec3 v = v3_add(wall_held(p, w, c->x), wall_belt(p, w, c->n));
     for (int32_t k = 0; k < sum->freedoms.n; k++) {
         const struct freedom *f = &sum->freedoms.f[k];
-        if (f->boundary != -1 - c->a && !f->lever) continue;
+        if (f->wall != -1 - c->a && !f->lever) continue;
         double speed = f->speed + 0.5 * impulses_change(sum, p, k);
         v = v3_axpy(v, -speed, freedom_direction(f, p, c, sum->ahead, sum->edge));
     }

@@ -127,8 +127,8 @@ struct endless endless_after(const struct packing *p, const struct impulses *sum
         const struct freedom *f = &sum->freedoms.f[k];
         const double speed = f->speed + impulses_change(sum, p, k);
         if (!isfinite(speed) || !isfinite(speed * p->dt))
-            return f->boundary >= 0 ? (struct endless){ ENDLESS_WALL, -1 - f->boundary }
-                                    : (struct endless){ ENDLESS_CELL, 0 };
+            return f->wall >= 0 ? (struct endless){ ENDLESS_WALL, -1 - f->wall }
+                                : (struct endless){ ENDLESS_CELL, 0 };
     }
     for (int k = 0; k < 3 && cell_repeats(&p->cell); k++)
         if (!v3_finite(v3_axpy(p->cell.edge[k], p->dt, sum->next[k])))

@@ -209,7 +209,7 @@ int step_substep_whole(struct substep_choice *c, const struct substeps *s, struc
     packing_wrap(p, NULL);
     if (fast_find(&fast, p, NULL, failure)) return failure->status;
     time_of_impact_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, failure);
-    // a boundary that lies before the place where contacts are sought
+    // a wall that lies before the place where contacts are sought
     for (bool passes = fast.n > 0 && !failure->status; passes && c->length > substeps_least(s);) {
         p->dt = c->length;
         tunnelling_passed(&passed, p, NULL, surface, window_before(p));

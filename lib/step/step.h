@@ -54,9 +54,8 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
 
 /* What to look for that bodies go through in a step, or in a substep */
 struct windows {
-    struct window fixed,
-        bodies;  /* boundaries and fixed hulls; bodies that move; of length 0: nothing */
-    bool beyond; /* as of crossing_count() */
+    struct window fixed, bodies; /* walls and fixed hulls; bodies that move; of length 0: nothing */
+    bool beyond;                 /* as of crossing_count() */
 };
 
 /*
@@ -136,7 +135,7 @@ struct substep_choice {
 /* without fast bodies: all that is left; */
 struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o);
 /* with them: at most so long that a whole packing's bodies meet, and, halved where that helps, that they do not go
-   through boundaries before contacts are sought. p is in between given other dt. */
+   through walls before contacts are sought. p is in between given other dt. */
 int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
                        const struct surface *surface, struct failure *failure);
 /* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */

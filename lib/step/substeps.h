@@ -44,7 +44,7 @@ static inline bool substeps_alone(const struct substeps *s)
 {
     return s->length >= s->dt;
 }
-/* s: substeps that are halved for boundaries are not shorter. The one before has looked as far ahead as its length. */
+/* s: substeps that are halved for walls are not shorter. The one before has looked as far ahead as its length. */
 static inline double substeps_least(const struct substeps *s)
 {
     return s->made ? s->length : 1e-6 * s->dt;

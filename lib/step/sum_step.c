@@ -32,7 +32,7 @@ int sum_step(struct packing *p, const struct contacts *s, const struct impulses 
         if (face_of_init(p->sums.faces, p, true, failure)) return failure->status;
     }
     const struct wall_faces *f = p->sums.faces;
-    for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++) { // boundaries come first
+    for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++) { // walls come first
         const double *r = s->found[i].r;
         if (r[0] == 0 && r[1] == 0 && r[2] == 0) continue;
         int32_t face = face_of_contact(f, p, &s->c[i], sum->ahead);

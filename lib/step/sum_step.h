@@ -1,4 +1,4 @@
-/* step/sum_step.h: adds what bodies do to boundaries in a step to the packing's sums [state/wall_load.h]. */
+/* step/sum_step.h: adds what bodies do to walls in a step to the packing's sums [state/wall_load.h]. */
 #ifndef NSD_SUM_STEP_H
 #define NSD_SUM_STEP_H
 

@@ -125,7 +125,7 @@ static bool is_spare(const struct spot *p)
         "/contacts/force",
         "/fclib",
         "/solution",
-        // where boundaries are follows from their motion
+        // where walls are follows from their motion
         "/particles/boundary/position",
         "/particles/boundary/orientation",
         "/particles/boundary/velocity",

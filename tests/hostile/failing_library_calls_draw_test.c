@@ -25,7 +25,7 @@ static int page(uint32_t *crc, struct failure *failure)
     if (!failure->status) page_end(&p, failure);
     page_free(&p);
     fclose(out);
-    if (packing.walls) unlink(path), *crc = 0; // boundaries that find no memory are left out
+    if (packing.walls) unlink(path), *crc = 0; // walls that find no memory are left out
     if (!packing.walls) *crc = crc_of(path);
     return failure->status;
 }
@@ -50,7 +50,7 @@ static int picture(uint32_t *crc, struct failure *failure)
     if (!overlay_draw(&over, &v, p, &contacts, &pic, failure)) picture_write(&pic, path, failure);
     picture_free(&pic);
     if (!failure->status && p->dim == 2) svg_draw(&over, &v, p, &contacts, vector, failure);
-    unlink(vector), unlink(path); // boundaries that find no memory are left out
+    unlink(vector), unlink(path); // walls that find no memory are left out
     return failure->status;
 }
 

@@ -254,7 +254,7 @@ static int export_all(uint32_t *crc, struct failure *failure)
     *crc = 0;
     for (int k = 0; !failure->status && format_at(k); k++)
         for (int part = 0; part < PART_COUNT; part++) {
-            bool triangles = part == PART_GRAINS || part == PART_BOUNDARY;
+            bool triangles = part == PART_GRAINS || part == PART_WALLS;
             if (format_at(k) == &format_stl ? !triangles : part && !format_at(k)->parts) continue;
             const char *path = fresh(".out");
             FILE *out = fopen(path, "w");
@@ -265,8 +265,8 @@ static int export_all(uint32_t *crc, struct failure *failure)
             if (kept && format_at(k)->end) format_at(k)->end(out, kept, failure);
             kept = NULL;
             fclose(out);
-            uint32_t bytes = crc_of(path); // boundaries that find no memory are left out
-            if (part != PART_BOUNDARY && format_at(k) != &format_stl) *crc ^= bytes;
+            uint32_t bytes = crc_of(path); // walls that find no memory are left out
+            if (part != PART_WALLS && format_at(k) != &format_stl) *crc ^= bytes;
         }
     return failure->status;
 }

@@ -136,7 +136,7 @@ static void test_velocities(void)
     nsd_close(&r);
 }
 
-static void test_boundaries(void)
+static void test_walls(void)
 {
     struct nsd_run *r =
         scene("{\"dt\":1e-3,\"gravity\":[0,0,0],\"bodies\":[{\"x\":[0,0,5],\"radius\":0.1}],"
@@ -1073,7 +1073,7 @@ static void test_fork(void)
 int main(void)
 {
     if (!mkdtemp(folder)) return 1;
-    test_forces(), test_velocities(), test_top(), test_boundaries(), test_places();
+    test_forces(), test_velocities(), test_top(), test_walls(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
         test_failure(), test_endless(), test_stiffness(), test_errors(), test_random(),
         test_missing(), test_documents(), test_undone(), test_fork();

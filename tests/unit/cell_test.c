@@ -216,7 +216,7 @@ static void dense(struct packing *p, struct contacts *s, int dim, double e)
     run(p, s, &o, dim == 2 ? 350 : 420);
     const double shear[3][3] = { { 0, 1, 0 } };
     set_gradient(p, shear);
-    for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = p->et[k] = e;
+    for (int k = 0; k < p->materials * p->materials; k++) p->en[k] = p->et[k] = e;
 }
 
 /* Runs both; the largest distance of a body from where the other packing has it, relative to a third */

@@ -254,7 +254,7 @@ static void heap(struct packing *p, int dim, double e)
     struct wall *wall = realloc(p->wall, (size_t)(p->walls + 1) * sizeof *wall);
     must(!wall, &failure);
     p->wall = wall;
-    wall[p->walls++] = boundary_plane(v3_scale(top, up), v3_scale(-1, up), 1);
+    wall[p->walls++] = wall_plane(v3_scale(top, up), v3_scale(-1, up), 1);
     wall[p->walls - 1].load = glides(up, 0.3 * p->mass[0], -2 * weight);
     wall[0].load = glides(wall[0].n, 5 * p->mass[0], 0.8 * weight);
     for (int32_t k = 0; dim == 3 && k < p->walls; k++)
@@ -264,7 +264,7 @@ static void heap(struct packing *p, int dim, double e)
                                           .point = v3(1e-3, 0, 0),
                                           .mass = 1e-5 * p->mass[0],
                                           .force = 1e-4 * weight };
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = 0.5 * e;
+    for (int32_t k = 0; k < p->materials * p->materials; k++) p->en[k] = e, p->et[k] = 0.5 * e;
     contacts_free(&s), report_free(&rep);
 }
 
@@ -294,7 +294,7 @@ static void squeezed(struct packing *p, int dim, double e)
          &failure);
     scene_free(&sc);
     for (int k = 0; k < 5000 && s.n < 90 + 40 * (dim - 2); k++) run(p, &s, &o, 1, &rep);
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = 0.5 * e;
+    for (int32_t k = 0; k < p->materials * p->materials; k++) p->en[k] = e, p->et[k] = 0.5 * e;
     contacts_free(&s), report_free(&rep);
 }
 
@@ -330,7 +330,7 @@ static void enclosed(struct packing *p, int dim, double e)
          &failure);
     scene_free(&sc);
     for (int k = 0; k < 5000 && s.n < 95 + 15 * (dim - 2); k++) run(p, &s, &o, 1, &rep);
-    for (int32_t k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = 0.5 * e;
+    for (int32_t k = 0; k < p->materials * p->materials; k++) p->en[k] = e, p->et[k] = 0.5 * e;
     contacts_free(&s), report_free(&rep);
 }
 
@@ -545,7 +545,7 @@ static void test_untouched(void)
         struct wall *wall = realloc(p[k].wall, (size_t)(p[k].walls + 1) * sizeof *wall);
         must(!wall, &failure);
         p[k].wall = wall;
-        wall[p[k].walls++] = boundary_plane(v3(0, 0, 1), v3(0, 0, -1), 1);
+        wall[p[k].walls++] = wall_plane(v3(0, 0, 1), v3(0, 0, -1), 1);
         if (k) wall[p[k].walls - 1].load = glides(v3(0, 0, 1), 1, 0);
         run(&p[k], &s, &o, 300, &rep);
     }

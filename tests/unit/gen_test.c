@@ -141,7 +141,8 @@ static void test_numbers(void)
     ok(fabs(p.mass[7] / mass - 1) < 1e-14 && fabs(p.inertia[7] / (0.4 * mass * r * r) - 1) < 1e-14,
        "500 balls: mass and inertia of solid balls of density 2500");
     ok(p.wall[0].x.x == -0.00315 && p.wall[0].n.x == 1 && p.wall[1].x.x == 0.00315 &&
-           p.wall[1].n.x == -1 && p.wall[4].x.z == 0 && p.wall[4].n.z == 1 && p.wall[0].kind == 1,
+           p.wall[1].n.x == -1 && p.wall[4].x.z == 0 && p.wall[4].n.z == 1 &&
+           p.wall[0].material == 1,
        "500 balls: the box of 6.3 mm, normals inwards");
     for (int64_t i = 0; i < p.n; i++) top = fmax(top, p.x[i].z);
     ok(top > 13.9e-3 && top < 14.5e-3, "500 balls: fourteen layers of 36, as on other codes");
@@ -369,8 +370,8 @@ static void test_material(void)
                    NULL, &failure),
             "materials %s", failure.text))
         return;
-    int32_t k = p.kinds;
-    ok(k == 3 && !strcmp(p.kind_name[0], "ball") && !strcmp(p.kind_name[2], "steel"),
+    int32_t k = p.materials;
+    ok(k == 3 && !strcmp(p.material_name[0], "ball") && !strcmp(p.material_name[2], "steel"),
        "kinds: ball, wall, then one's own");
     ok(p.mu[2 * k + 1] == 0.1 && p.mu[1 * k + 2] == 0.1 && p.mu[2 * k] == 0.3,
        "a pair's mu stands in both places and nowhere else");

@@ -224,7 +224,7 @@ static void renumber(struct packing *p)
     for (int64_t i = 0; i < p->n; i++) {
         int64_t k = place(p, i);
         p->radius[k] = was.radius[i], p->mass[k] = was.mass[i], p->inertia[k] = was.inertia[i];
-        p->kind[k] = was.kind[i], p->x[k] = was.x[i], p->q[k] = was.q[i];
+        p->material[k] = was.material[i], p->x[k] = was.x[i], p->q[k] = was.q[i];
         p->v[k] = was.v[i], p->w[k] = was.w[i];
         if (p->shape) p->shape[k] = was.shape[i];
     }
@@ -255,7 +255,7 @@ static void change_units(struct packing *p)
     for (int k = 0; k < 9; k++) c->mass[k / 3][k % 3] *= MASS, c->stress[k / 3][k % 3] *= stress;
     for (int32_t m = 0; m < c->gradients; m++)
         for (int k = 0; k < 9; k++) c->gradient[m].L[k / 3][k % 3] /= TIME;
-    for (int32_t k = 0; p->law && k < p->kinds * p->kinds; k++) {
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++) {
         struct pair_law *l = &p->law[k];
         double section = p->dim == 3 ? LENGTH * LENGTH : LENGTH; // of bonds, discs 1 m deep
         l->cohesion *= force, l->range *= LENGTH;

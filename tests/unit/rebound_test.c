@@ -109,7 +109,7 @@ static void test_grains(const struct grains *g)
         struct packing copy;
         struct failure failure = { 0 };
         must(packing_copy(&copy, &p, &failure), &failure);
-        for (int32_t i = 0; copy.law && i < copy.kinds * copy.kinds; i++)
+        for (int32_t i = 0; copy.law && i < copy.materials * copy.materials; i++)
             copy.law[i].impact = IMPACT_DEFAULT;
         struct outcome newton = run(&p), safe = run(&copy);
         gains += newton.gained > 1e-9;

@@ -46,8 +46,8 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
     o.warm = true, o.solve.relax = 1.5;
     must(scene_paper(&scene, dim, n, &failure) || scene_build(p, &scene, NULL, &failure), &failure);
     scene_free(&scene);
-    for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
-    for (int k = 0; k < p->kinds * p->kinds && mu >= 0; k++) p->mu[k] = mu;
+    for (int k = 0; k < p->materials * p->materials; k++) p->en[k] = e, p->et[k] = e / 2;
+    for (int k = 0; k < p->materials * p->materials && mu >= 0; k++) p->mu[k] = mu;
     for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &failure), &failure);
     must(detect_contacts(s, p, 0, NULL, &failure), &failure);
     report_free(&rep);

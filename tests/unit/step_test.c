@@ -79,8 +79,7 @@ static void cloud(struct packing *p, int dim, int64_t n, double ratio)
         if (i % 97 == 1) p->x[i] = p->x[i - 1], p->v[i] = p->v[i - 1];
         if (i % 201 == 2) p->x[i].x = i % 2 ? 1e12 : -1e150;
     }
-    for (int w = 0; w < 3; w++)
-        p->wall[w] = boundary_plane(v3(0, 0, 0), v3(w == 0, w == 1, w == 2), 0);
+    for (int w = 0; w < 3; w++) p->wall[w] = wall_plane(v3(0, 0, 0), v3(w == 0, w == 1, w == 2), 0);
     if (dim == 2) p->wall[2].n = v3(0, -1, 0), p->wall[2].x = v3(0, 1, 0);
     p->wall[1].v = v3(0, 0.5, 0);
     p->t = 0.02;

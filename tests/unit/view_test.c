@@ -6,14 +6,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char red[] = "a red ball", blue[] = "a blue one"; // of kinds 2 and 0
+static const char red[] = "a red ball", blue[] = "a blue one"; // of materials 2 and 0
 
 static struct view view(int size, double azimuth, double elevation)
 {
     struct view v = { .azimuth = azimuth, .elevation = elevation, .samples = 1, .threads = 1 };
     v.width = v.height = size;
     v.background = rgb_of(0xffffff);
-    paint_init(&v.paint, COLOUR_KIND, true);
+    paint_init(&v.paint, COLOUR_MATERIAL, true);
     v.boxed = true;
     v.region = (struct extent){ { -2, -2, -2 }, { 2, 2, 2 } };
     return v;
@@ -36,7 +36,7 @@ static struct packing balls(int dim, int n, const double (*x)[4]) /* x y z radiu
 {
     struct packing p;
     struct failure failure = { 0 };
-    if (packing_init(&p, dim, n, &failure) || packing_alloc_kinds(&p, 3, &failure)) exit(1);
+    if (packing_init(&p, dim, n, &failure) || packing_alloc_materials(&p, 3, &failure)) exit(1);
     p.dt = 1;
     for (int i = 0; i < n; i++) p.x[i] = v3(x[i][0], x[i][1], x[i][2]), p.radius[i] = x[i][3];
     return p;
@@ -46,7 +46,7 @@ static void walls(struct packing *p, int n, const vec3 (*w)[2]) /* point, normal
 {
     struct failure failure = { 0 };
     if (packing_alloc_walls(p, n, &failure)) exit(1);
-    for (int i = 0; i < n; i++) p->wall[i] = boundary_plane(w[i][0], w[i][1], 0);
+    for (int i = 0; i < n; i++) p->wall[i] = wall_plane(w[i][0], w[i][1], 0);
 }
 
 static const vec3 box[6][2] = {
@@ -170,7 +170,7 @@ static void test_order(void)
 {
     const double x[][4] = { { 0, -1, 0, 0.5 }, { 0, 1, 0, 0.8 } };
     struct packing p = balls(3, 2, x);
-    p.kind[0] = 2;
+    p.material[0] = 2;
     for (int turn = 0; turn < 2; turn++) {
         struct picture front = draw(view(200, 0, 0), &p), back = draw(view(200, 180, 0), &p);
         ok(ball_at(&front, 100, 100) == red && ball_at(&front, 100, 65) == blue,
@@ -182,11 +182,11 @@ static void test_order(void)
         vec3 y = p.x[0];
         double r = p.radius[0];
         p.x[0] = p.x[1], p.x[1] = y, p.radius[0] = p.radius[1], p.radius[1] = r;
-        p.kind[0] = 0, p.kind[1] = 2;
+        p.material[0] = 0, p.material[1] = 2;
     }
     packing_free(&p);
     p = balls(3, 2, (const double[][4]){ { -0.3, 0, 0, 1 }, { 0.3, 0, 0, 1 } });
-    p.kind[0] = 2;
+    p.material[0] = 2;
     struct picture pic = draw(view(200, 0, 0), &p);
     int wrong = 0;
     for (int i = 60; i < 140; i++)
@@ -272,7 +272,7 @@ static void test_glass(void)
 {
     struct packing p = balls(3, 1, (const double[][4]){ { 0, 0, 0, 0.5 } });
     struct view v = view(64, 0, 0);
-    paint_init(&v.paint, COLOUR_KIND, false);
+    paint_init(&v.paint, COLOUR_MATERIAL, false);
     struct picture bare = draw(v, &p);
     static const vec3 front[2] = { { 0, -1, 0 }, { 0, 1, 0 } },
                       back[2] = { { 0, 1, 0 }, { 0, -1, 0 } };
@@ -355,7 +355,7 @@ static void test_colours(void)
     struct packing p =
         balls(2, 3, (const double[][4]){ { -1, 0, 0, 0.5 }, { 0, 0, 0, 0.4 }, { 1, 0, 0, 0.3 } });
     p.v[0] = v3(0, -3, 0), p.v[1] = v3(DBL_MAX, DBL_MAX, 0), p.id[2] = INT32_MIN;
-    const enum colour by[] = { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_KIND, COLOUR_ID };
+    const enum colour by[] = { COLOUR_RADIUS, COLOUR_SPEED, COLOUR_MATERIAL, COLOUR_ID };
     struct rgb c[4][3];
     for (int k = 0; k < 4; k++) {
         struct paint paint;
@@ -459,7 +459,7 @@ static void test_extremes(void)
     if (packing_alloc_walls(&p, 500, &(struct failure){ 0 })) exit(1);
     for (int i = 0; i < 500; i++) {
         double a = 2 * M_PI * i / 500;
-        p.wall[i] = boundary_plane(v3(-cos(a), -sin(a), 0), v3(cos(a), sin(a), 0), 0);
+        p.wall[i] = wall_plane(v3(-cos(a), -sin(a), 0), v3(cos(a), sin(a), 0), 0);
     }
     extreme("500 walls", &p, false);
     packing_free(&p);

@@ -42,7 +42,7 @@ static void fallen(struct packing *p, struct contacts *s, int dim, int64_t n, do
     o.warm = true, o.order = ORDER_COLOUR;
     must(scene_paper(&scene, dim, n, &failure) || scene_build(p, &scene, NULL, &failure), &failure);
     scene_free(&scene);
-    for (int k = 0; k < p->kinds * p->kinds; k++) p->en[k] = e, p->et[k] = e / 2;
+    for (int k = 0; k < p->materials * p->materials; k++) p->en[k] = e, p->et[k] = e / 2;
     for (int k = 0; k < steps; k++) must(step_advance(p, s, NULL, &o, &rep, &failure), &failure);
     report_free(&rep);
 }

@@ -1,4 +1,4 @@
-/* measure/boundaries.c: what pushes boundaries. */
+/* measure/wall_forces.c: what pushes walls. */
 #include "measure/branch.h"
 #include "measure/measures.h"
 #include "state/face_of.h"
@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What bodies do to a boundary, or to all fixed bodies */
-struct boundaries_push {
+/* What bodies do to a wall, or to all fixed bodies */
+struct wall_forces_sum {
     int64_t contacts;
     vec3 force, torque; /* N, N m */
     double normal, tangential;
@@ -26,15 +26,15 @@ static const struct quantity quantities[] = {
     { 0 },
 };
 
-/* Row of the boundary's name; NaN: it has none */
+/* Row of the wall's name; NaN: it has none */
 static double name_row(const struct packing *p, int32_t wall)
 {
     const char *name = names_of_wall(&p->names, wall);
     return name ? names_find(&p->names, name, strlen(name)) : NAN;
 }
 
-static void boundaries_add(struct boundaries_push *to, const struct snapshot *s, int64_t i,
-                           double sign)
+static void wall_forces_add(struct wall_forces_sum *to, const struct snapshot *s, int64_t i,
+                            double sign)
 {
     const double *r = s->s->found[i].r;
     to->contacts += branch_counts(s->s, i);
@@ -44,21 +44,21 @@ static void boundaries_add(struct boundaries_push *to, const struct snapshot *s,
     to->tangential += hypot(r[1], r[2]) / s->p->dt;
 }
 
-static int boundaries_rows(struct table *t, const struct snapshot *s, struct failure *failure)
+static int wall_forces_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
     bool fixed = false;
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
-    // boundary w at [w], fixed bodies behind them
-    struct boundaries_push *push = calloc((size_t)p->walls + 1, sizeof *push);
+    // wall w at [w], fixed bodies behind them
+    struct wall_forces_sum *push = calloc((size_t)p->walls + 1, sizeof *push);
     if (!push) return failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
     for (int64_t i = 0; s->s->found && i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
-            boundaries_add(&push[-1 - c->a], s, i, -1);
+            wall_forces_add(&push[-1 - c->a], s, i, -1);
         else if (p->mass[c->a] == 0)
-            boundaries_add(&push[p->walls], s, i, -1);
-        if (p->mass[c->b] == 0) boundaries_add(&push[p->walls], s, i, 1);
+            wall_forces_add(&push[p->walls], s, i, -1);
+        if (p->mass[c->b] == 0) wall_forces_add(&push[p->walls], s, i, 1);
     }
     for (int32_t w = 0; w < p->walls + fixed; w++) {
         if (w < p->walls ? !snapshot_wall(s, w) : s->only.walls) continue;
@@ -73,14 +73,14 @@ static int boundaries_rows(struct table *t, const struct snapshot *s, struct fai
     return failure->status;
 }
 
-const struct measure measure_boundaries = {
+const struct measure measure_wall_forces = {
     .name = "boundaries",
     .help = "forces and torques on boundaries",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_FORCES,
-    .rows = boundaries_rows,
+    .rows = wall_forces_rows,
 };
 
 /* ---- by name ---- */
@@ -100,17 +100,18 @@ static bool is_named(const struct names *n, int32_t name, int32_t wall, int32_t 
 {
     for (int32_t k = 0; k < n->rows; k++) {
         const struct named *r = &n->row[k];
-        if (r->name != name || r->boundary != wall) continue;
+        if (r->name != name || r->wall != wall) continue;
         if (!r->count || (face >= r->first && face < r->first + r->count)) return true;
     }
     return false;
 }
 
-static int boundaries_names_rows(struct table *t, const struct snapshot *s, struct failure *failure)
+static int wall_forces_names_rows(struct table *t, const struct snapshot *s,
+                                  struct failure *failure)
 {
     const struct packing *p = s->p;
     struct wall_faces faces = { 0 };
-    struct boundaries_push *push = calloc((size_t)p->names.n + 1, sizeof *push);
+    struct wall_forces_sum *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
     if (!push || !any) failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
     if (failure->status || face_of_init(&faces, p, true, failure)) goto end;
@@ -121,7 +122,7 @@ static int boundaries_names_rows(struct table *t, const struct snapshot *s, stru
         int32_t face = face_of_contact(&faces, p, c, 0);
         for (int32_t k = 0; k < p->names.n; k++)
             if (any[k] && is_named(&p->names, k, -1 - c->a, face))
-                boundaries_add(&push[k], s, i, -1);
+                wall_forces_add(&push[k], s, i, -1);
     }
     for (int32_t k = 0; k < p->names.n; k++) {
         if (!any[k] || (s->only.walls && !s->only.name[k])) continue;
@@ -144,5 +145,5 @@ const struct measure measure_names = {
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
     .needs = NEEDS_FORCES,
-    .rows = boundaries_names_rows,
+    .rows = wall_forces_names_rows,
 };

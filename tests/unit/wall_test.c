@@ -1,4 +1,4 @@
-/* What must hold of boundaries: the nearest place of each shape by a search over its surface, meshes by
+/* What must hold of walls: the nearest place of each shape by a search over its surface, meshes by
    all of their triangles, motions by finite differences, and motion on them by closed solutions. */
 #include "contact/detect.h"
 #include "shape/mesh.h"
@@ -42,15 +42,15 @@ static vec3 surface_point(const struct wall *w, double u, double v)
     const double *s = w->size;
     double angle = (w->arc > 0 ? w->arc : 2 * PI) * u, rho = s[0], z = v * s[2];
     switch (w->shape) {
-    case BOUNDARY_RECTANGLE:
+    case WALL_RECTANGLE:
         return v3((u - 0.5) * s[0], (v - 0.5) * s[1], 0);
-    case BOUNDARY_DISC:
+    case WALL_DISC:
         rho = s[0] + v * (s[1] - s[0]), z = 0;
         break;
-    case BOUNDARY_CONE:
+    case WALL_CONE:
         rho = s[0] + v * (s[1] - s[0]);
         break;
-    case BOUNDARY_SPHERE:
+    case WALL_SPHERE:
         rho = s[0] * sin(PI * v), z = s[0] * cos(PI * v);
         break;
     default:
@@ -64,7 +64,7 @@ static double search(const struct wall *w, vec3 c)
 {
     enum { N = 60 };
     double best = INFINITY, bu = 0, bv = 0, lo[2] = { 0, 0 }, hi[2] = { 1, 1 };
-    bool closed = w->shape != BOUNDARY_RECTANGLE && w->arc == 0; // in u
+    bool closed = w->shape != WALL_RECTANGLE && w->arc == 0; // in u
     for (int round = 0; round < 12; round++) {
         for (int i = 0; i <= N; i++)
             for (int j = 0; j <= N; j++) {
@@ -79,63 +79,63 @@ static double search(const struct wall *w, vec3 c)
     return best;
 }
 
-/* Boundary k of the kinds tried, with axis n and direction `along` in space */
+/* Wall k of the kinds tried, with axis n and direction `along` in space */
 static struct wall draw_shape(int shape, bool sector)
 {
-    struct wall w = boundary_plane(v3(0, 0, 0), draw_unit(), 0);
+    struct wall w = wall_plane(v3(0, 0, 0), draw_unit(), 0);
     vec3 e = draw_unit();
     w.along = v3_axpy(e, -v3_dot(e, w.n), w.n);
     w.along = v3_scale(1 / v3_norm(w.along), w.along);
-    w.shape = shape, w.side = BOUNDARY_BOTH;
+    w.shape = shape, w.side = WALL_BOTH;
     for (int k = 0; k < 3; k++) w.size[k] = draw(0.3, 2);
-    if (shape == BOUNDARY_DISC) w.size[1] = w.size[0] + draw(0.1, 1);
-    if (shape == BOUNDARY_DISC && draw(0, 1) < 0.3) w.size[0] = 0;
-    if (shape == BOUNDARY_CYLINDER && draw(0, 1) < 0.3) w.size[2] = 0;
+    if (shape == WALL_DISC) w.size[1] = w.size[0] + draw(0.1, 1);
+    if (shape == WALL_DISC && draw(0, 1) < 0.3) w.size[0] = 0;
+    if (shape == WALL_CYLINDER && draw(0, 1) < 0.3) w.size[2] = 0;
     if (sector) w.arc = draw(0.2, 6);
     return w;
 }
 
 static void test_shapes(void)
 {
-    for (int shape = BOUNDARY_RECTANGLE; shape < BOUNDARY_MESH; shape++)
+    for (int shape = WALL_RECTANGLE; shape < WALL_MESH; shape++)
         for (int sector = 0; sector < 2; sector++) {
-            if (sector && shape != BOUNDARY_CYLINDER && shape != BOUNDARY_CONE) continue;
+            if (sector && shape != WALL_CYLINDER && shape != WALL_CONE) continue;
             double off = 0, apart = 0;
             for (int k = 0; k < 60; k++) {
                 struct wall w = draw_shape(shape, sector);
                 vec3 in = v3_scale(draw(0, 3), draw_unit()), across = v3_cross(w.n, w.along);
                 vec3 c = v3_axpy(v3_axpy(v3_scale(in.x, w.along), in.y, across), in.z, w.n);
                 struct touch t;
-                if (boundary_trouble(&w, 3) || !boundary_nearest(&w, 3, c, 1, &t)) off = INFINITY;
+                if (wall_shape_trouble(&w, 3) || !wall_nearest(&w, 3, c, 1, &t)) off = INFINITY;
                 off = fmax(off, fabs(t.distance - search(&w, in)));
                 vec3 place = v3_axpy(c, -t.distance, t.n);
                 place = v3(v3_dot(place, w.along), v3_dot(place, across), v3_dot(place, w.n));
                 apart = fmax(apart, search(&w, place));
             }
             ok(off < 1e-6 && apart < 1e-6, "%s%s: the nearest place, off by %.1g m",
-               sector ? "sector of a " : "", boundary_shape_name[shape], fmax(off, apart));
+               sector ? "sector of a " : "", wall_shape_name[shape], fmax(off, apart));
         }
 }
 
 static void test_sides(void)
 {
-    struct wall w = draw_shape(BOUNDARY_SPHERE, false);
+    struct wall w = draw_shape(WALL_SPHERE, false);
     struct touch t;
-    w.size[0] = 1, w.side = BOUNDARY_INSIDE;
+    w.size[0] = 1, w.side = WALL_INSIDE;
     vec3 d = draw_unit();
-    boundary_nearest(&w, 3, v3_scale(1.25, d), 0.5, &t);
+    wall_nearest(&w, 3, v3_scale(1.25, d), 0.5, &t);
     ok(fabs(t.distance + 0.25) < 1e-15 && v3_dot(t.n, d) < -1 + 1e-12,
        "inside a sphere: a point outside is at a negative distance");
-    w.side = BOUNDARY_OUTSIDE;
-    boundary_nearest(&w, 3, v3_scale(0.75, d), 0.5, &t);
+    w.side = WALL_OUTSIDE;
+    wall_nearest(&w, 3, v3_scale(0.75, d), 0.5, &t);
     ok(fabs(t.distance + 0.25) < 1e-15 && v3_dot(t.n, d) > 1 - 1e-12, "outside: the reverse");
-    w = draw_shape(BOUNDARY_CYLINDER, false);
-    w.size[0] = 1, w.size[2] = 2, w.side = BOUNDARY_INSIDE;
+    w = draw_shape(WALL_CYLINDER, false);
+    w.size[0] = 1, w.size[2] = 2, w.side = WALL_INSIDE;
     vec3 c = v3_axpy(v3_scale(1.25, w.along), 1, w.n);
-    ok(boundary_nearest(&w, 3, c, 0.3, &t) && !boundary_nearest(&w, 3, c, 0.2, &t),
+    ok(wall_nearest(&w, 3, c, 0.3, &t) && !wall_nearest(&w, 3, c, 0.2, &t),
        "a ball that is wholly outside has left a tube that ends");
     w.size[2] = 0;
-    ok(boundary_nearest(&w, 3, c, 0.2, &t), "but not one without an end");
+    ok(wall_nearest(&w, 3, c, 0.2, &t), "but not one without an end");
 }
 
 /* ---- meshes ---- */
@@ -334,8 +334,8 @@ static void disc_in_circle(struct packing *p, double R, double r, double angle)
     p->dt = 1e-3, p->g = v3(0, -9.81, 0), p->overlap = OVERLAP_PROJECT, p->mu[0] = 10;
     p->radius[0] = r, p->mass[0] = 1, p->inertia[0] = 0.5 * r * r;
     p->x[0] = v3((R - r) * sin(angle), -(R - r) * cos(angle), 0);
-    p->wall[0] = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 0);
-    p->wall[0].shape = BOUNDARY_CYLINDER, p->wall[0].size[0] = R;
+    p->wall[0] = wall_plane(v3(0, 0, 0), v3(0, 0, 1), 0);
+    p->wall[0].shape = WALL_CYLINDER, p->wall[0].size[0] = R;
 }
 
 static void step(struct packing *p, struct contacts *c)
@@ -402,7 +402,7 @@ static void test_shaken(void)
     must(packing_init(&p, 3, 1, &failure) || packing_alloc_walls(&p, 1, &failure), &failure);
     p.dt = 1e-5, p.g = v3(0, 0, -g), p.overlap = OVERLAP_PROJECT;
     p.radius[0] = r, p.mass[0] = 1, p.inertia[0] = 0.4 * r * r, p.x[0] = v3(0, 0, r);
-    p.wall[0] = boundary_plane(v3(0, 0, 0), v3(0, 0, 1), 0);
+    p.wall[0] = wall_plane(v3(0, 0, 0), v3(0, 0, 1), 0);
     must(drives_alloc(&p.drives, 1, 0, &failure), &failure);
     p.drives.drive[0] = (struct drive){ .axis = v3(0, 0, 1),
                                         .signal = DRIVE_SINE,
