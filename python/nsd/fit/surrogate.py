@@ -1,12 +1,13 @@
 """What the evaluations say of the parameters.
 
 Each measure is a Gaussian process of the parameters, scaled to 0 .. 1, with the scatter of the seeds as noise (scikit-learn). With
-the targets t and their standard errors e the parameters have, uniform in their ranges, the density
+the targets t and the matrix V of their errors the parameters have, uniform in their ranges, the density
 
-    p ~ prod over the targets of  exp(-(f - t)^2 / (2 v)) / sqrt(v),    v = e^2 + s^2,
+    p ~ exp(-(f - t) . V^-1 (f - t) / 2) / sqrt(det V),    V_jk = e_j e_k R_jk + s_j^2 (j = k),
 
-where f and s are the mean and the standard deviation of the process. It is sampled at Sobol points of a box that shrinks to where
-the density is.
+where f and s are the mean and the standard deviation of the process, and e the standard errors. Errors that are the scatter of the
+seeds are correlated, because one packing has all of its measures: R is the correlation of the residuals. Others are independent.
+The density is sampled at Sobol points of a box that shrinks to where it is.
 """
 from __future__ import annotations
 
@@ -22,6 +23,7 @@ from .problem import Problem
 
 SAMPLES = 1 << 13
 BOXES = 8  # at most
+SHRINK = 0.9  # of the correlations: those of few residuals could be 1
 NEGLIGIBLE = 15.0  # the logarithm of a density below the largest one
 
 
@@ -41,10 +43,21 @@ class Surrogate:
             noise = process.kernel_.k2.noise_level
             self.process.append((process, y.mean(), size, noise))
             self.scatter.append(float(np.sqrt(noise) * size))
+        self.related = self._related(measures - self.predict(x)[0])
 
     def error_of(self, k: int) -> float:
         """Of target k: its own standard error, or where it has none, the scatter of the seeds."""
         return self.targets[k].error or max(self.scatter[k], 1e-12 * abs(self.targets[k].value), 1e-300)
+
+    def _related(self, residuals: np.ndarray) -> np.ndarray:
+        """Correlations of the errors of the targets"""
+        own = np.array([t.error is not None for t in self.targets])
+        with np.errstate(all="ignore"):
+            r = SHRINK * np.atleast_2d(np.corrcoef(residuals, rowvar=False))
+        r[~np.isfinite(r)] = 0  # a measure without scatter
+        r[own, :], r[:, own] = 0, 0
+        np.fill_diagonal(r, 1)
+        return r
 
     def predict(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Means and standard deviations of the measures, without the scatter of the seeds [n][targets]"""
@@ -54,17 +67,20 @@ class Surrogate:
             mean[:, k], deviation[:, k] = y + size * m, size * np.sqrt(np.maximum(s * s - noise, 0))
         return mean, deviation
 
+    def _terms(self, measures: np.ndarray, deviation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(f - t) . V^-1 (f - t), and the logarithm of det V, in units of the errors [n]"""
+        error = np.array([self.error_of(k) for k in range(len(self.targets))])
+        far = (measures - np.array([t.value for t in self.targets])) / error
+        v = self.related + (deviation / error)[:, :, None] ** 2 * np.eye(len(error))
+        return (far * np.linalg.solve(v, far[:, :, None])[:, :, 0]).sum(1), np.linalg.slogdet(v)[1]
+
     def misfit(self, measures: np.ndarray) -> np.ndarray:
-        """Sum over the targets of ((measure - value)/error)^2"""
-        return sum(((measures[:, k] - t.value) / self.error_of(k)) ** 2 for k, t in enumerate(self.targets))
+        """(f - t) . V^-1 (f - t) of the errors alone: without correlations the sum of ((measure - value)/error)^2"""
+        return self._terms(measures, np.zeros_like(measures))[0]
 
     def log_density(self, x: np.ndarray) -> np.ndarray:
-        mean, deviation = self.predict(x)
-        total = np.zeros(len(x))
-        for k, t in enumerate(self.targets):
-            v = self.error_of(k) ** 2 + deviation[:, k] ** 2
-            total -= 0.5 * ((mean[:, k] - t.value) ** 2 / v + np.log(v))
-        return total
+        squares, log_det = self._terms(*self.predict(x))
+        return -0.5 * (squares + log_det)
 
 
 @dataclass
