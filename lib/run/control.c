@@ -303,10 +303,13 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
     w->v = v;
-    if (!v3_finite(w->x)) {
+    const char *trouble = v3_finite(w->x) ? NULL : "would be beyond the range of numbers";
+    for (int k = 0; k < 3 && !trouble; k++)
+        if (!packing_wall_fits_edge(p, w, k, 0))
+            trouble = "would move across a periodic edge of the cell";
+    if (trouble) {
         *w = was;
-        return failure_set(failure, EX_DATAERR,
-                           "boundary %lld would be beyond the range of numbers", (long long)wall);
+        return failure_set(failure, EX_DATAERR, "boundary %lld %s", (long long)wall, trouble);
     }
     p->outside.steered = true;
     return 0;
