@@ -37,11 +37,13 @@ class Error:
 
 
 def by_cmaes(error):
-    """The mean of the last generation"""
-    search = CMA(mean=np.full(2, 0.5), sigma=0.25, bounds=np.array([[0, 1], [0, 1]]), seed=1)
+    """The mean of the better half of the last generation"""
+    search, made = CMA(mean=np.full(2, 0.5), sigma=0.25, bounds=np.array([[0, 1], [0, 1]]), seed=1), []
     while error.made + search.population_size <= most:
-        search.tell([(x, error(x)) for x in (search.ask() for _ in range(search.population_size))])
-    return search.mean
+        made = [(x, error(x)) for x in (search.ask() for _ in range(search.population_size))]
+        search.tell(made)
+    made.sort(key=lambda each: each[1])
+    return np.mean([x for x, _ in made[: len(made) // 2]], axis=0)
 
 
 def by_bobyqa(error):
