@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 set -euo pipefail
 # the powder itself: GRAIN=1 DT=3e-4 SPEEDS="10 15 20 30 45" UNTIL=3 SURFACES=FOLDER, where FOLDER has the STL files
-grain=${GRAIN:-3.6} dt=${DT:-5e-4} surfaces=${SURFACES:-}
+grain=${GRAIN:-3.2} dt=${DT:-5e-4} surfaces=${SURFACES:-}
 for rpm in ${SPEEDS:-15 45}; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson rpm "$rpm" --arg surfaces "$surfaces" | nsd-gen - |
         nsd-step --until "${UNTIL:-1}" --every 0.02s -o "drum-$rpm.h5"

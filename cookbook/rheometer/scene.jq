@@ -19,7 +19,7 @@ def strip($side): [3.5, 8, 10], [8, 12, 20], [12, 16, 37], [16, 20, 50], [20, 24
        { name: "bottom", disc: { center: [0, 0, (2 | mm)], normal: [0, 0, 1], radius: (25 | mm) } }] end) +
     (if $settled == "" then [] elif $surfaces != "" then [stl("blade") + down | .mesh.at = [0, 0, $top + 0.0066]] else
       [{ name: "blade", cylinder: { point: [0, 0, $top], axis: [0, 0, 1], radius: (3.5 | mm), length: (90 | mm), side: "outside" } } + down,
-       strip(1), strip(-1)] end)),
+       { name: "blade", disc: { center: [0, 0, $top], normal: [0, 0, -1], radius: (3.5 | mm) } } + down, strip(1), strip(-1)] end)),
   bodies: (if $settled != "" then [{ document: $settled, at_rest: true }] else
     [{ random: { count: (1200 * $fill / ($grain * $grain * $grain) | round) }, radius: r,
        box: { x: [-0.0175, 0.0175], y: [-0.0175, 0.0175], z: [(2 | mm), (2 * $fill + 2 | mm)] } }] end) }
