@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # known.sh FOLDER [RUNS]: nsd-fit on drums whose frictions are known, each measured once with a packing of another seed; a row per run:
-# run, mu, its value and interval, mu_r, its value and interval, evaluations, CPU hours, remarks
+# FIRST: number of the first run, by which packings differ. run, mu, its value and interval, mu_r, its value and interval, evaluations, CPU hours, remarks
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd) folder=$1
 mkdir -p "$folder"
@@ -11,9 +11,9 @@ problem() # MU MU_R SEED MEASURES: a problem whose targets are those of a drum w
             parameters: { mu: { keys: "mu", range: [0.1, 0.9] }, mu_r: { keys: "rolling.mu_r_ratio", range: [0, 0.5] } },
             command: ($here + "/measure.sh"), targets: with_entries(select(.key | IN($names[])) | .value = { value: .value }) }'
 }
-k=0
+first=${FIRST:-1} k=$((${FIRST:-1} - 1))
 while read -r mu r; do
-    [ $((++k)) -le "${2:-10}" ] || break
+    [ $((++k - first)) -lt "${2:-10}" ] || break
     [ -e "$folder/$k.json" ] || problem "$mu" "$r" $k '["slope", "fraction", "spin"]' >"$folder/$k.json"
     nsd-fit --quiet -j "${JOBS:-1}" -n "${EVALUATIONS:-54}" "$folder/$k.json" >"$folder/$k.out" || true
     jq -r --argjson k $k --argjson mu "$mu" --argjson r "$r" '.parameters as $p | [$k, $mu, $p.mu.value, $p.mu.interval90[], $r, $p.mu_r.value, $p.mu_r.interval90[],
