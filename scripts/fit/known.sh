@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# known.sh FOLDER [RUNS]: nsd-fit on drums whose frictions are known, each measured once with a packing of another seed; a row per run:
-# FIRST: number of the first run, by which packings differ. run, mu, its value and interval, mu_r, its value and interval, evaluations, CPU hours, remarks
+# known.sh FOLDER [RUNS]: nsd-fit on drums whose frictions are known, each measured once with a packing of another seed. A row has the run,
+# mu, its value and interval, mu_r, its value and interval, evaluations, CPU hours, remarks. FIRST is the number of the first run, which sets the seeds.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd) folder=$1
 mkdir -p "$folder"

@@ -99,8 +99,12 @@ class Posterior:
         """That has 90 %."""
         return self.quantile(j, 0.05), self.quantile(j, 0.95)
 
-    def best(self) -> np.ndarray:
-        return self.x[np.argmin(self.misfit)]
+    def best(self) -> int:
+        """Of the samples that fit as well as any within the errors, the one nearest to the mean: the least misfit itself follows noise"""
+        mean = np.average(self.x, axis=0, weights=self.weight)
+        width = np.sqrt(np.average((self.x - mean) ** 2, axis=0, weights=self.weight)) + 1e-12
+        far = (((self.x - mean) / width) ** 2).sum(1)
+        return int(np.argmin(np.where(self.misfit <= self.misfit.min() + 1, far, np.inf)))
 
 
 def sobol(d: int, n: int, seed: int) -> np.ndarray:
