@@ -23,26 +23,57 @@ from .problem import Problem
 
 SAMPLES = 1 << 13
 BOXES = 8  # at most
+DRAWS, MEMBERS = 256, 8  # sets of lengths, size and noise
+WIDTH = 0.7  # of their logarithms, about the most likely ones
 SHRINK = 0.9  # of the correlations: those of few residuals could be 1
 NEGLIGIBLE = 15.0  # the logarithm of a density below the largest one
+
+
+class Process:
+    """A Gaussian process whose lengths, size and noise are as uncertain as the evaluations leave them: MEMBERS of their density, with a
+    prior under which a measure changes over some 0.7 of a range. The most likely set alone may follow the scatter."""
+
+    def __init__(self, x: np.ndarray, y: np.ndarray):
+        self.mean, self.size = y.mean(), y.std() or 1.0
+        kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * RBF(np.full(x.shape[1], 0.5), (0.15, 20.0))
+                  + WhiteKernel(0.1, (1e-8, 1.0)))
+        likely = GaussianProcessRegressor(kernel, n_restarts_optimizer=3, random_state=0)
+        scaled = (y - self.mean) / self.size
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            likely.fit(x, scaled)
+        middle, bounds = likely.kernel_.theta, likely.kernel_.bounds
+        random = np.random.default_rng(0)
+        step = random.standard_normal((DRAWS, len(middle)))
+        step[0] = 0
+        theta = np.clip(middle + WIDTH * step, bounds[:, 0], bounds[:, 1])
+        log = np.array([likely.log_marginal_likelihood(t, clone_kernel=True) for t in theta])
+        log += 0.5 * (step ** 2).sum(1)  # of what they are drawn from
+        log -= 0.5 * (((theta[:, 1:-1] - np.log(0.7)) / 0.7) ** 2).sum(1) + 0.5 * (theta[:, 0] / 2) ** 2
+        weight = np.exp(log - log.max())
+        sums = np.cumsum(weight / weight.sum())
+        self.members = []
+        for t in theta[np.minimum(np.searchsorted(sums, (np.arange(MEMBERS) + 0.5) / MEMBERS), DRAWS - 1)]:
+            member = GaussianProcessRegressor(likely.kernel_.clone_with_theta(t), optimizer=None)
+            self.members.append((member.fit(x, scaled), float(np.exp(t[-1]))))
+        self.scatter = float(np.sqrt(np.mean([noise for _, noise in self.members])) * self.size)
+
+    def predict(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Mean and standard deviation, without the noise"""
+        mean, square = np.zeros(len(x)), np.zeros(len(x))
+        for member, noise in self.members:
+            m, s = member.predict(x, return_std=True)
+            mean += m / MEMBERS
+            square += (m * m + np.maximum(s * s - noise, 0)) / MEMBERS
+        return self.mean + self.size * mean, self.size * np.sqrt(np.maximum(square - mean * mean, 0))
 
 
 class Surrogate:
     def __init__(self, problem: Problem, x: np.ndarray, measures: np.ndarray):
         """x [n][d] from 0 to 1, measures [n][targets]"""
         self.targets = problem.targets
-        self.process, self.scatter = [], []
-        for k in range(len(problem.targets)):
-            kernel = (ConstantKernel(1.0, (1e-2, 1e3)) * RBF(np.full(x.shape[1], 0.5), (0.15, 20.0))
-                      + WhiteKernel(0.1, (1e-8, 1.0)))
-            y, size = measures[:, k], measures[:, k].std() or 1.0
-            process = GaussianProcessRegressor(kernel, n_restarts_optimizer=3, random_state=0)
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                process.fit(x, (y - y.mean()) / size)
-            noise = process.kernel_.k2.noise_level
-            self.process.append((process, y.mean(), size, noise))
-            self.scatter.append(float(np.sqrt(noise) * size))
+        self.process = [Process(x, measures[:, k]) for k in range(len(problem.targets))]
+        self.scatter = [process.scatter for process in self.process]
         self.related = self._related(measures - self.predict(x)[0])
 
     def error_of(self, k: int) -> float:
@@ -61,11 +92,8 @@ class Surrogate:
 
     def predict(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Means and standard deviations of the measures, without the scatter of the seeds [n][targets]"""
-        mean, deviation = np.empty((len(x), len(self.targets))), np.empty((len(x), len(self.targets)))
-        for k, (process, y, size, noise) in enumerate(self.process):
-            m, s = process.predict(x, return_std=True)
-            mean[:, k], deviation[:, k] = y + size * m, size * np.sqrt(np.maximum(s * s - noise, 0))
-        return mean, deviation
+        each = [process.predict(x) for process in self.process]
+        return np.array([m for m, _ in each]).T, np.array([s for _, s in each]).T
 
     def _terms(self, measures: np.ndarray, deviation: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(f - t) . V^-1 (f - t), and the logarithm of det V, in units of the errors [n]"""
