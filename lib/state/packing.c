@@ -2,6 +2,7 @@
 #include "state/packing.h"
 
 #include "base/array.h"
+#include "shape/wall_in_cell.h"
 #include "state/fields.h"
 
 #include <stdio.h>
@@ -383,15 +384,10 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     return packing_load_trouble(p, w);
 }
 
-/* Is the wall the same after a shift by this edge? */
-static bool repeats_along(const struct packing *p, const struct wall *w, vec3 edge)
+bool packing_wall_fits_edge(const struct packing *p, const struct wall *w, int k, double thick)
 {
-    double tiny = 1e-9 * v3_norm(edge);
-    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns && w->shape == WALL_PLANE) return false;
-    if (w->shape == WALL_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
-    if (w->shape != WALL_CYLINDER || w->size[2] > 0) return false;
-    return v3_norm(v3_cross(edge, w->n)) <= tiny;
+    struct wall_parts of = { .dim = p->dim, .drives = &p->drives, .mesh = &p->mesh };
+    return !p->cell.repeats[k] || wall_fits_edge(w, &of, &p->cell, k, thick);
 }
 
 static int check_images(const struct packing *p, int64_t first, struct failure *failure)
@@ -415,9 +411,12 @@ static int check_cell(const struct packing *p, struct failure *failure)
     if (check_images(p, 0, failure)) return failure->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
-            if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
-                return failure_set(failure, EX_DATAERR,
-                                   "wall %d: crosses a periodic edge of the cell", i);
+            if (!packing_wall_fits_edge(p, &p->wall[i], k, 2 * most))
+                return failure_set(
+                    failure, EX_DATAERR,
+                    "wall %d: crosses a periodic edge of the cell, is nearer to it than a "
+                    "grain is thick, or moves across it",
+                    i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return failure_set(failure, EX_DATAERR,
                                    "wall %d: the edges along it move, so that its bodies' images "
