@@ -61,7 +61,7 @@ NSD_LDLIBS  := $(if $(SHARED),$(CBLAS)) $(PL)
 
 # The inner loops once a width; without contraction, and with instructions that the others know nothing of.
 # Distributions build with -O2, at which gcc leaves loops over three components loops: three times the time.
-WIDE      := sweep judge mixing
+WIDE      := sweep judge mixing small_sweep
 WIDTHS    := 2 $(if $(filter x86_64,$(shell uname -m)),4 8)
 WIDTH_4   := -mavx2
 WIDTH_8   := -mavx512f -mavx512dq -mavx512vl

@@ -4,6 +4,7 @@
 #include "measure/stress.h"
 #include "run/cli.h"
 #include "state/face_of.h"
+#include "state/fields.h"
 #include "state/kinematics.h"
 #include "state/rotation.h"
 #include "state/selection.h"
@@ -45,28 +46,22 @@ const struct cli_tool tool = {
 /* What pairs of materials do beyond friction and restitution */
 static void add_law(json_t *j, const struct pair_law *l)
 {
-    if (l->cohesion > 0)
-        json_object_set_new(j, "cohesion",
-                            json_pack("{s:f, s:f}", "force", l->cohesion, "range", l->range));
-    if (pair_law_wets(l))
-        json_object_set_new(j, "capillary",
-                            json_pack("{s:f, s:f, s:f}", "volume", l->volume, "tension", l->tension,
-                                      "wetting", l->wetting));
-    if (pair_law_rolls(l)) {
-        json_t *rolling = json_pack("{s:f, s:f}", "mu_r", l->mu_r, "mu_p", l->mu_p);
-        if (l->mu_r_ratio > 0) json_object_set_new(rolling, "mu_r_ratio", json_real(l->mu_r_ratio));
-        if (l->mu_p_ratio > 0) json_object_set_new(rolling, "mu_p_ratio", json_real(l->mu_p_ratio));
-        json_object_set_new(j, "rolling", rolling);
+    for (const struct law_name *law = law_names; law->name; law++) {
+        const size_t length = strlen(law->name);
+        if (!law->is_of(l)) continue;
+        json_t *of = json_object();
+        for (const struct field *f = law_fields; f->name; f++) {
+            double x = *(const double *)(const void *)((const char *)l + f->offset);
+            bool named = f->key && !strncmp(f->key, law->name, length) && f->key[length] == '.';
+            if (!named || (x == 0 && (f->traits & FIELD_OPTIONAL || f->range == FIELD_FLAG)) ||
+                (f->range == FIELD_FINITE &&
+                 l->forever > 0)) // bonds are made at a time, or for ever
+                continue;
+            json_object_set_new(of, f->key + length + 1,
+                                f->range == FIELD_FLAG ? json_true() : json_real(x));
+        }
+        json_object_set_new(j, law->name, of);
     }
-    if (pair_law_springs(l))
-        json_object_set_new(j, "stiffness",
-                            json_pack("{s:f, s:f}", "normal", l->kn, "tangential", l->kt));
-    if (!pair_law_adheres(l)) return;
-    json_t *a = json_pack("{s:f, s:f, s:f, s:f, s:f, s:f}", "c_n", l->cn, "c_t", l->ct, "w", l->w,
-                          "eta", l->eta, "area", l->area, "beta", l->beta);
-    json_object_set_new(a, l->forever ? "forever" : "made",
-                        l->forever ? json_true() : json_real(l->made));
-    json_object_set_new(j, "adhesion", a);
 }
 
 static json_t *material(const struct packing *p)
@@ -75,11 +70,13 @@ static json_t *material(const struct packing *p)
     for (int32_t a = 0; a < p->materials; a++)
         for (int32_t b = a; b < p->materials; b++) {
             int32_t k = a * p->materials + b;
-            json_t *j =
-                json_pack("{s:[s,s], s:f, s:f, s:f}", "pair", p->material_name[a],
-                          p->material_name[b], "mu", p->mu[k], "e_n", p->en[k], "e_t", p->et[k]);
-            if (p->mu_s[k] > 0) json_object_set_new(j, "mu_s", json_real(p->mu_s[k]));
-            if (p->mu_s[k] > 0) json_object_set_new(j, "v_s", json_real(p->v_s[k]));
+            json_t *j = json_pack("{s:[s,s]}", "pair", p->material_name[a], p->material_name[b]);
+#define NUMBER(member, name, unit, key, ...) json_object_set_new(j, key, json_real(p->member[k]));
+            EACH_PAIR_COLUMN(NUMBER)
+            if (p->mu_s[k] > 0) {
+                STATIC_FRICTION_COLUMNS(NUMBER)
+            }
+#undef NUMBER
             if (p->law) add_law(j, &p->law[k]);
             json_array_append_new(list, j);
         }
@@ -198,9 +195,13 @@ static void show_moment(const struct frame *f)
 
 static void show_particles(const struct packing *p)
 {
+#define MEMBER(ctype, member, ...) #member,
+    static const char *const key[] = { EACH_BODY_COLUMN(MEMBER) };
+#undef MEMBER
+    const unsigned apart =
+        1 << BODY_inertia | 1 << BODY_id | 1 << BODY_material | 1 << BODY_shape | 1 << BODY_group;
     for (int64_t i = 0; i < p->n; i++) {
         if (!selection_body(&chosen, p, i)) continue;
-        const double q[4] = { p->q[i].w, p->q[i].x, p->q[i].y, p->q[i].z };
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
@@ -208,15 +209,10 @@ static void show_particles(const struct packing *p)
         if (p->group && p->group[i])
             json_object_set_new(j, "group", json_string(p->names.text[p->group[i] - 1]));
         if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
-        json_object_set_new(j, "radius", json_number(p->radius[i]));
-        json_object_set_new(j, "mass", json_number(p->mass[i]));
-        json_object_set_new(j, "x", json_vec(p->x[i]));
-        json_object_set_new(j, "v", json_vec(p->v[i]));
-        json_object_set_new(j, "w", json_vec(p->w[i]));
-        json_object_set_new(j, "q", json_numbers(q, 4));
-        const int32_t *image = p->image ? p->image[i] : NULL;
-        if (image)
-            json_object_set_new(j, "image", json_pack("[i,i,i]", image[0], image[1], image[2]));
+        for (int k = 0; k < BODY_COLUMNS; k++)
+            if (!(apart >> k & 1) && field_array(&body_columns[k], p))
+                json_object_set_new(
+                    j, key[k], json_field(&body_columns[k], field_row(&body_columns[k], p, i)));
         json_line(j);
     }
 }
@@ -361,9 +357,9 @@ static void show_contacts(const struct frame *f)
         json_object_set_new(j, "t1", json_vec(c->t1));
         json_object_set_new(j, "t2", json_vec(contact_t2(c)));
         json_object_set_new(j, "gap", json_number(c->gap));
-        json_object_set_new(j, "mu", json_number(c->mu));
-        json_object_set_new(j, "e_n", json_number(c->en));
-        json_object_set_new(j, "e_t", json_number(c->et));
+#define NUMBER(member, name, unit, key, ...) json_object_set_new(j, key, json_number(c->member));
+        EACH_PAIR_COLUMN(NUMBER)
+#undef NUMBER
         if (f->contacts.law) add_tie(j, &f->contacts.law[i]);
         const struct found *found = f->contacts.found ? &f->contacts.found[i] : NULL;
         if (found) {
@@ -399,11 +395,9 @@ static void show_sweeps(const struct frame *f)
 {
     shown = true;
     for (int32_t i = 0; i < f->report.sweeps; i++) {
-        const struct terms *t = &f->report.history[i];
-        json_line(json_pack("{s:i, s:o, s:o, s:o, s:o, s:o}", "sweep", i + 1, "eps_glob",
-                            json_number(t->eps_glob), "motion", json_number(t->motion), "proj",
-                            json_number(t->proj), "bipotential", json_number(t->bipotential),
-                            "penetration", json_number(t->penetration)));
+        json_t *j = json_pack("{s:i}", "sweep", i + 1);
+        json_terms(j, &f->report.history[i]);
+        json_line(j);
     }
 }
 

@@ -11,6 +11,7 @@
 #include "scene/inlet.h"
 #include "scene/stiffness.h"
 #include "step/adapt.h"
+#include "step/small_step.h"
 
 #include <float.h>
 #include <malloc.h>
@@ -42,6 +43,9 @@ static const struct cli_option own[] = {
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
+    { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 1,
+      .help =
+          "make each step in small ones of one sweep, which move no body by more than R radii" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -94,6 +98,7 @@ static struct {
     int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
+    int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all */
     double seconds;
     struct account account; /* of this run */
     int64_t ended;          /* the step that failed, with which the run has ended; 0: none */
@@ -168,6 +173,7 @@ static void count(const struct report *r)
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
     if (r->substeps > 1) total.divided++, total.substeps += r->substeps;
+    if (r->small) total.small++, total.small_steps += r->small;
     if (r->converged) return;
     if (!total.missed++) total.first_missed = r->step;
     double error = err_of(&r->err, r->criterion);
@@ -188,6 +194,13 @@ static void summary(int64_t made)
     if (total.safeguarded || total.gave_up)
         warn("%lld local solves safeguarded, %lld given up", (long long)total.safeguarded,
              (long long)total.gave_up);
+    if (total.small)
+        warn("%lld steps were made in %lld small ones", (long long)total.small,
+             (long long)total.small_steps);
+    if (total.small && total.small < made)
+        warn("%lld steps were made at once, because sweeps of small steps carry reactions too "
+             "slowly there",
+             (long long)(made - total.small));
     if (total.divided)
         warn("%lld steps were divided into %lld substeps, because fast bodies met in them",
              (long long)total.divided, (long long)total.substeps);
@@ -396,12 +409,23 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
            floor((before + driver_slack(p, before)) / every.seconds);
 }
 
+/* What small steps are asked for and cannot do */
+static void say_lacks(const struct packing *p)
+{
+    static bool said;
+    const char *lacks = processes_size() > 1 ? "several processes" : small_lacks(p);
+    if (!(options.small > 0) || !lacks || said) return;
+    warn("--small-steps: no small steps with %s yet: each step is made at once", lacks);
+    said = true;
+}
+
 /* The step to come begins, with the dt that it has. */
 static void begin_step(struct run *r)
 {
     struct failure failure = { 0 };
     struct packing *p = &r->f.packing;
     const double had = p->dt;
+    say_lacks(p);
     if (driver_begin(&r->driver, p, tol, &r->f.contacts, &failure)) die_why(&failure);
     if (p->dt != had && p->halved == ADAPT_MOST && !total.shortest++)
         warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "

@@ -54,6 +54,11 @@ struct field {
         .offset = offsetof(owner, member), .traits = __VA_ARGS__                                   \
     }
 
+/* In JSON, exports and the Python module */
+static inline const char *field_key(const struct field *f)
+{
+    return f->key ? f->key : f->name;
+}
 static inline size_t field_size(enum column_type t)
 {
     return t == COLUMN_I8 ? 1 : t == COLUMN_I32 ? 4 : 8;

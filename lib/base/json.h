@@ -2,6 +2,7 @@
 #ifndef NSD_JSON_H
 #define NSD_JSON_H
 
+#include "base/field.h"
 #include "base/vec.h"
 
 #include <jansson.h>
@@ -12,6 +13,8 @@
 json_t *json_number(double x); /* null where x is not finite */
 json_t *json_vec(vec3 v);
 json_t *json_numbers(const double *x, int64_t n);
+/* A row of the field, at x: a number, a flag as true or false, an array of several numbers */
+json_t *json_field(const struct field *field, const void *x);
 
 /*
  * The byte order mark that some programs put in front of UTF-8, EF BB BF, which is no part of the

@@ -377,6 +377,14 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     return true;
 }
 
+bool contact_law_carries(const struct pair_law *l, struct bond *b)
+{
+    if (!pair_law_wets(l)) b->wet = 0;
+    if (!pair_law_springs(l)) b->pressed = 0, b->rest = 0, b->turn = v3(0, 0, 0);
+    if (!pair_law_adheres(l)) b->beta = 0;
+    return pair_law_adheres(l) || b->wet || b->pressed;
+}
+
 static int32_t lesser(int32_t x, int32_t y)
 {
     return x < y ? x : y;

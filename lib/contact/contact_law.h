@@ -101,6 +101,9 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
                                                const struct contact_law *t,
                                                const struct contact_law_end *end);
 
+/* Leaves of a bond, of a pair that had another law, what lasts under this one; false: nothing does. */
+bool contact_law_carries(const struct pair_law *law, struct bond *bond);
+
 /* p->bonds = what lasts of the contacts' ties; the bodies have not moved yet. Returns 0 or
    EX_SOFTWARE. */
 int contact_laws_keep(struct packing *p, const struct contacts *s, struct failure *failure);

@@ -68,7 +68,7 @@ int fast_find(struct fast_list *list, const struct packing *p, const bool *of,
 const struct shape *fast_hull(const struct packing *p, const struct fast *b)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
-    return s && s->form == SHAPE_HULL ? s : NULL;
+    return s && shape_has_faces(s) ? s : NULL;
 }
 
 /* What a path of a body covers */

@@ -143,7 +143,7 @@ struct corners {
 static int32_t time_of_impact_cores_of(const struct packing *p, const struct fast *b)
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
-    return s && s->form == SHAPE_CLUMP ? s->vertices : 1;
+    return s ? shape_parts(s) : 1;
 }
 
 /* The body's vertices in space, with its centre at x */
@@ -162,9 +162,9 @@ static struct core time_of_impact_core_of(const struct packing *p, const struct 
 {
     const struct shape *s = b->shape ? &p->shapes.s[b->shape] : NULL;
     if (!s) return (struct core){ .n = 1, .v = v, .round = b->radius, .centre = x };
-    if (s->form == SHAPE_CLUMP)
-        return (struct core){ .n = 1, .v = v + k, .round = b->radius * s->ball[k], .centre = v[k] };
-    return (struct core){ .n = s->vertices, .v = v, .round = b->radius * s->round, .centre = x };
+    struct core c = shape_core(s, b->radius, x, v, NULL, k);
+    c.hull = NULL; // its vertices are enough
+    return c;
 }
 
 /* s: when two bodies meet of which one at least has a shape */

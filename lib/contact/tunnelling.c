@@ -16,14 +16,14 @@ double tunnelling_thickness(const struct packing *p, int64_t i)
     const struct shape *s = packing_shape(p, i);
     double least = INFINITY;
     if (!s) return p->radius[i];
-    if (s->form == SHAPE_CLUMP)
-        for (int32_t k = 0; k < s->vertices; k++) least = dmin(least, s->ball[k]);
-    if (s->form == SHAPE_HULL)
+    for (int32_t k = 0; k < shape_parts(s) && !shape_has_faces(s); k++)
+        least = dmin(least, shape_part(s, k).round);
+    if (shape_has_faces(s))
         for (int32_t f = 0; f < (p->dim == 2 ? s->corners : s->faces); f++) {
             vec3 v = s->vertex[s->corner[p->dim == 2 ? f : s->first[f]]];
             least = dmin(least, v3_dot(s->normal[f], v) + s->round);
         }
-    return p->radius[i] * (isfinite(least) ? least : s->round);
+    return p->radius[i] * least;
 }
 
 bool tunnelling_is(const struct packing *p, int64_t i, double most)
@@ -211,7 +211,7 @@ bool tunnelling_meets_wall(struct contacts *out, int64_t first, const struct sit
 static bool is_fixed_hull(const struct packing *p, int64_t i)
 {
     const struct shape *s = p->mass[i] == 0 ? packing_shape(p, i) : NULL;
-    return s && s->form == SHAPE_HULL;
+    return s && shape_has_faces(s);
 }
 
 /* The first fixed hull, n: there is none; and how fast the fastest is, with gravity */

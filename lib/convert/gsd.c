@@ -9,6 +9,7 @@
  */
 #include "convert/format.h"
 
+#include "base/array.h"
 #include "base/text.h"
 
 #include <inttypes.h>
@@ -112,13 +113,8 @@ static int put_chunk(struct gsd *g, enum gsd_chunk k, int64_t rows, int64_t colu
     else if (k != STEP && g->first[k].rows == (uint64_t)rows &&
              g->first[k].columns == (uint32_t)columns && g->first[k].hash == hash)
         return 0;
-    if (g->entries == g->room) {
-        int64_t room = g->room ? 2 * g->room : 64;
-        struct index_entry *more = realloc(g->entry, (size_t)room * sizeof *more);
-        if (!more)
-            return failure_set(failure, EX_SOFTWARE, "no memory for the index of a GSD file");
-        g->entry = more, g->room = room;
-    }
+    if (!array_grow(&g->entry, &g->room, g->entries + 1, sizeof *g->entry))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the index of a GSD file");
     g->entry[g->entries++] = (struct index_entry){ .frame = (uint64_t)g->frames,
                                                    .rows = (uint64_t)rows,
                                                    .at = g->at,
@@ -187,7 +183,7 @@ static void put_vertex(FILE *out, bool first, double r, vec3 x, int dim)
 static void put_shape(FILE *out, const struct packing *p, const struct gsd_particle *k)
 {
     const struct shape *s = &p->shapes.s[k->shape];
-    const bool clump = k->shape && s->form == SHAPE_CLUMP;
+    const bool clump = k->shape && shape_is_union(s);
     if (!k->shape) {
         fputs("{}", out);
         return;
@@ -199,7 +195,7 @@ static void put_shape(FILE *out, const struct packing *p, const struct gsd_parti
     if (!clump) fprintf(out, "\"rounding_radius\": %.9g, ", k->radius * s->round);
     fputs(clump ? "\"centers\": [" : "\"vertices\": [", out);
     for (int32_t i = 0; i < s->vertices; i++) {
-        bool ring = p->dim == 2 && s->form == SHAPE_HULL; // in the order around it
+        bool ring = p->dim == 2 && shape_has_faces(s); // in the order around it
         put_vertex(out, !i, k->radius, s->vertex[ring ? s->corner[i] : i], clump ? 3 : p->dim);
     }
     fputs(clump ? "], \"diameters\": [" : "]", out);

@@ -117,19 +117,24 @@ static int set_materials(struct packing *p, const int32_t *type, int32_t types,
 static int import_file_set_body(struct packing *p, int64_t i, const struct imported_ball *b,
                                 const char *name, struct failure *failure)
 {
-    double mass, inertia;
-    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
-    p->radius[i] = b->radius, p->id[i] = b->id;
-    if (p->dim == 2 && (b->v.z != 0 || b->w.x != 0 || b->w.y != 0))
+    const bool flat = p->dim == 2;
+    // the plane has another density than a file of balls
+    const bool known = b->mass > 0 || (b->density > 0 && !flat);
+    const struct new_body body = { .x = v3(b->x.x, b->x.y, flat ? 0 : b->x.z),
+                                   .v = b->v,
+                                   .w = b->w,
+                                   .q = flat ? (quat){ 1, 0, 0, 0 } : b->q,
+                                   .radius = b->radius,
+                                   .density = b->density > 0 ? b->density : 1,
+                                   .mass = b->mass,
+                                   .weighed = b->mass > 0,
+                                   .fixed = !known };
+    if (flat && (b->v.z != 0 || b->w.x != 0 || b->w.y != 0))
         return failure_set(failure, EX_DATAERR,
                            "%s: ball %lld moves out of the plane: \"dim\": 3 takes it", name,
                            (long long)i);
-    if (p->dim == 2) p->x[i].z = 0, p->q[i] = (quat){ 1, 0, 0, 0 };
-    packing_solid(p->dim, b->radius, b->density > 0 ? b->density : 1, &mass, &inertia);
-    if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
-    // the plane has another density than a file of balls
-    const bool said = b->mass > 0 || (b->density > 0 && p->dim == 3);
-    p->mass[i] = said ? mass : 0, p->inertia[i] = said ? inertia : 0;
+    packing_set_body(p, i, &body);
+    p->id[i] = b->id;
     return 0;
 }
 

@@ -1,5 +1,7 @@
 #include "convert/imported.h"
 
+#include "base/array.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,12 +14,8 @@ int imported_add(struct imported *t, const struct imported_ball *ball, struct fa
 {
     if (t->head.n == IMPORTED_MOST)
         return failure_set(failure, EX_DATAERR, "more than %d balls", IMPORTED_MOST);
-    if (t->head.n == t->room) {
-        int64_t room = t->room ? t->room + t->room / 2 : 1024;
-        struct imported_ball *more = realloc(t->ball, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the balls of a file");
-        t->ball = more, t->room = room;
-    }
+    if (!array_grow(&t->ball, &t->room, t->head.n + 1, sizeof *t->ball))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the balls of a file");
     t->ball[t->head.n++] = *ball;
     return 0;
 }

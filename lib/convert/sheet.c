@@ -1,5 +1,6 @@
 #include "convert/sheet.h"
 
+#include "base/array.h"
 #include "draw/facets.h"
 #include "state/face_of.h"
 
@@ -223,33 +224,46 @@ static int sheet_add_contacts(struct sheet *s, const struct export_frame *m,
     return 0;
 }
 
+/* Which columns of bodies come first, also those that the packing lacks; which of the others do not come; and the body
+   of each row, NULL: its number */
+struct sheet_bodies {
+    const int8_t *first;
+    int n;
+    unsigned without;
+    const int32_t *of;
+};
+
+static void sheet_add_bodies(struct sheet *s, const struct packing *p,
+                             const struct sheet_bodies *list, struct failure *failure)
+{
+    for (int k = 0; k < list->n + BODY_COLUMNS && !failure->status; k++) {
+        const int column = k < list->n ? list->first[k] : k - list->n;
+        const struct field *f = &body_columns[column];
+        const size_t bytes = field_bytes(f);
+        const char *suffix = f->width == 1 ? "" : f->width == 3 ? "xyz" : "wxyz";
+        if (k >= list->n && (list->without >> column & 1 || !field_array(f, p))) continue;
+        char *to = f->type == COLUMN_F64 ? (char *)sheet_real(s, field_key(f), suffix, failure)
+                                         : (char *)sheet_whole(s, field_key(f), suffix, failure);
+        for (int64_t i = 0; to && i < sheet_rows(s); i++)
+            memcpy(to + bytes * (size_t)i, field_row(f, p, list->of ? list->of[i] : i), bytes);
+    }
+}
+
 static int sheet_grains(struct sheet *s, const struct export_frame *m, struct failure *failure)
 {
+    static const int8_t first[] = { BODY_id, BODY_material, BODY_radius, BODY_mass,
+                                    BODY_v,  BODY_w,        BODY_q };
+    static const struct sheet_bodies list = { first, sizeof first,
+                                              1 << BODY_id | 1 << BODY_material | 1 << BODY_radius |
+                                                  1 << BODY_mass | 1 << BODY_inertia | 1 << BODY_x |
+                                                  1 << BODY_v | 1 << BODY_w | 1 << BODY_q,
+                                              NULL };
     const struct packing *p = m->packing;
-    const size_t n = (size_t)p->n;
     s->shape = SHEET_POINT, s->of_points = true;
     for (int64_t i = 0; i < p->n; i++)
         if (sheet_add(s, 1, &p->x[i], failure)) return failure->status;
-    int32_t *id = sheet_whole(s, "id", "", failure),
-            *material = sheet_whole(s, "kind", "", failure);
-    double *radius = sheet_real(s, "radius", "", failure),
-           *mass = sheet_real(s, "mass", "", failure);
-    double *v = sheet_real(s, "velocity", "xyz", failure);
-    double *w = sheet_real(s, "angular_velocity", "xyz", failure);
-    double *q = sheet_real(s, "orientation", "wxyz", failure);
-    int32_t *shape = p->shape ? sheet_whole(s, "shape", "", failure) : NULL;
-    int32_t *group = p->group ? sheet_whole(s, "group", "", failure) : NULL;
-    int32_t *image = p->image ? sheet_whole(s, "image", "xyz", failure) : NULL;
+    sheet_add_bodies(s, p, &list, failure);
     if (failure->status) return failure->status;
-    if (n && image) memcpy(image, p->image, n * sizeof *p->image);
-    if (n && group) memcpy(group, p->group, n * sizeof *group);
-    if (n && shape) memcpy(shape, p->shape, n * sizeof *shape);
-    if (n) {
-        memcpy(id, p->id, n * sizeof *id), memcpy(material, p->material, n * sizeof *material);
-        memcpy(radius, p->radius, n * sizeof *radius), memcpy(mass, p->mass, n * sizeof *mass);
-        memcpy(v, p->v, n * sizeof *p->v), memcpy(w, p->w, n * sizeof *p->w);
-        memcpy(q, p->q, n * sizeof *p->q);
-    }
     return m->contacts && m->contacts->found ? sheet_add_contacts(s, m, failure) : 0;
 }
 
@@ -267,14 +281,9 @@ static void sheet_add_cell(void *to, int corners, const vec3 *x)
 {
     struct sheet_cells *c = to;
     if (c->failure->status) return;
-    if (c->s->cells == c->room) {
-        int64_t room = 2 * c->room + 64;
-        int32_t *of = realloc(c->of, (size_t)room * sizeof *of);
-        if (!of) {
-            failure_set(c->failure, EX_SOFTWARE, "no memory for the surfaces of the grains");
-            return;
-        }
-        c->of = of, c->room = room;
+    if (!array_grow(&c->of, &c->room, c->s->cells + 1, sizeof *c->of)) {
+        failure_set(c->failure, EX_SOFTWARE, "no memory for the surfaces of the grains");
+        return;
     }
     c->of[c->s->cells] = (int32_t)c->grain;
     sheet_add(c->s, corners, x, c->failure);
@@ -288,20 +297,10 @@ static void sheet_surfaces_put(double *out, int64_t k, vec3 x)
 static void sheet_add_columns(struct sheet *s, const int32_t *of, const struct packing *p,
                               struct failure *failure)
 {
-    int32_t *id = sheet_whole(s, "id", "", failure),
-            *material = sheet_whole(s, "kind", "", failure),
-            *shape = sheet_whole(s, "shape", "", failure);
-    double *radius = sheet_real(s, "radius", "", failure),
-           *mass = sheet_real(s, "mass", "", failure);
-    double *v = sheet_real(s, "velocity", "xyz", failure);
-    double *w = sheet_real(s, "angular_velocity", "xyz", failure);
-    if (failure->status) return;
-    for (int64_t k = 0; of && k < s->cells; k++) {
-        int32_t i = of[k];
-        id[k] = p->id[i], material[k] = p->material[i], shape[k] = p->shape[i];
-        radius[k] = p->radius[i], mass[k] = p->mass[i];
-        sheet_surfaces_put(v, k, p->v[i]), sheet_surfaces_put(w, k, p->w[i]);
-    }
+    static const int8_t first[] = { BODY_id,   BODY_material, BODY_shape, BODY_radius,
+                                    BODY_mass, BODY_v,        BODY_w };
+    const struct sheet_bodies list = { first, sizeof first, ~0U, of };
+    sheet_add_bodies(s, p, &list, failure);
 }
 
 /* Of solved contacts: how many push each cell's grain, and the sum of their forces on it (N) */

@@ -3,6 +3,9 @@
  * is infinite: it is cut off where the region of the grains ends, and by the other planes.
  */
 #include "convert/sheet.h"
+
+#include "base/array.h"
+
 #include "draw/outline.h"
 #include "draw/walls.h"
 #include "state/face_of.h"
@@ -23,12 +26,8 @@ struct owners {
 static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
                                 const vec3 *corner, struct failure *failure)
 {
-    if (!o->of || s->cells == o->room) {
-        int64_t room = 2 * o->room + 64;
-        struct owner *more = realloc(o->of, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
-        o->of = more, o->room = room;
-    }
+    if (!array_grow(&o->of, &o->room, s->cells + 1, sizeof *o->of))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
     o->of[s->cells] = of;
     return sheet_add(s, corners, corner, failure);
 }

@@ -161,7 +161,7 @@ void facets_of(const struct facets *b, const struct packing *p, int64_t i, facet
         put_disc(&out, p->x[i], p->radius[i]);
     else if (!s)
         put_ball(&out, p->x[i], p->radius[i], p->q[i], b);
-    else if (s->form == SHAPE_CLUMP)
+    else if (shape_is_union(s))
         put_clump(&out, p, i, s, b);
     else if (facets_are_faces(s))
         put_faces(&out, p, i, s);
@@ -174,5 +174,5 @@ int64_t facets_triangles(const struct facets *b, const struct packing *p, int64_
     const struct shape *s = packing_shape(p, i);
     int64_t round = p->dim == 2 ? DISC : b->n;
     if (s && facets_are_faces(s)) return s->first[s->faces] - 2 * (int64_t)s->faces;
-    return s && s->form == SHAPE_CLUMP ? round * s->vertices : round;
+    return s ? round * shape_parts(s) : round;
 }

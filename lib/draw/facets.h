@@ -30,7 +30,7 @@ void facets_of(const struct facets *f, const struct packing *p, int64_t i, facet
 /* Are the polygons of this shape its faces, and not pieces of something round? */
 static inline bool facets_are_faces(const struct shape *s)
 {
-    return s->form == SHAPE_HULL && s->round == 0;
+    return shape_has_faces(s) && s->round == 0;
 }
 /* How many triangles these polygons are, each cut into a fan */
 int64_t facets_triangles(const struct facets *f, const struct packing *p, int64_t i);

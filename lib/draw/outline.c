@@ -1,6 +1,8 @@
 /* draw/outline.c: surfaces as grids of points, and their borders [draw/outline.h]. */
 #include "draw/outline.h"
 
+#include "base/array.h"
+
 #include <stdlib.h>
 
 #define SHARP 0.94 /* the cosine of the least angle between triangles whose edge is drawn */
@@ -17,24 +19,15 @@ struct outline_placed {
 static bool add_triangle(struct outline *o, const struct outline_placed *b, int32_t face, vec3 x,
                          vec3 y, vec3 z)
 {
-    if (o->triangles == o->triangle_room) {
-        int64_t room = 2 * o->triangle_room + 256;
-        struct outline_triangle *more = realloc(o->triangle, (size_t)room * sizeof *more);
-        if (!more) return false;
-        o->triangle = more, o->triangle_room = room;
-    }
+    if (!array_grow(&o->triangle, &o->triangle_room, o->triangles + 1, sizeof *o->triangle))
+        return false;
     o->triangle[o->triangles++] = (struct outline_triangle){ { x, y, z }, b->wall, face };
     return true;
 }
 
 static bool outline_add_line(struct outline *o, const struct outline_placed *b, vec3 x, vec3 y)
 {
-    if (o->lines == o->line_room) {
-        int64_t room = 2 * o->line_room + 256;
-        struct outline_line *more = realloc(o->line, (size_t)room * sizeof *more);
-        if (!more) return false;
-        o->line = more, o->line_room = room;
-    }
+    if (!array_grow(&o->line, &o->line_room, o->lines + 1, sizeof *o->line)) return false;
     o->line[o->lines++] = (struct outline_line){ { x, y }, b->wall, 0 };
     return true;
 }

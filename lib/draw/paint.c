@@ -1,6 +1,7 @@
 /* draw/paint.c: palettes, sRGB, and the marks. */
 #include "draw/paint.h"
 
+#include "base/array.h"
 #include "base/json.h"
 #include "base/text.h"
 
@@ -181,12 +182,7 @@ static int paint_compare(const void *a, const void *b)
 
 static struct value *paint_add_row(struct values *v)
 {
-    if (v->n == v->room) {
-        int64_t room = v->room ? 2 * v->room : 1024;
-        struct value *more = realloc(v->row, (size_t)room * sizeof *more);
-        if (!more) return NULL;
-        v->row = more, v->room = room;
-    }
+    if (!array_grow(&v->row, &v->room, v->n + 1, sizeof *v->row)) return NULL;
     return &v->row[v->n++];
 }
 

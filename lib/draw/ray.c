@@ -81,18 +81,21 @@ static void ray_take(struct interval *best, struct interval k, const struct ray 
 bool ray_meets(const struct shape *s, const struct ray *l, double *t, vec3 *n)
 {
     struct interval best = { INFINITY, -INFINITY, { 0, 0, 0 } };
-    bool clump = s->form == SHAPE_CLUMP, hull = s->form == SHAPE_HULL;
+    bool hull = shape_has_faces(s);
     if (hull) ray_take(&best, in_core(s, l), l);
-    for (int32_t i = 0; i < s->vertices && (clump || s->round > 0); i++)
-        ray_take(&best, ray_in_ball(l, s->vertex[i], clump ? s->ball[i] : s->round), l);
+    for (int32_t i = 0; i < s->vertices && shape_round(s, i) > 0; i++)
+        ray_take(&best, ray_in_ball(l, s->vertex[i], shape_round(s, i)), l);
     for (int32_t k = 0; k < s->edges && hull && s->round > 0; k++)
         ray_take(&best,
                  ray_in_tube(l, s->vertex[s->edge[k].tail], s->vertex[s->edge[k].head], s->round),
                  l);
     for (int32_t f = 0; f < s->faces && hull && s->round > 0; f++)
         ray_take(&best, ray_over_face(s, l, f), l);
-    if (s->form == SHAPE_CAPSULE)
-        ray_take(&best, ray_in_tube(l, s->vertex[0], s->vertex[1], s->round), l);
+    for (int32_t k = 0; k < shape_parts(s) && !hull; k++) {
+        const struct shape_part part = shape_part(s, k);
+        const vec3 *v = s->vertex + part.first;
+        if (part.n == 2) ray_take(&best, ray_in_tube(l, v[0], v[1], part.round), l);
+    }
     *t = best.hi, *n = best.n;
     return best.lo < best.hi;
 }
@@ -107,10 +110,13 @@ static double to_segment(vec3 x, vec3 a, vec3 b)
 double ray_depth(const struct shape *s, vec3 x)
 {
     double depth = -INFINITY, inside = INFINITY, near = INFINITY;
-    for (int32_t i = 0; i < s->vertices && s->form == SHAPE_CLUMP; i++)
-        depth = fmax(depth, s->ball[i] - v3_norm(v3_sub(x, s->vertex[i])));
-    if (s->form == SHAPE_CLUMP) return depth;
-    if (s->form == SHAPE_CAPSULE) return s->round - to_segment(x, s->vertex[0], s->vertex[1]);
+    for (int32_t k = 0; k < shape_parts(s) && !shape_has_faces(s); k++) {
+        const struct shape_part part = shape_part(s, k);
+        const vec3 *v = s->vertex + part.first;
+        double far = part.n == 1 ? v3_norm(v3_sub(x, v[0])) : to_segment(x, v[0], v[1]);
+        depth = fmax(depth, part.round - far);
+    }
+    if (!shape_has_faces(s)) return depth;
     for (int32_t k = 0; k < s->edges; k++) {
         vec3 a = s->vertex[s->edge[k].tail], b = s->vertex[s->edge[k].head];
         inside = fmin(inside, v3_dot(s->normal[k], v3_sub(a, x)));

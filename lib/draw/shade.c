@@ -178,7 +178,7 @@ static struct rgb ball_light(const struct band *b, const struct raster *s, size_
 {
     const struct spot *o = &s->spot[b->what[k]];
     struct normal n = b->n[k];
-    bool facets = o->shape && o->shape->form == SHAPE_HULL; // which show themselves how it turns
+    bool facets = o->shape && shape_has_faces(o->shape); // which show themselves how it turns
     vec3 at = camera_to_body(t, s, o->body, n.x, -n.y, n.z);
     if (o->shape && o->shape->form == SHAPE_CAPSULE) at = v3(at.y, at.z, at.x); // poles at its ends
     struct rgb own = facets ? o->own : paint_ball(s->paint, o->own, at);

@@ -12,27 +12,31 @@ static void draw_core(cairo_t *cr, const struct view *v, const struct packing *p
                       double rim)
 {
     const struct shape *s = packing_shape(p, i);
+    const bool faces = shape_has_faces(s);
     double r = p->radius[i], scale = 0;
-    int32_t corners = s->form == SHAPE_HULL ? s->corners : s->vertices;
-    for (int32_t k = 0; k < corners; k++) {
-        int32_t vertex = s->form == SHAPE_HULL ? s->corner[k] : k;
-        vec3 x = v3_axpy(p->x[i], r, quat_turn(p->q[i], s->vertex[vertex]));
-        vec3 at = view_sees(v, x, &scale);
-        if (s->form == SHAPE_CLUMP) {
-            cairo_arc(cr, at.x, at.y, s->ball[k] * r * scale + rim, 0, 2 * M_PI);
-            cairo_fill(cr);
-        } else {
-            (k ? cairo_line_to : cairo_move_to)(cr, at.x, at.y);
+    for (int32_t k = 0; k < shape_parts(s); k++) {
+        const struct shape_part part = shape_part(s, k);
+        const int32_t n = faces ? s->corners : part.n;
+        for (int32_t j = 0; j < n; j++) {
+            int32_t vertex = faces ? s->corner[j] : part.first + j;
+            vec3 x = v3_axpy(p->x[i], r, quat_turn(p->q[i], s->vertex[vertex]));
+            vec3 at = view_sees(v, x, &scale);
+            if (n == 1)
+                cairo_arc(cr, at.x, at.y, part.round * r * scale + rim, 0, 2 * M_PI);
+            else
+                (j ? cairo_line_to : cairo_move_to)(cr, at.x, at.y);
         }
+        cairo_set_line_width(cr, 2 * (part.round * r * scale + rim));
+        cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+        cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+        if (faces) cairo_close_path(cr), cairo_fill_preserve(cr);
+        if (n == 1)
+            cairo_fill(cr);
+        else if (part.round * r * scale + rim > 0)
+            cairo_stroke(cr);
+        else
+            cairo_new_path(cr);
     }
-    if (s->form == SHAPE_CLUMP) return;
-    cairo_set_line_width(cr, 2 * (s->round * r * scale + rim));
-    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND), cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-    if (s->form == SHAPE_HULL) cairo_close_path(cr), cairo_fill_preserve(cr);
-    if (s->round * r * scale + rim > 0)
-        cairo_stroke(cr);
-    else
-        cairo_new_path(cr);
 }
 
 static void svg_draw_shape(cairo_t *cr, const struct view *v, const struct packing *p, int64_t i,
@@ -41,7 +45,7 @@ static void svg_draw_shape(cairo_t *cr, const struct view *v, const struct packi
     const struct rgb dark = { 0.06F, 0.06F, 0.06F };
     const struct shape *s = packing_shape(p, i);
     double rim = fmin(0.08 * r, 0.8);
-    if (s->form != SHAPE_HULL || s->round * r > rim) {
+    if (!shape_has_faces(s) || s->round * r > rim) {
         overlay_colour(cr, dark), draw_core(cr, v, p, i, 0);
         overlay_colour(cr, own), draw_core(cr, v, p, i, -rim);
         return;

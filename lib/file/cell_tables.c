@@ -1,6 +1,7 @@
 #include "file/cell_tables.h"
 
 #include "file/h5.h"
+#include "state/fields.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -55,46 +56,39 @@ static int cell_tables_read_edges(struct source *source, int64_t k, struct cell 
     return 0;
 }
 
-/* What moves the edges, and what they yield to */
-static int cell_tables_read_drive(struct source *doc, struct cell *c, struct failure *failure)
+/* Rows of a table whose first field is `one`, into a new array. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+static int cell_tables_read_rows(struct source *doc, const char *one, void *array, int32_t *n,
+                                 struct records rows, struct failure *failure)
 {
-    uint64_t n = 0;
-    if (!source_has(doc, "/nsd/cell")) return 0;
-    double *t = source_read_all(doc, "/nsd/cell/time", COLUMN_F64, &n, failure);
-    double *L = t && n < 1 << 24 ? calloc(9 * n + 1, sizeof *L) : NULL;
-    c->gradient = L ? calloc(n + 1, sizeof *c->gradient) : NULL;
-    if (t && !c->gradient) failure_set(failure, EX_SOFTWARE, "no memory for the cell's gradient");
-    if (c->gradient && !source_read(doc, "/nsd/cell/gradient", COLUMN_F64, 9 * n, L, failure))
-        for (c->gradients = 0; c->gradients < (int32_t)n; c->gradients++) {
-            struct cell_gradient *g = &c->gradient[c->gradients];
-            g->t = t[c->gradients];
-            memcpy(g->L, L + 9 * (size_t)c->gradients, sizeof g->L);
-        }
-    free(t), free(L);
-    if (failure->status) return failure->status;
-    return source_read(doc, "/nsd/cell/mass", COLUMN_F64, 9, c->mass, failure) ||
-                   source_read(doc, "/nsd/cell/stress", COLUMN_F64, 9, c->stress, failure)
-               ? failure->status
-               : 0;
+    uint64_t shape[4];
+    if (source_shape(doc, one, shape) != (rows.fields->width == 1 ? 1 : 2) || shape[0] >= 1 << 24)
+        return failure_set(failure, EX_DATAERR, "%s: not of shape moments x %d", one,
+                           rows.fields->width);
+    if (!(rows.structs = calloc(shape[0] + 1, rows.stride)))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the moments of the cell");
+    memcpy(array, &rows.structs, sizeof rows.structs);
+    rows.n = *n = (int32_t)shape[0];
+    return table_read_columns(doc, "/nsd/cell", "", 0, rows, failure);
 }
 
-/* What its size yields to, and the factors of loads in time, where there are any */
-static int read_size(struct source *doc, struct cell *c, struct failure *failure)
+/* What moves the edges, and what they and the size yield to; the factors of loads in time, where there are any */
+static int cell_tables_read_drive(struct source *doc, struct cell *c, struct failure *failure)
 {
-    const char *factor = "/nsd/cell/factor";
-    uint64_t shape[4];
-    if (source_has(doc, "/nsd/cell/size_mass") &&
-        (source_read(doc, "/nsd/cell/size_mass", COLUMN_F64, 1, &c->size_mass, failure) ||
+    const char *size = "/nsd/cell/size_mass", *factor = "/nsd/cell/factor";
+    if (source_has(doc, "/nsd/cell") &&
+        (cell_tables_read_rows(doc, "/nsd/cell/time", &c->gradient, &c->gradients,
+                               RECORDS(gradient_fields, 0, c->gradient), failure) ||
+         source_read(doc, "/nsd/cell/mass", COLUMN_F64, 9, c->mass, failure) ||
+         source_read(doc, "/nsd/cell/stress", COLUMN_F64, 9, c->stress, failure)))
+        return failure->status;
+    if (source_has(doc, size) &&
+        (source_read(doc, size, COLUMN_F64, 1, &c->size_mass, failure) ||
          source_read(doc, "/nsd/cell/mean", COLUMN_F64, 1, &c->mean, failure)))
         return failure->status;
-    if (!source_has(doc, factor)) return 0;
-    if (source_shape(doc, factor, shape) != 2 || shape[1] != 2 || shape[0] >= 1 << 24)
-        return failure_set(failure, EX_DATAERR, "%s: not of shape moments x 2", factor);
-    if (!(c->factor = calloc(shape[0] + 1, sizeof *c->factor)))
-        return failure_set(failure, EX_SOFTWARE, "no memory for the cell's loads");
-    c->factors = (int32_t)shape[0];
-    return source_rows(doc, factor, (struct slab){ COLUMN_F64, 0, (int64_t)shape[0], 2 }, c->factor,
-                       failure);
+    return source_has(doc, factor)
+               ? cell_tables_read_rows(doc, factor, &c->factor, &c->factors,
+                                       RECORDS(factor_fields, 0, c->factor), failure)
+               : 0;
 }
 
 int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], struct packing *p,
@@ -105,8 +99,7 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
     memcpy(c->repeats, repeats, sizeof c->repeats);
     if (!cell_repeats(c)) return 0;
     if (cell_tables_read_edges(source, k, c, failure) ||
-        cell_tables_read_drive(source, c, failure) || read_size(source, c, failure) ||
-        packing_alloc_images(p, failure) ||
+        cell_tables_read_drive(source, c, failure) || packing_alloc_images(p, failure) ||
         (source_has(source, origin) &&
          source_read(source, origin, COLUMN_F64, 3, &c->origin, failure)))
         return failure->status;
@@ -118,43 +111,25 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
 
 /* ---- to a document ---- */
 
-/* What moves the cell's edges, and what they yield to */
+/* What moves the cell's edges, and what they and its size yield to */
 static int write_drive(hid_t file, const struct cell *c, struct failure *failure)
 {
-    const hsize_t shape[3] = { (hsize_t)c->gradients, 3, 3 }, *square = shape + 1;
-    size_t n = (size_t)c->gradients;
-    double *t = calloc(n + 1, sizeof *t), (*L)[9] = calloc(n + 1, sizeof *L);
-    if (t && L)
-        for (size_t k = 0; k < n; k++) {
-            t[k] = c->gradient[k].t;
-            memcpy(L[k], c->gradient[k].L, sizeof L[k]);
-        }
-    else
-        failure_set(failure, EX_SOFTWARE, "no memory for the cell");
-    bool bad =
-        failure->status ||
-        h5_write(file, "/nsd/cell/time", h5_vector(H5T_NATIVE_DOUBLE, shape[0], t), "s", failure) ||
-        h5_write(file, "/nsd/cell/gradient", h5_array(H5T_NATIVE_DOUBLE, 3, shape, L), "s-1",
-                 failure) ||
+    struct table_write w = { .file = file };
+    const hsize_t square[2] = { 3, 3 };
+    if (table_write_once(&w, "/nsd/cell", RECORDS(gradient_fields, c->gradients, c->gradient),
+                         failure) ||
         h5_write(file, "/nsd/cell/mass", h5_array(H5T_NATIVE_DOUBLE, 2, square, c->mass), "kg",
                  failure) ||
         h5_write(file, "/nsd/cell/stress", h5_array(H5T_NATIVE_DOUBLE, 2, square, c->stress), "Pa",
-                 failure);
-    free(t), free(L);
-    return bad ? failure->status : 0;
-}
-
-static int write_size(hid_t file, const struct cell *c, struct failure *failure)
-{
-    const hsize_t shape[2] = { (hsize_t)c->factors, 2 };
-    if (c->size_mass > 0 &&
-        (h5_write(file, "/nsd/cell/size_mass", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->size_mass),
-                  "kg m2", failure) ||
-         h5_write(file, "/nsd/cell/mean", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->mean), "Pa",
-                  failure)))
+                 failure) ||
+        (c->size_mass > 0 &&
+         (h5_write(file, "/nsd/cell/size_mass", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->size_mass),
+                   "kg m2", failure) ||
+          h5_write(file, "/nsd/cell/mean", h5_vector(H5T_NATIVE_DOUBLE, 1, &c->mean), "Pa",
+                   failure))))
         return failure->status;
-    return c->factors ? h5_write(file, "/nsd/cell/factor",
-                                 h5_array(H5T_NATIVE_DOUBLE, 2, shape, c->factor), "s; 1", failure)
+    return c->factors ? table_write_once(&w, "/nsd/cell",
+                                         RECORDS(factor_fields, c->factors, c->factor), failure)
                       : 0;
 }
 
@@ -179,7 +154,7 @@ int cell_tables_write_box(hid_t file, const struct cell *c, struct failure *fail
     if (e || !repeats) return e;
     return h5_write(file, "/particles/all/box/origin", h5_vector(H5T_NATIVE_DOUBLE, 3, &c->origin),
                     "m", failure) ||
-                   write_drive(file, c, failure) || write_size(file, c, failure)
+                   write_drive(file, c, failure)
                ? failure->status
                : 0;
 }

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): close_range
 #include "file/child.h"
 
+#include "base/array.h"
 #include "base/bounded.h"
 #include "base/output.h"
 #include "file/h5.h"
@@ -250,12 +251,8 @@ int list_open(struct list *s, unsigned char *bytes, uint64_t size, struct failur
     struct listed l;
     *s = (struct list){ .bytes = bytes };
     for (uint64_t at = 0; at < size; s->count++) {
-        if (s->count == room) {
-            room = room ? 2 * room : 128;
-            struct listed *more = realloc(s->object, (size_t)room * sizeof *more);
-            if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
-            s->object = more;
-        }
+        if (!array_grow(&s->object, &room, s->count + 1, sizeof *s->object))
+            return failure_set(failure, EX_SOFTWARE, "no memory for a list of objects");
         if (!object_unpack(bytes, size, &at, &l))
             return failure_set(failure, EX_DATAERR, "no list of objects");
         s->object[s->count] = l;

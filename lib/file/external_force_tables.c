@@ -10,64 +10,96 @@
 #include <string.h>
 
 #define EXTERNAL_HOME "/nsd/outside"
-#define LASTS         EXTERNAL_HOME "/lasting"
+
+/* What frames have a row of: a dataset [frames][n] or, where vectors are, [frames][n][3] */
+struct frame_row {
+    const char *name, *units;
+    double *x;
+    int64_t n;
+    int width; /* 1 or 3 */
+};
+
+static int frame_row_write(struct table_write *s, struct frame_row r, struct failure *failure)
+{
+    const hsize_t shape[3] = { 1, (hsize_t)r.n, 3 };
+    char path[80];
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s", r.name);
+    return table_write_rows(s,
+                            (struct dataset){ path, COLUMN_F64, r.width == 1 ? 2 : 3, shape,
+                                              CHUNK_FRAMES, r.x, r.units },
+                            failure);
+}
+
+static int frame_row_read(struct source *s, int64_t row, struct frame_row r,
+                          struct failure *failure)
+{
+    char path[80];
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s", r.name);
+    return source_rows(s, path, (struct slab){ COLUMN_F64, row, 1, r.n * r.width }, r.x, failure);
+}
+
+/* What a program may change of a frame, gathered */
+struct steered {
+    double g[3];
+    vec3 *x, *v; /* of walls */
+    double *push;
+};
+enum { STEERED_ROWS = 5 };
+
+static int steered_init(struct steered *y, const struct packing *p, struct failure *failure)
+{
+    const size_t n = (size_t)p->walls;
+    *y = (struct steered){ .g = { p->g.x, p->g.y, p->g.z } };
+    y->x = calloc(2 * n + 1, sizeof *y->x), y->push = calloc(n + 1, sizeof *y->push);
+    if (!y->x || !y->push) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
+    y->v = y->x + n;
+    for (size_t w = 0; w < n; w++) {
+        y->x[w] = p->wall[w].x, y->v[w] = p->wall[w].v;
+        if (p->outside.push) y->push[w] = p->outside.push[w];
+    }
+    return 0;
+}
+
+static struct frame_row steered_row(const struct steered *y, const struct packing *p, int k)
+{
+    const int64_t pairs = (int64_t)p->materials * p->materials;
+    const struct frame_row rows[STEERED_ROWS] = {
+        { "gravity", "m s-2", (double *)y->g, 3, 1 },
+        { "friction", NULL, p->mu, pairs, 1 },
+        { "point", "m", (double *)y->x, p->walls, 3 },
+        { "velocity", "m s-1", (double *)y->v, p->walls, 3 },
+        { "push", "N, N m", y->push, p->walls, 1 },
+    };
+    return rows[k];
+}
+
+static void steered_free(struct steered *y)
+{
+    free(y->x), free(y->push);
+}
 
 /* ---- to a document ---- */
 
-/* A row of numbers of the frame */
-static struct dataset external_force_tables_row_of(const char *path, int rank, const hsize_t *shape,
-                                                   const void *data, const char *units)
+/* Rows of the group's list, of which there are *so_far: n forces and torques; NULL: all are 0 */
+static int external_force_tables_write_forces(struct table_write *s, const char *group, int64_t n,
+                                              const vec3 *const of[2], int64_t *so_far,
+                                              struct failure *failure)
 {
-    return (struct dataset){ path, COLUMN_F64, rank, shape, CHUNK_FRAMES, data, units };
-}
-
-static int write_walls(struct table_write *s, const struct packing *p, struct failure *failure)
-{
-    const hsize_t shape[3] = { 1, (hsize_t)p->walls, 3 };
-    size_t n = (size_t)p->walls;
-    vec3 *x = calloc(2 * n + 1, sizeof *x);
-    double *push = calloc(n + 1, sizeof *push);
-    if (!x || !push) {
-        free(x), free(push);
-        return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
-    }
-    for (size_t w = 0; w < n; w++) {
-        x[w] = p->wall[w].x, x[n + w] = p->wall[w].v;
-        if (p->outside.push) push[w] = p->outside.push[w];
-    }
-    if (!table_write_rows(s, external_force_tables_row_of(EXTERNAL_HOME "/point", 3, shape, x, "m"),
-                          failure) &&
-        !table_write_rows(
-            s, external_force_tables_row_of(EXTERNAL_HOME "/velocity", 3, shape, x + n, "m s-1"),
-            failure))
-        table_write_rows(
-            s, external_force_tables_row_of(EXTERNAL_HOME "/push", 2, shape, push, "N, N m"),
-            failure);
-    free(x), free(push);
-    return failure->status;
-}
-
-/* Of bodies, without which a column has 0 */
-static int external_force_tables_write_forces(struct table_write *s, const struct packing *p,
-                                              bool any, struct failure *failure)
-{
-    int64_t n = any ? p->n : 0;
+    static const char *const name[] = { "force", "torque" }, *const units[] = { "N", "N m" };
     const hsize_t shape[2] = { (hsize_t)n, 3 };
     vec3 *none = calloc((size_t)n + 1, sizeof *none);
     if (!none) return failure_set(failure, EX_SOFTWARE, "no memory for forces");
-    const vec3 *force = any && p->outside.force ? p->outside.force : none;
-    const vec3 *torque = any && p->outside.torque ? p->outside.torque : none;
-    if (!table_write_span(s, EXTERNAL_HOME "/body", s->forces, n, failure) &&
-        !table_write_rows(s,
-                          (struct dataset){ EXTERNAL_HOME "/body/force", COLUMN_F64, 2, shape,
-                                            CHUNK_CONTACTS, force, "N" },
-                          failure))
+    table_write_span(s, group, *so_far, n, failure);
+    for (int k = 0; k < 2 && !failure->status; k++) {
+        char path[80];
+        snprintf(path, sizeof path, "%s/%s", group, name[k]);
         table_write_rows(s,
-                         (struct dataset){ EXTERNAL_HOME "/body/torque", COLUMN_F64, 2, shape,
-                                           CHUNK_CONTACTS, torque, "N m" },
+                         (struct dataset){ path, COLUMN_F64, 2, shape, CHUNK_CONTACTS,
+                                           n && of[k] ? of[k] : none, units[k] },
                          failure);
+    }
     free(none);
-    if (s->growing) s->forces += n;
+    if (s->growing) *so_far += n;
     return failure->status;
 }
 
@@ -89,30 +121,19 @@ static int external_force_tables_write_words(struct table_write *s, const struct
 static int write_lasting(struct table_write *s, const struct packing *p, struct failure *failure)
 {
     const struct lasting *o = &p->outside.lasts;
-    const hsize_t walls[2] = { 1, (hsize_t)p->walls };
     const int64_t n = o->force || o->torque ? p->n : 0;
-    const hsize_t shape[2] = { (hsize_t)n, 3 };
     if (!n && !o->push) return 0;
-    vec3 *none = calloc((size_t)n + 1, sizeof *none);
     double *rest = calloc((size_t)p->walls + 1, sizeof *rest);
-    if (!none || !rest)
-        failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
-    else if (!table_write_number(s, LASTS "/step", COLUMN_I64, &p->step, NULL, failure) &&
-             !table_write_rows(s,
-                               external_force_tables_row_of(LASTS "/push", 2, walls,
-                                                            o->push ? o->push : rest, "N, N m"),
-                               failure) &&
-             !table_write_span(s, EXTERNAL_HOME "/lasting", s->lasting, n, failure) &&
-             !table_write_rows(s,
-                               (struct dataset){ LASTS "/force", COLUMN_F64, 2, shape,
-                                                 CHUNK_CONTACTS, o->force ? o->force : none, "N" },
-                               failure))
-        table_write_rows(s,
-                         (struct dataset){ LASTS "/torque", COLUMN_F64, 2, shape, CHUNK_CONTACTS,
-                                           o->torque ? o->torque : none, "N m" },
-                         failure);
-    free(none), free(rest);
-    if (s->growing) s->lasting += n;
+    if (!rest) return failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
+    const struct frame_row push = { "lasting/push", "N, N m", o->push ? o->push : rest, p->walls,
+                                    1 };
+    if (!table_write_number(s, EXTERNAL_HOME "/lasting/step", COLUMN_I64, &p->step, NULL,
+                            failure) &&
+        !frame_row_write(s, push, failure))
+        external_force_tables_write_forces(s, EXTERNAL_HOME "/lasting", n,
+                                           (const vec3 *const[]){ o->force, o->torque },
+                                           &s->lasting, failure);
+    free(rest);
     return failure->status;
 }
 
@@ -121,48 +142,56 @@ int external_force_tables_write(struct table_write *s, const struct frame *f,
 {
     const struct packing *p = &f->packing;
     const struct external_force *o = &p->outside;
-    const hsize_t row[2] = { 1, 3 },
-                  pairs[2] = { 1, (hsize_t)p->materials * (hsize_t)p->materials };
-    const double g[3] = { p->g.x, p->g.y, p->g.z };
+    struct steered y;
     if (!f->distributed && write_lasting(s, p, failure)) return failure->status;
     bool forces = f->detected && (o->force || o->torque) && !f->distributed;
     if (!o->steered && !forces && !o->length && !(f->detected && o->push)) return 0;
-    if (table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, failure) ||
-        table_write_rows(s,
-                         external_force_tables_row_of(EXTERNAL_HOME "/gravity", 2, row, g, "m s-2"),
-                         failure) ||
-        table_write_rows(
-            s, external_force_tables_row_of(EXTERNAL_HOME "/friction", 2, pairs, p->mu, NULL),
-            failure) ||
-        write_walls(s, p, failure) || external_force_tables_write_forces(s, p, forces, failure))
+    if (!steered_init(&y, p, failure))
+        table_write_number(s, EXTERNAL_HOME "/step", COLUMN_I64, &p->step, NULL, failure);
+    for (int k = 0; k < STEERED_ROWS && !failure->status; k++)
+        frame_row_write(s, steered_row(&y, p, k), failure);
+    steered_free(&y);
+    if (failure->status || external_force_tables_write_forces(
+                               s, EXTERNAL_HOME "/body", forces ? p->n : 0,
+                               (const vec3 *const[]){ o->force, o->torque }, &s->forces, failure))
         return failure->status;
     return external_force_tables_write_words(s, o, failure);
 }
 
 /* ---- from a document ---- */
 
-static int read_walls(struct source *s, int64_t row, struct packing *p, struct failure *failure)
+/* NULL where all are 0 */
+static void drop_zeros(double **x, int64_t n)
 {
-    size_t n = (size_t)p->walls;
-    vec3 *x = calloc(2 * n + 1, sizeof *x);
-    if (!x) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
-    if (!source_rows(s, EXTERNAL_HOME "/point", (struct slab){ COLUMN_F64, row, 1, 3 * p->walls },
-                     x, failure) &&
-        !source_rows(s, EXTERNAL_HOME "/velocity",
-                     (struct slab){ COLUMN_F64, row, 1, 3 * p->walls }, x + n, failure) &&
-        !external_force_alloc_push(&p->outside, p->walls, failure))
-        source_rows(s, EXTERNAL_HOME "/push", (struct slab){ COLUMN_F64, row, 1, p->walls },
-                    p->outside.push, failure);
-    bool any = false;
-    for (size_t w = 0; w < n && !failure->status; w++) {
-        if (!v3_finite(x[w]) || !v3_finite(x[n + w]))
-            failure_set(failure, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %zu is not finite",
+    for (int64_t i = 0; *x && i < n; i++)
+        if ((*x)[i] != 0) return;
+    free(*x);
+    *x = NULL;
+}
+
+static void drop_vectors(vec3 **x, int64_t n)
+{
+    double *at = (double *)*x;
+    drop_zeros(&at, 3 * n);
+    if (!at) *x = NULL;
+}
+
+static int read_steered(struct source *s, int64_t row, struct packing *p, struct failure *failure)
+{
+    struct steered y;
+    if (external_force_alloc_push(&p->outside, p->walls, failure)) return failure->status;
+    steered_init(&y, p, failure);
+    for (int k = 0; k < STEERED_ROWS && !failure->status; k++)
+        frame_row_read(s, row, steered_row(&y, p, k), failure);
+    for (int32_t w = 0; w < p->walls && !failure->status; w++) {
+        if (!v3_finite(y.x[w]) || !v3_finite(y.v[w]))
+            failure_set(failure, EX_DATAERR, EXTERNAL_HOME ": the motion of wall %d is not finite",
                         w);
-        p->wall[w].x = x[w], p->wall[w].v = x[n + w];
-        any = any || p->outside.push[w] != 0;
+        p->wall[w].x = y.x[w], p->wall[w].v = y.v[w], p->outside.push[w] = y.push[w];
     }
-    if (!any) free(p->outside.push), p->outside.push = NULL;
-    free(x);
+    drop_zeros(&p->outside.push, p->walls);
+    p->g = v3(y.g[0], y.g[1], y.g[2]);
+    steered_free(&y);
     return failure->status;
 }
 
@@ -181,70 +210,39 @@ static int read_span(struct source *s, const char *name, int64_t row, int64_t mo
                        (long long)span->count, (long long)span->start);
 }
 
-static int read_forces(struct source *s, int64_t row, struct packing *p, struct failure *failure)
+/* The forces and torques of all bodies, into new arrays, or of none */
+static int read_forces(struct source *s, const char *name, int64_t row, int64_t n, vec3 **force,
+                       vec3 **torque, struct failure *failure)
 {
     struct span span = { 0, 0 };
-    if (read_span(s, "body", row, p->n, &span, failure) || !span.count) return failure->status;
-    const int64_t start = span.start, count = span.count;
-    if (count != p->n)
+    char path[80];
+    if (read_span(s, name, row, n, &span, failure) || !span.count) return failure->status;
+    const struct slab rows = { COLUMN_F64, span.start, span.count, 3 };
+    if (span.count != n)
         return failure_set(failure, EX_DATAERR,
-                           EXTERNAL_HOME "/body/count: forces of %lld bodies, and there are %lld",
-                           (long long)count, (long long)p->n);
-    if (external_force_alloc(&p->outside.force, p->n, failure) ||
-        external_force_alloc(&p->outside.torque, p->n, failure) ||
-        source_rows(s, EXTERNAL_HOME "/body/force", (struct slab){ COLUMN_F64, start, count, 3 },
-                    p->outside.force, failure))
+                           EXTERNAL_HOME "/%s/count: forces of %lld bodies, and there are %lld",
+                           name, (long long)span.count, (long long)n);
+    if (external_force_alloc(force, n, failure) || external_force_alloc(torque, n, failure))
         return failure->status;
-    if (source_rows(s, EXTERNAL_HOME "/body/torque", (struct slab){ COLUMN_F64, start, count, 3 },
-                    p->outside.torque, failure))
-        return failure->status;
-    external_force_measure(&p->outside, p->mass, p->n);
-    return 0;
-}
-
-/* NULL where all are 0 */
-static void drop_zeros(double **x, int64_t n)
-{
-    for (int64_t i = 0; i < n; i++)
-        if ((*x)[i] != 0) return;
-    free(*x);
-    *x = NULL;
-}
-
-static void drop_vectors(vec3 **x, int64_t n)
-{
-    double *at = (double *)*x;
-    drop_zeros(&at, 3 * n);
-    if (!at) *x = NULL;
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s/force", name);
+    if (source_rows(s, path, rows, *force, failure)) return failure->status;
+    snprintf(path, sizeof path, EXTERNAL_HOME "/%s/torque", name);
+    return source_rows(s, path, rows, *torque, failure);
 }
 
 static int read_lasting(struct source *s, struct packing *p, struct failure *failure)
 {
     struct lasting *o = &p->outside.lasts;
-    struct span span = { 0, 0 };
-    int64_t row = table_read_row_at(s, LASTS "/step", p->step, failure);
-    if (failure->status || row < 0 || read_span(s, "lasting", row, p->n, &span, failure))
-        return failure->status;
-    const int64_t start = span.start, count = span.count;
-    if (count && count != p->n)
-        return failure_set(failure, EX_DATAERR,
-                           LASTS "/count: forces of %lld bodies, and there are %lld",
-                           (long long)count, (long long)p->n);
+    int64_t row = table_read_row_at(s, EXTERNAL_HOME "/lasting/step", p->step, failure);
+    if (failure->status || row < 0) return failure->status;
     if (!(o->push = calloc((size_t)p->walls + 1, sizeof *o->push)))
         return failure_set(failure, EX_SOFTWARE, "no memory for forces that last");
-    if (source_rows(s, LASTS "/push", (struct slab){ COLUMN_F64, row, 1, p->walls }, o->push,
-                    failure))
+    const struct frame_row push = { "lasting/push", NULL, o->push, p->walls, 1 };
+    if (frame_row_read(s, row, push, failure) ||
+        read_forces(s, "lasting", row, p->n, &o->force, &o->torque, failure))
         return failure->status;
     drop_zeros(&o->push, p->walls);
-    if (!count) return 0;
-    if (external_force_alloc(&o->force, p->n, failure) ||
-        external_force_alloc(&o->torque, p->n, failure) ||
-        source_rows(s, LASTS "/force", (struct slab){ COLUMN_F64, start, count, 3 }, o->force,
-                    failure) ||
-        source_rows(s, LASTS "/torque", (struct slab){ COLUMN_F64, start, count, 3 }, o->torque,
-                    failure))
-        return failure->status;
-    drop_vectors(&o->force, p->n), drop_vectors(&o->torque, p->n);
+    if (o->force) drop_vectors(&o->force, p->n), drop_vectors(&o->torque, p->n);
     return 0;
 }
 
@@ -267,20 +265,16 @@ static int read_words(struct source *s, int64_t row, struct external_force *o,
 
 int external_force_tables_read(struct source *s, struct packing *p, struct failure *failure)
 {
-    double g[3];
+    struct external_force *o = &p->outside;
     if (read_lasting(s, p, failure)) return failure->status;
     int64_t row = table_read_row_at(s, EXTERNAL_HOME "/step", p->step, failure);
     if (failure->status || row < 0) return failure->status;
-    if (source_rows(s, EXTERNAL_HOME "/gravity", (struct slab){ COLUMN_F64, row, 1, 3 }, g,
-                    failure) ||
-        source_rows(s, EXTERNAL_HOME "/friction",
-                    (struct slab){ COLUMN_F64, row, 1, (int64_t)p->materials * p->materials },
-                    p->mu, failure) ||
-        read_walls(s, row, p, failure) || read_forces(s, row, p, failure) ||
-        read_words(s, row, &p->outside, failure))
+    if (read_steered(s, row, p, failure) ||
+        read_forces(s, "body", row, p->n, &o->force, &o->torque, failure))
         return failure->status;
-    p->g = v3(g[0], g[1], g[2]);
-    p->outside.steered = true;
+    if (o->force) external_force_measure(o, p->mass, p->n);
+    if (read_words(s, row, o, failure)) return failure->status;
+    o->steered = true;
     for (int32_t a = 0; a < p->materials; a++)
         for (int32_t b = 0; b < a; b++)
             if (p->mu[a * p->materials + b] != p->mu[b * p->materials + a])

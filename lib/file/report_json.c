@@ -7,31 +7,41 @@
 #include <stdio_ext.h>
 #include <stdlib.h>
 
-static void set_terms(json_t *j, const struct terms *t)
+enum { ERR_AT = offsetof(struct report, err) };
+
+void json_terms(json_t *j, const struct terms *t)
 {
-    json_object_set_new(j, "eps_glob", json_number(t->eps_glob));
-    json_object_set_new(j, "motion", json_number(t->motion));
-    json_object_set_new(j, "proj", json_number(t->proj));
-    json_object_set_new(j, "bipotential", json_number(t->bipotential));
-    json_object_set_new(j, "penetration", json_number(t->penetration));
+    for (const struct field *f = terms_fields; f->name; f++)
+        json_object_set_new(j, f->name, json_field(f, (const char *)t + f->offset));
 }
 
+/* The field of an error whose member comes next, from this offset in a report on */
+static const struct field *next_of_err(size_t offset)
+{
+    static const struct field *const tables[] = { report_fields, velocity_fields };
+    const struct field *next = NULL;
+    for (int k = 0; k < 2; k++)
+        for (const struct field *f = tables[k]; f->name; f++)
+            if (f->offset >= offset && f->offset < ERR_AT + sizeof(struct err) &&
+                (!next || f->offset < next->offset))
+                next = f;
+    return next;
+}
+
+/* In the order of the members of struct err */
 static void set_err(json_t *j, const struct err *e)
 {
     json_t *scaled = json_object();
-    json_object_set_new(j, "contacts", json_integer(e->contacts));
-    set_terms(j, &e->paper);
-    set_terms(scaled, &e->scaled);
-    json_object_set_new(j, "scaled", scaled);
-    json_object_set_new(j, "max_penetration", json_number(e->max_penetration));
-    json_object_set_new(j, "max_penetration_true", json_number(e->max_penetration_true));
-    json_object_set_new(j, "max_overlap", json_number(e->max_overlap));
-    json_object_set_new(j, "natural", json_number(e->natural));
-    json_object_set_new(j, "natural_siconos", json_number(e->natural_siconos));
-    json_object_set_new(j, "natural_q", json_number(e->natural_q));
-    json_object_set_new(j, "velocity", json_number(e->velocity));
-    json_object_set_new(j, "velocity_error", json_number(e->velocity_error));
-    json_object_set_new(j, "jammed", json_integer(e->jammed));
+    for (const struct field *f = next_of_err(ERR_AT); f; f = next_of_err(f->offset + 1)) {
+        const void *x = (const char *)e + f->offset - ERR_AT;
+        if (x == &e->paper)
+            json_terms(j, x);
+        else if (x == &e->scaled)
+            json_terms(scaled, x), json_object_set(j, "scaled", scaled);
+        else
+            json_object_set_new(j, f->name, json_field(f, x));
+    }
+    json_decref(scaled);
 }
 
 json_t *json_err(const struct err *e)
@@ -45,12 +55,9 @@ json_t *json_err(const struct err *e)
 static void set_fields(json_t *j, const struct field *f, const struct report *r, int least,
                        int most)
 {
-    for (; f->name; f++) {
-        const double *x = (const double *)(const void *)((const char *)r + f->offset);
-        if (f->width < least || f->width > most) continue;
-        json_object_set_new(j, f->key ? f->key : f->name,
-                            f->width > 1 ? json_numbers(x, f->width) : json_number(*x));
-    }
+    for (; f->name; f++)
+        if (f->width >= least && f->width <= most)
+            json_object_set_new(j, field_key(f), json_field(f, (const char *)r + f->offset));
 }
 
 /* Vectors come last. */
@@ -73,11 +80,9 @@ json_t *json_report(const struct report *r)
     set_err(j, &r->err);
     json_object_set_new(j, "criterion", json_string(criterion_name[r->criterion]));
     json_object_set_new(j, "eps", json_number(r->eps));
-    json_object_set_new(j, "sweeps", json_integer(r->sweeps));
-    json_object_set_new(j, "converged", json_boolean(r->converged));
-    json_object_set_new(j, "newton", json_integer(r->newton));
-    json_object_set_new(j, "safeguarded", json_integer(r->safeguarded));
-    json_object_set_new(j, "gave_up", json_integer(r->gave_up));
+    for (const struct field *f = report_fields; f->name; f++)
+        if (f->offset >= ERR_AT + sizeof r->err)
+            json_object_set_new(j, f->name, json_field(f, (const char *)r + f->offset));
     if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
     if (r->substeps > 1) json_object_set_new(j, "substeps", json_integer(r->substeps));
     if (r->balanced) json_object_set_new(j, "balance", balance(r));

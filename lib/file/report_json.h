@@ -7,16 +7,12 @@
 #include "base/json.h"
 #include "state/account.h"
 
-/*
- * contacts, eps_glob, motion, proj, bipotential, penetration, scaled {...}, max_penetration,
- * max_penetration_true, max_overlap, natural, natural_siconos, natural_q, velocity, velocity_error, jammed
- */
+/* Adds the terms of an error under their names. */
+void json_terms(json_t *object, const struct terms *terms);
+/* The numbers of an error in the order of its members, those of `scaled` in an object of this name */
 json_t *json_err(const struct err *err);
-/*
- * step, time, method, the keys of json_err, criterion, eps, sweeps, converged, newton, safeguarded,
- * gave_up; and where it is known balance { kinetic, change, potential, gravity, drives, loads, dissipation,
- * and where they are known the terms of bonds, gained, projection, projection_angular_momentum, peculiar, peculiar_change; momentum, impulse } [step/balance.h]
- */
+/* step, time, method, the keys of json_err, criterion, eps, the other fields of a report; and where it is known the
+   balance in an object of this name [step/balance.h] */
 json_t *json_report(const struct report *report);
 /* steps, and for each row { value, step, bodies: [...], fails }: bodies by their ids, walls by their names, or as "wall 3" */
 json_t *json_account(const struct account *account, const struct names *names);

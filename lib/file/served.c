@@ -1,6 +1,7 @@
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): qsort_r
 #include "file/served.h"
 
+#include "base/array.h"
 #include "file/element.h"
 
 #include <stdio.h>
@@ -163,13 +164,8 @@ static struct served_entry *add_entry(struct walk *w, const char *name)
         return failure_set(w->failure, EX_DATAERR, "%s: more than %d objects (a group in itself?)",
                            w->path, MOST_OBJECTS),
                NULL;
-    if (s->count == s->room) {
-        int64_t room = s->room ? 2 * s->room : 128;
-        struct served_entry *more = realloc(s->entry, (size_t)room * sizeof *more);
-        if (!more)
-            return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
-        s->entry = more, s->room = room;
-    }
+    if (!array_grow(&s->entry, &s->room, s->count + 1, sizeof *s->entry))
+        return failure_set(w->failure, EX_SOFTWARE, "no memory for a list of objects"), NULL;
     struct served_entry *e = &s->entry[s->count];
     size_t length = strlen(w->path) + strlen(name) + 2;
     *e = (struct served_entry){ .set = -1, .address = HADDR_UNDEF, .path = malloc(length) };

@@ -325,11 +325,11 @@ int table_write_columns(struct table_write *s, const char *where, const char *ta
         void *data = malloc((size_t)(o.n + 1) * field_bytes(c));
         if (!data) return failure_set(failure, EX_SOFTWARE, "no memory for %s", path);
         field_gather(c, o.n, o.structs, o.stride, data);
-        hsize_t shape[2] = { (hsize_t)o.n, (hsize_t)c->width };
-        int e = table_write_rows(s,
-                                 (struct dataset){ path, c->type, c->width == 1 ? 1 : 2, shape,
-                                                   chunk_rows, data, c->units },
-                                 failure);
+        const bool matrix = c->width == 9;
+        const hsize_t shape[3] = { (hsize_t)o.n, matrix ? 3 : (hsize_t)c->width, 3 };
+        const int rank = c->width == 1 ? 1 : matrix ? 3 : 2;
+        int e = table_write_rows(
+            s, (struct dataset){ path, c->type, rank, shape, chunk_rows, data, c->units }, failure);
         free(data);
         if (e) return e;
     }

@@ -118,7 +118,7 @@ int table_write_bodies(struct table_write *tables, bool moving, const struct pac
 /* Does the dataset grow already? Answered without libhdf5, which would have to look the path up. */
 bool table_write_grows(const struct table_write *tables, const char *path);
 
-/* The records, into the datasets group/NAMEtail */
+/* The records, into the datasets group/NAMEtail: [n], [n][width] or, of nine numbers, [n][3][3] */
 int table_write_columns(struct table_write *tables, const char *group, const char *tail,
                         struct records records, hsize_t chunk_rows, struct failure *failure);
 

@@ -1,5 +1,6 @@
 #include "file/unknown.h"
 
+#include "base/array.h"
 #include "file/element.h"
 #include "file/source.h"
 #include "state/body_columns.h"
@@ -88,12 +89,8 @@ static int read_item(struct unknown_item *i, struct source *s, struct failure *f
 static int unknown_add(struct unknown *u, const struct object *o, const char *path,
                        const uint64_t *shape, struct source *s, struct failure *failure)
 {
-    if (u->count == u->room) {
-        int64_t room = u->room ? 2 * u->room : 16;
-        struct unknown_item *more = realloc(u->item, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);
-        u->item = more, u->room = room;
-    }
+    if (!array_grow(&u->item, &u->room, u->count + 1, sizeof *u->item))
+        return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);
     struct unknown_item *i = &u->item[u->count++];
     *i = (struct unknown_item){ .object = *o, .path = strdup(path) };
     if (!i->path) return failure_set(failure, EX_SOFTWARE, "no memory for a copy of %s", path);

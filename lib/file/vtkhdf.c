@@ -1,5 +1,7 @@
 #include "file/vtkhdf.h"
 
+#include "base/array.h"
+
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,24 +19,10 @@ enum {
 
 static const char *const topology_name[TOPOLOGIES] = { "Vertices", "Lines", "Polygons", "Strips" };
 
-/* Columns of bodies: under VTK's name, nsd's dataset in /particles/all, and how many numbers each has */
-static const struct {
-    const char *name, *from;
-    int width;
-    bool moves, whole;
-    size_t at; /* in struct packing, the array */
-} columns[] = {
-    { "velocity", "velocity", 3, true, false, offsetof(struct packing, v) },
-    { "angular_velocity", "angular_velocity", 3, true, false, offsetof(struct packing, w) },
-    { "orientation", "orientation", 4, true, false, offsetof(struct packing, q) },
-    { "radius", "radius", 1, false, false, offsetof(struct packing, radius) },
-    { "mass", "mass", 1, false, false, offsetof(struct packing, mass) },
-    { "id", "id", 1, false, true, offsetof(struct packing, id) },
-    { "kind", "species", 1, false, true, offsetof(struct packing, material) },
-    { "shape", "shape", 1, false, true, offsetof(struct packing, shape) },
-};
-
-enum { VTK_COLUMNS = sizeof columns / sizeof columns[0] };
+/* Columns of bodies, in this order */
+static const int8_t columns[] = { BODY_v,    BODY_w,  BODY_q,        BODY_radius,
+                                  BODY_mass, BODY_id, BODY_material, BODY_shape };
+enum { VTK_COLUMNS = sizeof columns };
 
 /* A moment of a block: where its points and cells begin in the datasets; part -1: it has none */
 struct step {
@@ -202,12 +190,8 @@ static uint64_t hash_more(uint64_t h, const void *data, size_t size)
 
 static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct failure *failure)
 {
-    if (b->steps == b->room) {
-        int64_t room = b->room ? 2 * b->room : 64;
-        struct step *more = realloc(b->step, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
-        b->step = more, b->room = room;
-    }
+    if (!array_grow(&b->step, &b->room, b->steps + 1, sizeof *b->step))
+        return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     b->step[b->steps++] = s;
     return 0;
 }
@@ -215,12 +199,8 @@ static int vtkhdf_add_step(struct vtkhdf_block *b, struct step s, struct failure
 static int vtkhdf_add_part(struct vtkhdf_block *b, int64_t points, int64_t cells, int64_t corners,
                            struct failure *failure)
 {
-    if (b->parts == b->parts_room) {
-        int64_t room = b->parts_room ? 2 * b->parts_room : 64;
-        struct vtkhdf_extent *more = realloc(b->part, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
-        b->part = more, b->parts_room = room;
-    }
+    if (!array_grow(&b->part, &b->parts_room, b->parts + 1, sizeof *b->part))
+        return failure_set(failure, EX_SOFTWARE, "no memory for /VTKHDF");
     if (b->part) b->part[b->parts++] = (struct vtkhdf_extent){ points, cells, corners };
     return 0;
 }
@@ -340,13 +320,12 @@ static int add_grains(struct vtkhdf_block *b, hid_t file, const struct packing *
     b->points += p->n, b->cells += p->n, b->corners += p->n;
     for (int k = 0; k < VTK_COLUMNS && !failure->status; k++) {
         char name[60];
-        const void *array = *(const void *const *)((const char *)p + columns[k].at);
-        snprintf(name, sizeof name, "PointData/%s", columns[k].name);
+        const struct field *c = &body_columns[columns[k]];
+        const void *array = field_array(c, p);
+        snprintf(name, sizeof name, "PointData/%s", field_key(c));
         if (array)
             append_to(b, file, name,
-                      (struct added){ columns[k].whole ? H5T_NATIVE_INT32 : H5T_NATIVE_DOUBLE,
-                                      columns[k].width, p->n, array },
-                      failure);
+                      (struct added){ column_native(c->type), c->width, p->n, array }, failure);
     }
     return failure->status;
 }
@@ -482,12 +461,13 @@ static int link_grains(const struct vtkhdf *v, hid_t file, struct failure *failu
         vtkhdf_put(file, block, "Steps/ConnectivityIdOffsets", table(F, TOPOLOGIES, zero), failure);
     for (int k = 0; k < VTK_COLUMNS && !bad; k++) {
         char name[60], from[60], offsets[80];
-        if (!v->shapes && columns[k].at == offsetof(struct packing, shape)) continue;
-        snprintf(name, sizeof name, "PointData/%s", columns[k].name);
-        snprintf(from, sizeof from, "/particles/all/%s", columns[k].from);
-        snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", columns[k].name);
-        bad = columns[k].moves
-                  ? make_virtual(v, file, columns[k].from, name, columns[k].width, failure)
+        const struct field *c = &body_columns[columns[k]];
+        if (!v->shapes && columns[k] == BODY_shape) continue;
+        snprintf(name, sizeof name, "PointData/%s", field_key(c));
+        snprintf(from, sizeof from, "/particles/all/%s", c->name);
+        snprintf(offsets, sizeof offsets, "Steps/PointDataOffsets/%s", field_key(c));
+        bad = c->traits & FIELD_MOVES
+                  ? make_virtual(v, file, c->name, name, c->width, failure)
                   : link_to(file, from, block, name, failure) ||
                         vtkhdf_put(file, block, offsets, vtkhdf_numbers(F, zero), failure);
     }

@@ -1,5 +1,6 @@
 #include "measure/table.h"
 
+#include "base/array.h"
 #include "base/text.h"
 
 #include <math.h>
@@ -21,14 +22,9 @@ void table_free(struct table *t)
 
 double *table_row(struct table *t, struct failure *failure)
 {
-    if (t->rows == t->room) {
-        int64_t room = 2 * t->room + 1;
-        double *x = realloc(t->x, (size_t)room * (size_t)t->width * sizeof *x);
-        if (!x) {
-            failure_set(failure, EX_SOFTWARE, "no memory for a measure");
-            return NULL;
-        }
-        t->x = x, t->room = room;
+    if (!array_grow(&t->x, &t->room, t->rows + 1, (size_t)t->width * sizeof *t->x)) {
+        failure_set(failure, EX_SOFTWARE, "no memory for a measure");
+        return NULL;
     }
     double *row = t->x + t->rows++ * t->width;
     for (int k = 0; k < t->width; k++) row[k] = NAN;

@@ -85,18 +85,19 @@ static vec3 row3(const double *a, int64_t i)
 /* Body k of the arrays, as body i */
 static void act_set(struct packing *p, int64_t i, const struct nsd_bodies *b, int64_t k)
 {
-    double mass = 0, inertia = 0;
-    p->radius[i] = b->radius[k];
-    p->x[i] = row3(b->position, k);
-    p->v[i] = row3(b->velocity, k), p->w[i] = row3(b->angular_velocity, k);
-    if (b->orientation)
-        p->q[i] = (quat){ b->orientation[4 * k], b->orientation[4 * k + 1],
-                          b->orientation[4 * k + 2], b->orientation[4 * k + 3] };
-    p->material[i] = b->kind ? b->kind[k] : 0;
-    packing_solid(p->dim, b->radius[k], b->mass ? 1 : b->density, &mass, &inertia);
-    if (b->mass) inertia *= b->mass[k] / mass, mass = b->mass[k];
-    if (b->inertia) inertia = b->inertia[k];
-    p->mass[i] = mass, p->inertia[i] = inertia;
+    const double *q = b->orientation ? b->orientation + 4 * k : NULL;
+    const struct new_body body = { .x = row3(b->position, k),
+                                   .v = row3(b->velocity, k),
+                                   .w = row3(b->angular_velocity, k),
+                                   .q = q ? (quat){ q[0], q[1], q[2], q[3] } : (quat){ 1, 0, 0, 0 },
+                                   .radius = b->radius[k],
+                                   .density = b->mass ? 1 : b->density,
+                                   .mass = b->mass ? b->mass[k] : 0,
+                                   .weighed = b->mass,
+                                   .fixed = b->mass && b->mass[k] == 0,
+                                   .material = b->kind ? b->kind[k] : 0 };
+    packing_set_body(p, i, &body);
+    if (b->inertia) p->inertia[i] = b->inertia[k];
 }
 
 /* Cells have an image of each body, which packing_resize() knows nothing of. */

@@ -282,11 +282,17 @@ int control_push(struct control *a, const struct packing *p, int64_t wall, doubl
     return 0;
 }
 
-static bool turns(const struct packing *p, const struct wall *w)
+static bool is_across(vec3 v, vec3 axis)
+{
+    return v3_norm(v3_cross(v, axis)) > 1e-12 * v3_norm(v);
+}
+
+/* Does the wall rotate about an axis across v? A velocity along the axis commutes with the rotation. */
+static bool turns_across(const struct packing *p, const struct wall *w, vec3 v)
 {
     for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns) return true;
-    return w->load.way == LOAD_TURNS;
+        if (p->drives.drive[k].turns && is_across(v, p->drives.drive[k].axis)) return true;
+    return w->load.way == LOAD_TURNS && is_across(v, w->load.axis);
 }
 
 int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *failure)
@@ -296,17 +302,20 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
     if (!v3_finite(v) || (p->dim == 2 && v.z != 0))
         return failure_set(failure, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
                            (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
-    if (turns(p, w))
+    if (turns_across(p, w, v))
         return failure_set(failure, EX_DATAERR,
-                           "boundary %lld rotates, so no velocity can be prescribed",
+                           "boundary %lld rotates, so that its velocity has to be along its axis",
                            (long long)wall);
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
     w->v = v;
-    if (!v3_finite(w->x)) {
+    const char *trouble = v3_finite(w->x) ? NULL : "would be beyond the range of numbers";
+    for (int k = 0; k < 3 && !trouble; k++)
+        if (!packing_wall_fits_edge(p, w, k, 0))
+            trouble = "would move across a periodic edge of the cell";
+    if (trouble) {
         *w = was;
-        return failure_set(failure, EX_DATAERR,
-                           "boundary %lld would be beyond the range of numbers", (long long)wall);
+        return failure_set(failure, EX_DATAERR, "boundary %lld %s", (long long)wall, trouble);
     }
     p->outside.steered = true;
     return 0;

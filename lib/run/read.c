@@ -155,15 +155,10 @@ static const struct read_row table[] = {
 enum { ROWS = sizeof table / sizeof table[0], FIRST_MADE = 4 };
 _Static_assert(ROWS - FIRST_MADE <= MADE_MOST, "there is a place for each array that is made");
 
-static const char *column_name(int k)
-{
-    return k == BODY_material ? "kind" : body_columns[k].name; // "species" is H5MD's word
-}
-
 const char *nsd_array_name(int k)
 {
     if (k < 0 || k >= BODY_COLUMNS + ROWS) return NULL;
-    return k < BODY_COLUMNS ? column_name(k) : table[k - BODY_COLUMNS].name;
+    return k < BODY_COLUMNS ? field_key(&body_columns[k]) : table[k - BODY_COLUMNS].name;
 }
 
 /* The row of the table that a column of bodies would have */
@@ -171,8 +166,7 @@ static struct read_row column_as_row(int k)
 {
     const struct field *b = &body_columns[k];
     const char type = b->type == COLUMN_F64 ? 'd' : b->type == COLUMN_I8 ? 'b' : 'i';
-    return (
-        struct read_row){ column_name(k), b->units, OF_BODIES, type, b->width, b->offset, NULL };
+    return (struct read_row){ field_key(b), b->units, OF_BODIES, type, b->width, b->offset, NULL };
 }
 
 /* The array, made anew in place of what it was */

@@ -1,5 +1,6 @@
 #include "scene/grains.h"
 
+#include "base/array.h"
 #include "base/json.h"
 #include "base/text.h"
 
@@ -37,12 +38,8 @@ struct grain grain_at(vec3 x, double r)
 
 int grains_add(struct grains *t, const struct grain *g, struct failure *failure)
 {
-    if (t->n == t->room) {
-        int64_t room = t->room ? 2 * t->room : 256;
-        struct grain *more = realloc(t->g, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
-        t->g = more, t->room = room;
-    }
+    if (!array_grow(&t->g, &t->room, t->n + 1, sizeof *t->g))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
     t->g[t->n++] = *g;
     return 0;
 }

@@ -330,19 +330,21 @@ static int add_grain(struct packing *p, const struct scene_pour *o, int32_t whic
     for (int32_t k = 0; k < p->pours; k++) id += p->poured[k].bodies;
     if (id >= INT32_MAX) return failure_set(failure, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_resize(p, i + 1, failure)) return failure->status;
-    if (o->form.shape)
-        packing_solid_shape(p->dim, &p->shapes.s[o->form.shape], r, o->density, &p->mass[i],
-                            &p->inertia[i]);
-    else
-        packing_solid(p->dim, r, o->density, &p->mass[i], &p->inertia[i]);
-    if (o->mass > 0) p->inertia[i] *= o->mass / p->mass[i], p->mass[i] = o->mass;
-    if (!(p->mass[i] > 0 && p->inertia[i] > 0))
+    const struct new_body body = { .x = g->x,
+                                   .v = o->v,
+                                   .w = o->w,
+                                   .q = g->q,
+                                   .radius = r,
+                                   .density = o->density,
+                                   .mass = o->mass,
+                                   .weighed = o->mass > 0,
+                                   .material = o->material,
+                                   .shape = o->form.shape,
+                                   .group = o->group };
+    if (!packing_set_body(p, i, &body))
         return failure_set(failure, EX_DATAERR, "pour %d: a radius of %g m gives no mass", which,
                            r);
-    p->x[i] = g->x, p->v[i] = o->v, p->w[i] = o->w, p->radius[i] = r;
-    p->material[i] = o->material, p->id[i] = (int32_t)id, p->q[i] = g->q;
-    if (p->shape) p->shape[i] = o->form.shape;
-    if (p->group) p->group[i] = o->group;
+    p->id[i] = (int32_t)id;
     p->poured[which].bodies++, p->poured[which].mass += p->mass[i];
     inlet_note(p, i, true, which, failure);
     return failure->status;

@@ -1,5 +1,7 @@
 #include "scene/line_crossings.h"
 
+#include "base/array.h"
+
 #include <stdlib.h>
 
 enum { CROSSINGS_MOST = 1 << 25, LINES = 128 /* of crossings_judge, along the longest side */ };
@@ -15,12 +17,8 @@ static int line_crossings_add(struct crossings *t, struct tunnelling c, struct f
 {
     if (t->n == CROSSINGS_MOST)
         return failure_set(failure, EX_DATAERR, "has too many triangles above one another");
-    if (t->n == t->room) {
-        int64_t room = t->room ? 2 * t->room : 4096;
-        struct tunnelling *more = realloc(t->c, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for a surface");
-        t->c = more, t->room = room;
-    }
+    if (!array_grow(&t->c, &t->room, t->n + 1, sizeof *t->c))
+        return failure_set(failure, EX_SOFTWARE, "no memory for a surface");
     t->c[t->n++] = c;
     return 0;
 }

@@ -85,6 +85,12 @@ struct scene_bodies {
     struct scene_form form;
 };
 
+/* Are its bodies those of a list, from a file or a random start? */
+static inline bool scene_is_list(const struct scene_bodies *b)
+{
+    return b->from != SCENE_ONE && b->from != SCENE_LATTICE;
+}
+
 /* Where grains come in: one after another, each at a place drawn in the opening */
 struct scene_pour {
     double rate; /* bodies a second or, by mass, kg/s */

@@ -1,13 +1,13 @@
-/* scene/scene_build.c: groups of bodies, the check for overlaps: a packing from a scene. */
+/* scene/scene_build.c: names, laws, masses, the check for overlaps: a packing from a scene. */
 #include "scene/scene_build.h"
 
 #include "base/bounded.h"
 #include "base/random.h"
-
 #include "contact/detect.h"
 #include "scene/grains.h"
 #include "scene/random_start.h"
 #include "scene/scene_carry.h"
+#include "scene/scene_fill.h"
 #include "scene/stiffness.h"
 #include "scene/time_step.h"
 #include "state/placement.h"
@@ -17,207 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* ---- bodies ---- */
-
-static int scene_build_set_body(struct packing *p, int64_t i, const struct scene_bodies *b, vec3 x,
-                                double r, struct failure *failure)
-{
-    double mass, inertia;
-    if (b->form.shape)
-        packing_solid_shape(p->dim, &p->shapes.s[b->form.shape], r, b->density, &mass, &inertia);
-    else
-        packing_solid(p->dim, r, b->density, &mass, &inertia);
-    if (b->mass > 0) inertia *= b->mass / mass, mass = b->mass;
-    if (!b->fixed && !(mass > 0 && inertia > 0))
-        return failure_set(failure, EX_DATAERR, "body %lld: a radius of %g m gives no mass",
-                           (long long)i, r);
-    p->x[i] = x, p->v[i] = b->v, p->w[i] = b->w;
-    p->radius[i] = r;
-    p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
-    p->material[i] = b->material;
-    if (p->shape) p->shape[i] = b->form.shape;
-    if (p->group) p->group[i] = b->group;
-    return 0;
-}
-
-/* The middle of cell k of the lattice, moved at random as far as the body stays in the cell; in a
-   periodic cell along its edges. */
-static vec3 scene_build_draw_place(const struct scene_bodies *b, const struct scene_lattice *l,
-                                   const struct packing *p, int64_t k, double r, gsl_rng *rng)
-{
-    const int dim = p->dim;
-    const struct cell *c = &p->cell;
-    double x[3] = { 0 }, rest = (double)k;
-    for (int i = 0; i < dim; i++) {
-        bool last = i == dim - 1; // the box may be open here: no end of cells
-        double above = last ? 0 : floor(rest / l->cells[i]);
-        double cell = last ? rest : rest - above * l->cells[i];
-        double slack = b->jitter * (0.5 * l->edge[i] - r);
-        x[i] = b->box.lo[i] + (cell + 0.5) * l->edge[i] + slack * (2 * gsl_rng_uniform(rng) - 1);
-        rest = above;
-    }
-    if (!b->in_cell) return v3(x[0], x[1], x[2]);
-    vec3 place = c->origin;
-    for (int i = 0; i < dim; i++) place = v3_axpy(place, x[i] / b->box.hi[i], c->edge[i]);
-    return place;
-}
-
-static vec3 draw_velocity(double sd, int dim, gsl_rng *rng)
-{
-    double v[3] = { 0 };
-    for (int i = 0; i < dim; i++) v[i] = scene_draw_normal(rng, sd);
-    return v3(v[0], v[1], v[2]);
-}
-
-static int fill_lattice(struct packing *p, int64_t first, const struct scene_bodies *b,
-                        gsl_rng *rng, struct failure *failure)
-{
-    struct scene_lattice l = scene_lattice(b, p->dim);
-    for (int64_t k = 0; k < b->count; k++) {
-        double r = scene_size_draw(&b->size, rng);
-        vec3 x = scene_build_draw_place(b, &l, p, k, r, rng);
-        if (scene_build_set_body(p, first + k, b, x, r, failure)) return failure->status;
-        if (b->thermal > 0) p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
-    }
-    return 0;
-}
-
-/* Where the shapes and groups of a document are in the packing */
-struct scene_build_rows {
-    int32_t *shape, *group; /* [shapes.n], [1 + names.n] */
-};
-
-static int scene_build_find_rows(struct scene_build_rows *to, const struct packing *p,
-                                 const struct packing *from, struct failure *failure)
-{
-    *to = (struct scene_build_rows){ 0 };
-    if (!from) return 0;
-    to->shape = calloc((size_t)from->shapes.n + 1, sizeof *to->shape);
-    to->group = calloc((size_t)from->names.n + 1, sizeof *to->group);
-    if (!to->shape || !to->group)
-        return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
-    for (int32_t k = 1; k < from->shapes.n; k++)
-        to->shape[k] = shapes_find(&p->shapes, from->shapes.s[k].name);
-    for (int32_t k = 0; k < from->names.n; k++)
-        to->group[1 + k] =
-            1 + names_find(&p->names, from->names.text[k], strlen(from->names.text[k]));
-    return 0;
-}
-
-/* What is said of a grain comes before what its material is; what its group says, before both. */
-static int set_grain(struct packing *p, int64_t i, const struct scene *s,
-                     const struct scene_bodies *b, const struct grain *g,
-                     const struct scene_build_rows *to, struct failure *failure)
-{
-    struct scene_bodies one = *b;
-    if (!b->has_material && g->material >= 0) one.material = g->material;
-    if (!b->has_v && g->has_v) one.v = g->v;
-    if (!b->has_w && g->has_w) one.w = g->w;
-    if (!b->has_fixed) one.fixed = g->fixed;
-    if (!b->has_density)
-        one.density = g->density > 0 ? g->density : s->material[one.material].density;
-    if (!b->has_density && !(b->mass > 0)) one.mass = g->mass;
-    if (g->shape && to->shape) one.form.shape = to->shape[g->shape];
-    if (g->group && to->group && !b->group) one.group = to->group[g->group];
-    if (scene_build_set_body(p, i, &one, g->x, g->r, failure)) return failure->status;
-    p->q[i] = g->q, p->id[i] = g->id;
-    if (g->weighs && !one.fixed && g->mass > 0 && one.mass == g->mass) p->inertia[i] = g->inertia;
-    return 0;
-}
-
-static int fill_grains(struct packing *p, int64_t first, const struct scene *s,
-                       const struct scene_bodies *b, const struct grains *list,
-                       struct failure *failure)
-{
-    struct scene_build_rows to;
-    scene_build_find_rows(&to, p, b->document, failure);
-    for (int64_t k = 0; k < list->n && !failure->status; k++)
-        set_grain(p, first + k, s, b, &list->g[k], &to, failure);
-    free(to.shape), free(to.group);
-    return failure->status;
-}
-
-/* Random velocities of n bodies of a group, besides that which all have */
-static void draw_velocities(struct packing *p, int64_t first, int64_t n,
-                            const struct scene_bodies *b, gsl_rng *rng)
-{
-    for (int64_t k = 0; k < n && b->thermal > 0; k++)
-        p->v[first + k] = v3_add(b->v, draw_velocity(b->thermal, p->dim, rng));
-}
-
-/* Numbers that tables and documents give, each once; the others follow the greatest of them. */
-static int set_ids(struct packing *p, bool given, struct failure *failure)
-{
-    int32_t next = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->id[i] >= next) next = p->id[i] < INT32_MAX ? p->id[i] + 1 : INT32_MAX;
-    p->first_id = next;
-    if (!given) return 0;
-    unsigned char *taken = calloc((size_t)next + 1, 1);
-    if (!taken) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies' numbers");
-    for (int64_t i = 0; i < p->n && !failure->status; i++) {
-        if (p->id[i] < 0 && next == INT32_MAX)
-            failure_set(failure, EX_DATAERR, "body %lld: no number is left for it", (long long)i);
-        else if (p->id[i] < 0)
-            p->id[i] = next++;
-        else if (taken[p->id[i]]++)
-            failure_set(failure, EX_DATAERR, "body %lld: another one has its id, %d", (long long)i,
-                        p->id[i]);
-    }
-    free(taken);
-    p->first_id = next;
-    return failure->status;
-}
-
-/* Orientations are functions of the group and the body's number in it: no other draw depends on them. */
-static int orient_group(struct packing *p, const struct scene *s, int64_t g, int64_t first,
-                        int64_t n, struct failure *failure)
-{
-    const struct scene_bodies *b = &s->bodies[g];
-    gsl_rng *rng = b->form.tumbled ? counter_alloc() : NULL;
-    if (b->form.tumbled && !rng)
-        return failure_set(failure, EX_SOFTWARE, "no memory for random numbers");
-    for (int64_t i = 0; i < n; i++) {
-        if (rng) counter_start(rng, s->seed, COUNTER_TURN, (uint64_t)g, (uint64_t)i, 0);
-        p->q[first + i] = orientation_draw(s, &b->form, rng);
-    }
-    gsl_rng_free(rng);
-    return 0;
-}
-
-static bool is_list(const struct scene_bodies *b)
-{
-    return b->from != SCENE_ONE && b->from != SCENE_LATTICE;
-}
-
-static int fill_groups(struct packing *p, const struct scene *s, const struct grains *list,
-                       gsl_rng *rng, struct failure *failure)
-{
-    int64_t first = 0;
-    bool given = false;
-    for (int64_t g = 0; g < s->groups; g++) {
-        const struct scene_bodies *b = &s->bodies[g];
-        int bad = is_list(b) ? fill_grains(p, first, s, b, &list[g], failure)
-                  : b->from == SCENE_ONE
-                      ? scene_build_set_body(p, first, b, b->x, b->size.min, failure)
-                      : fill_lattice(p, first, b, rng, failure);
-        if (bad) return bad;
-        if (is_list(b)) draw_velocities(p, first, list[g].n, b, rng);
-        int64_t n = is_list(b) ? list[g].n : b->count;
-        if (b->form.shape && orient_group(p, s, g, first, n, failure)) return failure->status;
-        given |= is_list(b);
-        if (!is_list(b)) // numbers are given anew below, where any are given
-            for (int64_t k = 0; k < b->count; k++) p->id[first + k] = -1;
-        first += is_list(b) ? list[g].n : b->count;
-    }
-    bool numbered = false;
-    for (int64_t i = 0; i < p->n; i++) numbered |= p->id[i] >= 0;
-    for (int64_t i = 0; i < p->n && !numbered; i++) p->id[i] = (int32_t)i;
-    return set_ids(p, numbered && given, failure);
-}
-
-/* ---- the packing ---- */
 
 /* The shapes of a document, behind the scene's: a name stands for one shape. */
 static int scene_build_take_shapes(struct packing *p, const struct scene_bodies *b,
@@ -322,9 +121,7 @@ static int check_names(const struct packing *p, const struct scene *s, struct fa
 static bool goes_beyond(const struct scene *s)
 {
     for (int32_t k = 0; k < s->materials * s->materials; k++)
-        if (pair_law_attracts(&s->law[k].pair_law) || pair_law_rolls(&s->law[k].pair_law) ||
-            s->law[k].pair_law.impact > 0 || stiffness_given(&s->law[k]))
-            return true;
+        if (pair_law_acts(&s->law[k].pair_law) || stiffness_given(&s->law[k])) return true;
     return false;
 }
 
@@ -379,7 +176,7 @@ static bool *from_documents(const struct packing *p, const struct scene *s,
     bool *settled = calloc((size_t)p->n + 1, sizeof *settled);
     int64_t first = 0;
     for (int64_t g = 0; settled && g < s->groups; g++) {
-        int64_t n = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        int64_t n = scene_is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
         for (int64_t i = 0; i < n; i++) settled[first + i] = may_be_settled(&s->bodies[g]);
         first += n;
     }
@@ -400,7 +197,7 @@ static const char *scene_build_place_of(const struct scene *s, const struct grai
                  name ? name : "");
     }
     for (; row >= 0 && g < s->groups; g++) {
-        end += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        end += scene_is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
         if (row < end) break;
     }
     if (row >= 0) snprintf(text, PLACE, "bodies[%lld]", (long long)g);
@@ -505,52 +302,6 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
     return failure->status;
 }
 
-/* The walls of a document, where they were at its time when it is the scene's. */
-static int take_walls(struct packing *p, const struct scene *s, const struct scene_bodies *b,
-                      struct failure *failure)
-{
-    const struct packing *from = b->document;
-    if (packing_alloc_walls(p, from->walls, failure)) return failure->status;
-    for (int32_t i = 0; i < from->walls; i++) {
-        struct wall *w = &p->wall[i];
-        *w = from->wall[i];
-        w->x = v3_axpy(w->x, from->t - s->t, w->v);
-        w->until -= from->t - s->t;
-        w->material = grains_material(s, b, from->wall[i].material);
-        if (w->material < 0)
-            return failure_set(failure, EX_DATAERR,
-                               "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
-                               from->material_name[from->wall[i].material]);
-    }
-    if (drives_copy(&p->drives, &from->drives, failure) ||
-        drives_copy(&p->pushes, &from->pushes, failure) ||
-        mesh_copy(&p->mesh, &from->mesh, failure))
-        return failure->status;
-    for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
-    for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
-    for (int32_t k = 0; k < from->names.rows; k++) {
-        const struct named *r = &from->names.row[k];
-        if (names_give(&p->names, from->names.text[r->name], r->wall, r->first, r->count, failure))
-            return failure->status;
-    }
-    return 0;
-}
-
-/* A scene at the time of its first document counts its time as that does: it goes on with the same bits. */
-static void inherit_clock(struct packing *p, const struct scene *s)
-{
-    const struct packing *from = NULL;
-    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
-    if (from) packing_count_from(p, from->t0, from->step0 - from->step);
-}
-
-static int inherit_walls(struct packing *p, const struct scene *s, struct failure *failure)
-{
-    for (int64_t g = 0; g < s->groups && !s->has_walls; g++)
-        if (s->bodies[g].document) return take_walls(p, s, &s->bodies[g], failure);
-    return 0;
-}
-
 /* kg m^2: what a room's wall adds to its inertia: its mass by the square of its lever [state/servo_box.h] */
 static int set_room_mass(struct packing *p, const struct scene *s, int32_t w,
                          struct failure *failure)
@@ -605,52 +356,6 @@ static int set_masses(struct packing *p, const struct scene *s, struct failure *
     return 0;
 }
 
-/* The whole cell of a document, its moments as if the document's time were the scene's */
-static int scene_build_take_cell(struct packing *p, const struct scene *s,
-                                 const struct packing *from)
-{
-    if (cell_copy(&p->cell, &from->cell)) return 1;
-    for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
-    for (int32_t m = 0; m < p->cell.factors; m++) p->cell.factor[m].t += s->t - from->t;
-    return 0;
-}
-
-/* The scene's, with what it leaves out as the document has it; edges that yield go on as they moved. */
-static int complete_cell(struct packing *p, const struct scene *s, const struct packing *from)
-{
-    struct cell *c = &p->cell;
-    if (cell_copy(c, &s->cell.cell)) return 1;
-    if (!s->cell.origin) c->origin = from->cell.origin;
-    for (int k = 0; k < 3; k++) {
-        c->edge[k] = from->cell.edge[k];
-        if (!s->cell.repeats) c->repeats[k] = from->cell.repeats[k];
-    }
-    cell_set_rate(c, s->t);
-    for (int k = 0; k < 3; k++) {
-        if (c->mass[k][0] > 0) c->rate[k].x = from->cell.rate[k].x;
-        if (c->mass[k][1] > 0) c->rate[k].y = from->cell.rate[k].y;
-        if (c->mass[k][2] > 0) c->rate[k].z = from->cell.rate[k].z;
-    }
-    double growth = c->size_mass > 0 ? cell_growth(&from->cell, step_after(from)) : 0;
-    for (int k = 0; k < s->dim && growth != 0; k++)
-        c->rate[k] = v3_axpy(c->rate[k], growth, c->edge[k]);
-    return 0;
-}
-
-static int inherit_cell(struct packing *p, const struct scene *s, struct failure *failure)
-{
-    const struct packing *from = NULL;
-    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
-    bool repeats = from && cell_repeats(&from->cell);
-    if (s->cell.goes_on && !repeats)
-        return failure_set(failure, EX_DATAERR,
-                           "cell: has no edges, and nor has the first document");
-    if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
-    if (s->cell.goes_on ? complete_cell(p, s, from) : scene_build_take_cell(p, s, from))
-        return failure_set(failure, EX_SOFTWARE, "no memory for the cell");
-    return packing_alloc_images(p, failure);
-}
-
 /* What documents know of their bodies besides these */
 static int carry(struct packing *p, const struct scene *s, const struct grains *list,
                  struct failure *failure)
@@ -658,7 +363,7 @@ static int carry(struct packing *p, const struct scene *s, const struct grains *
     int64_t *row = calloc((size_t)s->groups + 1, sizeof *row);
     if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the bodies");
     for (int64_t g = 0; g < s->groups; g++)
-        row[g + 1] = row[g] + (is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count);
+        row[g + 1] = row[g] + (scene_is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count);
     scene_carry(p, s, row, failure);
     free(row);
     return failure->status;
@@ -669,17 +374,18 @@ static int build_packing(struct packing *p, const struct scene *s, const struct 
 {
     int64_t n = 0;
     for (int64_t g = 0; g < s->groups; g++)
-        n += is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        n += scene_is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     for (int64_t g = 0; s->built && g < s->groups; g++)
-        s->built[g] = is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
+        s->built[g] = scene_is_list(&s->bodies[g]) ? list[g].n : s->bodies[g].count;
     if (n > INT32_MAX) return failure_set(failure, EX_DATAERR, "more than %d bodies", INT32_MAX);
     if (packing_init(p, s->dim, n, failure)) return failure->status;
     gsl_rng *rng = random_alloc(gsl_rng_mt19937);
     if (!rng) failure_set(failure, EX_SOFTWARE, "no memory for random numbers");
     if (rng) gsl_rng_set(rng, s->seed);
-    if (rng && !set_parameters(p, s, failure)) inherit_clock(p, s);
-    if (rng && !failure->status && !inherit_walls(p, s, failure) && !inherit_cell(p, s, failure) &&
-        !fill_groups(p, s, list, rng, failure) && !carry(p, s, list, failure)) {
+    if (rng && !set_parameters(p, s, failure)) scene_carry_clock(p, s);
+    if (rng && !failure->status && !scene_carry_walls(p, s, failure) &&
+        !scene_carry_cell(p, s, failure) && !scene_fill(p, s, list, rng, failure) &&
+        !carry(p, s, list, failure)) {
         if (s->cell.affine) add_affine_flow(p);
         packing_wrap(p, NULL);
         names_settle(&p->names);
@@ -735,7 +441,7 @@ static int make_walls(struct packing *walls, bool *any, const struct scene *s,
     for (int64_t g = 0; g < s->groups && !s->overlap; g++)
         *any = *any || s->bodies[g].from == SCENE_RANDOM;
     if (!*any || packing_init(walls, s->dim, 0, failure)) return failure->status;
-    if (set_parameters(walls, s, failure) || inherit_walls(walls, s, failure))
+    if (set_parameters(walls, s, failure) || scene_carry_walls(walls, s, failure))
         return failure->status;
     *any = walls->walls > 0;
     return 0;

@@ -1,5 +1,8 @@
 #include "scene/scene_carry.h"
 
+#include "contact/contact_law.h"
+#include "scene/grains.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,12 +77,8 @@ static int carry_bonds(const struct carried *y, struct failure *failure)
         const int32_t wall = -1 - b.a;
         if (!scene_carry_find(y, &b.a)) continue;
         b.b += (int32_t)y->row;
-        const struct pair_law *l = &p->law[packing_pair(p, b.a, b.b)];
-        if (!pair_law_wets(l)) b.wet = 0;
-        if (!pair_law_springs(l)) b.pressed = 0, b.rest = 0, b.turn = v3(0, 0, 0);
-        bool bonds = pair_law_adheres(l);
-        if (!has_images(y, b.shift) || (!bonds && !b.wet && !b.pressed)) continue;
-        if (!bonds) b.beta = 0;
+        if (!has_images(y, b.shift) || !contact_law_carries(&p->law[packing_pair(p, b.a, b.b)], &b))
+            continue;
         if (bond_anchored(&b) && b.a < 0) b.at_a = move_anchor(y, wall, b.at_a);
         if (!bonds_add(&p->bonds, &b))
             return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
@@ -209,4 +208,97 @@ struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
         if (!(s->dt > 0) && p->dt != dt) lost.dt = dt;
     }
     return lost;
+}
+
+/* ---- the clock, the walls and the cell of the first document ---- */
+
+/* The walls of a document, where they were at its time when it is the scene's. */
+static int take_walls(struct packing *p, const struct scene *s, const struct scene_bodies *b,
+                      struct failure *failure)
+{
+    const struct packing *from = b->document;
+    if (packing_alloc_walls(p, from->walls, failure)) return failure->status;
+    for (int32_t i = 0; i < from->walls; i++) {
+        struct wall *w = &p->wall[i];
+        *w = from->wall[i];
+        w->x = v3_axpy(w->x, from->t - s->t, w->v);
+        w->until -= from->t - s->t;
+        w->material = grains_material(s, b, from->wall[i].material);
+        if (w->material < 0)
+            return failure_set(failure, EX_DATAERR,
+                               "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
+                               from->material_name[from->wall[i].material]);
+    }
+    if (drives_copy(&p->drives, &from->drives, failure) ||
+        drives_copy(&p->pushes, &from->pushes, failure) ||
+        mesh_copy(&p->mesh, &from->mesh, failure))
+        return failure->status;
+    for (int32_t k = 0; k < p->drives.n; k++) p->drives.drive[k].clock += from->t - s->t;
+    for (int32_t k = 0; k < p->pushes.n; k++) p->pushes.drive[k].clock += from->t - s->t;
+    for (int32_t k = 0; k < from->names.rows; k++) {
+        const struct named *r = &from->names.row[k];
+        if (names_give(&p->names, from->names.text[r->name], r->wall, r->first, r->count, failure))
+            return failure->status;
+    }
+    return 0;
+}
+
+/* A scene at the time of its first document counts its time as that does: it goes on with the same bits. */
+void scene_carry_clock(struct packing *p, const struct scene *s)
+{
+    const struct packing *from = NULL;
+    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
+    if (from) packing_count_from(p, from->t0, from->step0 - from->step);
+}
+
+int scene_carry_walls(struct packing *p, const struct scene *s, struct failure *failure)
+{
+    for (int64_t g = 0; g < s->groups && !s->has_walls; g++)
+        if (s->bodies[g].document) return take_walls(p, s, &s->bodies[g], failure);
+    return 0;
+}
+
+/* The whole cell of a document, its moments as if the document's time were the scene's */
+static int take_cell(struct packing *p, const struct scene *s, const struct packing *from)
+{
+    if (cell_copy(&p->cell, &from->cell)) return 1;
+    for (int32_t m = 0; m < p->cell.gradients; m++) p->cell.gradient[m].t += s->t - from->t;
+    for (int32_t m = 0; m < p->cell.factors; m++) p->cell.factor[m].t += s->t - from->t;
+    return 0;
+}
+
+/* The scene's, with what it leaves out as the document has it; edges that yield go on as they moved. */
+static int complete_cell(struct packing *p, const struct scene *s, const struct packing *from)
+{
+    struct cell *c = &p->cell;
+    if (cell_copy(c, &s->cell.cell)) return 1;
+    if (!s->cell.origin) c->origin = from->cell.origin;
+    for (int k = 0; k < 3; k++) {
+        c->edge[k] = from->cell.edge[k];
+        if (!s->cell.repeats) c->repeats[k] = from->cell.repeats[k];
+    }
+    cell_set_rate(c, s->t);
+    for (int k = 0; k < 3; k++) {
+        if (c->mass[k][0] > 0) c->rate[k].x = from->cell.rate[k].x;
+        if (c->mass[k][1] > 0) c->rate[k].y = from->cell.rate[k].y;
+        if (c->mass[k][2] > 0) c->rate[k].z = from->cell.rate[k].z;
+    }
+    double growth = c->size_mass > 0 ? cell_growth(&from->cell, step_after(from)) : 0;
+    for (int k = 0; k < s->dim && growth != 0; k++)
+        c->rate[k] = v3_axpy(c->rate[k], growth, c->edge[k]);
+    return 0;
+}
+
+int scene_carry_cell(struct packing *p, const struct scene *s, struct failure *failure)
+{
+    const struct packing *from = NULL;
+    for (int64_t g = 0; g < s->groups && !from; g++) from = s->bodies[g].document;
+    bool repeats = from && cell_repeats(&from->cell);
+    if (s->cell.goes_on && !repeats)
+        return failure_set(failure, EX_DATAERR,
+                           "cell: has no edges, and nor has the first document");
+    if (!repeats || s->cell.none || (s->cell.given && !s->cell.goes_on)) return 0;
+    if (s->cell.goes_on ? complete_cell(p, s, from) : take_cell(p, s, from))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the cell");
+    return packing_alloc_images(p, failure);
 }

@@ -17,6 +17,13 @@ int scene_carry(struct packing *p, const struct scene *s, const int64_t *row,
 /* Once it has its dt, too */
 void scene_carry_dt(struct packing *p, const struct scene *s);
 
+/* A scene at the time of its first document counts its time as that does: it goes on with the same bits. */
+void scene_carry_clock(struct packing *p, const struct scene *s);
+/* The walls of the first document, where the scene has none; its cell, or what the scene leaves out of it. Each returns 0,
+   EX_DATAERR or EX_SOFTWARE. */
+int scene_carry_walls(struct packing *p, const struct scene *s, struct failure *failure);
+int scene_carry_cell(struct packing *p, const struct scene *s, struct failure *failure);
+
 /* What the documents have and p does not */
 struct scene_lost {
     const char *file; /* the first document; NULL: there is none */

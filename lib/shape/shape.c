@@ -174,9 +174,9 @@ static const char *shape_number_trouble(const struct shape *s, int dim)
     if (!(s->round >= 0 && s->round <= 1)) return "its rounding is out of range";
     double reach = 0;
     for (int32_t i = 0; i < s->vertices; i++) {
-        double r = s->form == SHAPE_CLUMP ? s->ball[i] : s->round;
+        double r = shape_round(s, i);
         if (!v3_finite(s->vertex[i])) return "a vertex is not finite";
-        if (s->form == SHAPE_CLUMP && !(r > 0)) return "a ball's radius must be positive";
+        if (shape_is_union(s) && !(r > 0)) return "a ball's radius must be positive";
         if (dim == 2 && s->vertex[i].z != 0) return "leaves the plane, and dim is 2";
         reach = fmax(reach, v3_norm(s->vertex[i]) + r);
     }
@@ -312,7 +312,7 @@ int shape_finish(struct shape *s, int dim, struct failure *failure)
     if (!trouble) trouble = form_trouble(s);
     if (!trouble) trouble = shape_number_trouble(s, dim);
     if (trouble) return failure_set(failure, EX_DATAERR, "%s", trouble);
-    if (s->form != SHAPE_HULL) return 0;
+    if (!shape_has_faces(s)) return 0;
     if (s->faces < 1 || (trouble = count_trouble(s, dim)) || (trouble = index_trouble(s)))
         return failure_set(failure, EX_DATAERR, "%s", trouble ? trouble : "has no faces");
     size_t normals = (size_t)(s->faces > s->vertices ? s->faces : s->vertices);

@@ -14,6 +14,7 @@
 #include "base/vec.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 /*
@@ -83,6 +84,51 @@ struct shape {
     int32_t edges;
     struct shape_edge *edge; /* [edges] in the plane edge k begins at the k-th corner */
 };
+
+/* A convex part of a shape: all within `round` of the vertices first .. first+n-1, and between them */
+struct shape_part {
+    int32_t first, n;
+    double round;
+};
+/* Is it a union of parts, each of which may be a point? Other shapes are one part. */
+static inline bool shape_is_union(const struct shape *s)
+{
+    return s->form == SHAPE_CLUMP;
+}
+static inline bool shape_has_faces(const struct shape *s)
+{
+    return s->form == SHAPE_HULL;
+}
+static inline int32_t shape_parts(const struct shape *s)
+{
+    return shape_is_union(s) ? s->vertices : 1;
+}
+static inline struct shape_part shape_part(const struct shape *s, int32_t k)
+{
+    if (shape_is_union(s)) return (struct shape_part){ k, 1, s->ball[k] };
+    return (struct shape_part){ 0, s->vertices, s->round };
+}
+/* The distance from vertex k to the surface around it; before shape_finish(), too */
+static inline double shape_round(const struct shape *s, int32_t k)
+{
+    return shape_is_union(s) ? s->ball[k] : s->round;
+}
+/* Part k of a body at x (m) of this radius (m), whose vertices are at v (m), and whose faces have these normals */
+static inline struct core shape_core(const struct shape *s, double radius, vec3 x, const vec3 *v,
+                                     const vec3 *normal, int32_t k)
+{
+    if (shape_is_union(s)) {
+        const struct shape_part part = shape_part(s, k);
+        v += part.first;
+        return (struct core){ .n = part.n, .v = v, .round = radius * part.round, .centre = *v };
+    }
+    return (struct core){ .n = s->vertices,
+                          .v = v,
+                          .normal = normal,
+                          .hull = shape_has_faces(s) ? s : NULL,
+                          .round = radius * s->round,
+                          .centre = x };
+}
 
 struct shapes {
     int32_t n;       /* 0: all grains are balls */

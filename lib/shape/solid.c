@@ -149,8 +149,8 @@ static int find_chords(const struct shape *s, int dim, const vec3 *normal, doubl
 {
     int n = 0;
     for (int32_t i = 0; i < s->vertices; i++)
-        in[n++] = solid_in_ball(s->vertex[i], s->form == SHAPE_CLUMP ? s->ball[i] : s->round, y, z);
-    if (s->form != SHAPE_HULL) return n;
+        in[n++] = solid_in_ball(s->vertex[i], shape_round(s, i), y, z);
+    if (!shape_has_faces(s)) return n;
     struct chord core = { -INFINITY, INFINITY };
     for (int32_t f = 0; f < s->faces; f++)
         for (int32_t i = s->first[f], end = s->first[f + 1]; i < end; i++) {
@@ -210,7 +210,7 @@ static int solid_add_lines(struct solid_sums *t, const struct shape *s, int dim,
     for (int32_t f = 0; f < s->faces && dim == 3; f++) normal[f] = face_normal(s, f);
     double lo[2] = { INFINITY, INFINITY }, hi[2] = { -INFINITY, -INFINITY };
     for (int32_t i = 0; i < s->vertices; i++) {
-        double r = s->form == SHAPE_CLUMP ? s->ball[i] : s->round;
+        double r = shape_round(s, i);
         lo[0] = fmin(lo[0], s->vertex[i].y - r), hi[0] = fmax(hi[0], s->vertex[i].y + r);
         lo[1] = fmin(lo[1], s->vertex[i].z - r), hi[1] = fmax(hi[1], s->vertex[i].z + r);
     }
@@ -368,7 +368,7 @@ int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct sol
     double reach = 0;
     if (!v3_finite(o.centre)) return failure_set(failure, EX_DATAERR, "has no volume");
     for (int32_t i = 0; i < s->vertices; i++) {
-        double r = s->form == SHAPE_CLUMP ? s->ball[i] : s->round;
+        double r = shape_round(s, i);
         reach = fmax(reach, v3_norm(v3_sub(s->vertex[i], o.centre)) + r);
     }
     double size = dim == 2 ? reach * reach : reach * reach * reach;

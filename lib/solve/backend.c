@@ -7,10 +7,11 @@
 extern const struct sweep sweep_2, sweep_4, sweep_8;
 extern const struct judge judge_2, judge_4, judge_8;
 extern const struct mixing_loops mixing_2, mixing_4, mixing_8;
+extern const struct small_kernels small_2, small_4, small_8;
 
-static const struct backend backends[] = { { 2, &sweep_2, &judge_2, &mixing_2 },
-                                           { 4, &sweep_4, &judge_4, &mixing_4 },
-                                           { 8, &sweep_8, &judge_8, &mixing_8 } };
+static const struct backend backends[] = { { 2, &sweep_2, &judge_2, &mixing_2, &small_2 },
+                                           { 4, &sweep_4, &judge_4, &mixing_4, &small_4 },
+                                           { 8, &sweep_8, &judge_8, &mixing_8, &small_8 } };
 
 static const struct backend *chosen;
 

@@ -10,6 +10,7 @@
 
 #include "solve/judge.h"
 #include "solve/mixing.h"
+#include "solve/small.h"
 #include "solve/sweep.h"
 
 struct backend {
@@ -17,6 +18,7 @@ struct backend {
     const struct sweep *sweep;
     const struct judge *judge;
     const struct mixing_loops *mixing;
+    const struct small_kernels *small;
 };
 
 /* The backend with the widest vectors that the machine has, of at most NSD_LANES lanes (environment) */

@@ -174,7 +174,7 @@ static bool face_of(const struct surface_hold *y, int32_t i, vec3 away, vec3 n, 
 {
     const struct shape *shape = packing_shape(y->p, i);
     out->n = 0;
-    if (!shape || shape->form != SHAPE_HULL || y->p->dim == 2) return false;
+    if (!shape || !shape_has_faces(shape) || y->p->dim == 2) return false;
     const quat q = rotation_predict(y->p, i);
     const vec3 x = v3_add(packing_predict(y->p, i), away), along = quat_turn_back(q, n);
     int32_t best = 0;
@@ -241,7 +241,7 @@ static bool common_face(const struct surface_hold *y, struct flat *f)
 static bool is_clump(const struct packing *p, int32_t i)
 {
     const struct shape *shape = i < 0 ? NULL : packing_shape(p, i);
-    return shape && shape->form == SHAPE_CLUMP;
+    return shape && shape_is_union(shape);
 }
 
 /* All that the places' bodies hold by is these places, in one plane: the resultant is at the centre of the face. */

@@ -1,6 +1,7 @@
 /* state/bond.c: the list of what lasts of pairs [state/bond.h]. */
 #include "state/bond.h"
 
+#include "base/array.h"
 #include "state/fields.h"
 
 #include <stdlib.h>
@@ -14,12 +15,7 @@ void bonds_free(struct bonds *s)
 
 struct bond *bonds_add(struct bonds *s, const struct bond *bond)
 {
-    if (s->n == s->room) {
-        int64_t room = s->room + s->room / 2 + 64;
-        struct bond *more = realloc(s->bond, (size_t)room * sizeof *more);
-        if (!more) return NULL;
-        s->bond = more, s->room = room;
-    }
+    if (!array_grow(&s->bond, &s->room, s->n + 1, sizeof *s->bond)) return NULL;
     s->bond[s->n] = *bond;
     return &s->bond[s->n++];
 }

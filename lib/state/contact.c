@@ -1,9 +1,11 @@
 /* state/contact.c: lists of contacts, their bases, and reactions carried from step to step. */
 #include "state/contact.h"
 
+#include "base/array.h"
 #include "base/team.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,69 +14,88 @@ enum {
         16384 /* the fewest contacts that are worth a thread: 100 us of looking at each */
 };
 
+/* The arrays beside the contacts */
+enum { BESIDE_FOUND, BESIDE_LAW, BESIDE_MOMENT, BESIDE };
+static const struct {
+    size_t at, bytes; /* in struct contacts; of a row */
+} beside[BESIDE] = {
+    [BESIDE_FOUND] = { offsetof(struct contacts, found), sizeof(struct found) },
+    [BESIDE_LAW] = { offsetof(struct contacts, law), sizeof(struct contact_law) },
+    [BESIDE_MOMENT] = { offsetof(struct contacts, moment), sizeof(double[3]) },
+};
+
+static void *beside_of(const struct contacts *s, int k)
+{
+    void *rows;
+    memcpy(&rows, (const char *)s + beside[k].at, sizeof rows);
+    return rows;
+}
+
+/* rows in place of what there was */
+static void beside_set(struct contacts *s, int k, void *rows)
+{
+    free(beside_of(s, k));
+    memcpy((char *)s + beside[k].at, &rows, sizeof rows);
+}
+
+static int beside_alloc(struct contacts *s, int k)
+{
+    beside_set(s, k, NULL);
+    beside_set(s, k, calloc((size_t)s->n + 1, beside[k].bytes));
+    return beside_of(s, k) ? 0 : -1;
+}
+
 void contacts_free(struct contacts *s)
 {
-    free(s->c), free(s->found), free(s->law), free(s->moment);
+    for (int k = 0; k < BESIDE; k++) beside_set(s, k, NULL);
+    free(s->c);
     *s = (struct contacts){ 0 };
 }
 
 void contacts_free_found(struct contacts *s)
 {
-    free(s->found), free(s->moment);
-    s->found = NULL, s->moment = NULL;
+    beside_set(s, BESIDE_FOUND, NULL), beside_set(s, BESIDE_MOMENT, NULL);
 }
 
 void contacts_free_tie(struct contacts *s)
 {
-    free(s->law);
-    s->law = NULL;
+    beside_set(s, BESIDE_LAW, NULL);
 }
 
 int contacts_alloc_found(struct contacts *s)
 {
     contacts_free_found(s);
-    s->found = calloc((size_t)s->n + 1, sizeof *s->found);
-    return s->found ? 0 : -1;
+    return beside_alloc(s, BESIDE_FOUND);
 }
 
 int contacts_alloc_laws(struct contacts *s)
 {
-    contacts_free_tie(s);
-    s->law = calloc((size_t)s->n + 1, sizeof *s->law);
-    return s->law ? 0 : -1;
+    return beside_alloc(s, BESIDE_LAW);
 }
 
 int contacts_alloc_moment(struct contacts *s)
 {
-    free(s->moment);
-    s->moment = calloc((size_t)s->n + 1, sizeof *s->moment);
-    return s->moment ? 0 : -1;
+    return beside_alloc(s, BESIDE_MOMENT);
 }
 
 int contacts_copy(struct contacts *to, const struct contacts *from)
 {
+    const size_t n = (size_t)from->n;
     *to = (struct contacts){ .n = from->n, .room = from->n };
-    size_t n = (size_t)from->n;
-    to->c = malloc((n + 1) * sizeof *to->c);
-    if (!to->c || (from->found && contacts_alloc_found(to)) ||
-        (from->law && contacts_alloc_laws(to)) || (from->moment && contacts_alloc_moment(to))) {
-        contacts_free(to);
-        return -1;
+    bool good = (to->c = malloc((n + 1) * sizeof *to->c));
+    if (good && n) memcpy(to->c, from->c, n * sizeof *to->c);
+    for (int k = 0; k < BESIDE && good; k++) {
+        if (!beside_of(from, k)) continue;
+        good = !beside_alloc(to, k);
+        if (good && n) memcpy(beside_of(to, k), beside_of(from, k), n * beside[k].bytes);
     }
-    if (n) memcpy(to->c, from->c, n * sizeof *to->c);
-    if (n && from->found) memcpy(to->found, from->found, n * sizeof *to->found);
-    if (n && from->moment) memcpy(to->moment, from->moment, n * sizeof *to->moment);
-    if (n && from->law) memcpy(to->law, from->law, n * sizeof *to->law);
-    return 0;
+    if (!good) contacts_free(to);
+    return good ? 0 : -1;
 }
 
 bool contacts_reserve(struct contacts *s, int64_t more)
 {
-    int64_t room = s->room + s->room / 2 + more;
-    if (s->n + more <= s->room) return true;
-    struct contact *c = realloc(s->c, (size_t)room * sizeof *c);
-    if (c) s->c = c, s->room = room;
-    return c != NULL;
+    return array_grow(&s->c, &s->room, s->n + more, sizeof *s->c);
 }
 
 struct contact *contacts_add(struct contacts *s, int32_t a, int32_t b)

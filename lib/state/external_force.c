@@ -1,6 +1,8 @@
 /* state/external_force.c: memory for what acts from outside [state/external_force.h]. */
 #include "state/external_force.h"
 
+#include "base/array.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -184,12 +186,8 @@ void external_force_measure(struct external_force *o, const double *mass, int64_
 int external_force_say(struct external_force *o, const char *words, int64_t length,
                        struct failure *failure)
 {
-    if (o->length + length > o->room) {
-        int64_t room = 2 * (o->length + length);
-        char *more = realloc(o->words, (size_t)room);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for the answer");
-        o->words = more, o->room = room;
-    }
+    if (!array_grow(&o->words, &o->room, o->length + length, 1))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the answer");
     if (length) memcpy(o->words + o->length, words, (size_t)length);
     o->length += length;
     return 0;

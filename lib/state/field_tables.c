@@ -167,30 +167,31 @@ const struct field material_fields[] = {
 #undef MATERIAL
 #undef OPTIONAL
 
-#define LAW(member, name, unit, bounds, ...)                                                       \
+/* key: the law's name and, in its object, the parameter's */
+#define LAW(member, name, unit, bounds, json, ...)                                                 \
     FIELD(struct pair_law, member, F64, 1, name, unit, FIELD_SAME __VA_ARGS__,                     \
-          .range = FIELD_##bounds)
+          .range = FIELD_##bounds, .key = (json))
 const struct field law_fields[] = {
-    LAW(cohesion, "cohesion", "N", NOT_NEGATIVE),
-    LAW(range, "range", "m", NOT_NEGATIVE),
-    LAW(volume, "volume", "m3", NOT_NEGATIVE),
-    LAW(tension, "tension", "N m-1", NOT_NEGATIVE),
-    LAW(wetting, "wetting", "rad", NOT_NEGATIVE),
-    LAW(mu_r, "mu_r", "m", NOT_NEGATIVE),
-    LAW(mu_p, "mu_p", "m", NOT_NEGATIVE),
-    LAW(cn, "c_n", "N m-3", NOT_NEGATIVE),
-    LAW(ct, "c_t", "N m-3", NOT_NEGATIVE),
-    LAW(w, "w", "J m-2", NOT_NEGATIVE),
-    LAW(eta, "eta", "N s m-1", NOT_NEGATIVE),
-    LAW(area, "area", "m2", NOT_NEGATIVE),
-    LAW(beta, "beta", "1", FRACTION),
-    LAW(made, "made", "s", FINITE),
-    LAW(forever, "forever", "1", FLAG),
-    LAW(impact, "impact", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
-    LAW(mu_r_ratio, "mu_r_ratio", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
-    LAW(mu_p_ratio, "mu_p_ratio", "1", NOT_NEGATIVE, | FIELD_OPTIONAL),
-    LAW(kn, "k_n", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
-    LAW(kt, "k_t", "N m-1", NOT_NEGATIVE, | FIELD_OPTIONAL),
+    LAW(cohesion, "cohesion", "N", NOT_NEGATIVE, "cohesion.force"),
+    LAW(range, "range", "m", NOT_NEGATIVE, "cohesion.range"),
+    LAW(volume, "volume", "m3", NOT_NEGATIVE, "capillary.volume"),
+    LAW(tension, "tension", "N m-1", NOT_NEGATIVE, "capillary.tension"),
+    LAW(wetting, "wetting", "rad", NOT_NEGATIVE, "capillary.wetting"),
+    LAW(mu_r, "mu_r", "m", NOT_NEGATIVE, "rolling.mu_r"),
+    LAW(mu_p, "mu_p", "m", NOT_NEGATIVE, "rolling.mu_p"),
+    LAW(cn, "c_n", "N m-3", NOT_NEGATIVE, "adhesion.c_n"),
+    LAW(ct, "c_t", "N m-3", NOT_NEGATIVE, "adhesion.c_t"),
+    LAW(w, "w", "J m-2", NOT_NEGATIVE, "adhesion.w"),
+    LAW(eta, "eta", "N s m-1", NOT_NEGATIVE, "adhesion.eta"),
+    LAW(area, "area", "m2", NOT_NEGATIVE, "adhesion.area"),
+    LAW(beta, "beta", "1", FRACTION, "adhesion.beta"),
+    LAW(made, "made", "s", FINITE, "adhesion.made"),
+    LAW(forever, "forever", "1", FLAG, "adhesion.forever"),
+    LAW(impact, "impact", "1", NOT_NEGATIVE, NULL, | FIELD_OPTIONAL),
+    LAW(mu_r_ratio, "mu_r_ratio", "1", NOT_NEGATIVE, "rolling.mu_r_ratio", | FIELD_OPTIONAL),
+    LAW(mu_p_ratio, "mu_p_ratio", "1", NOT_NEGATIVE, "rolling.mu_p_ratio", | FIELD_OPTIONAL),
+    LAW(kn, "k_n", "N m-1", NOT_NEGATIVE, "stiffness.normal", | FIELD_OPTIONAL),
+    LAW(kt, "k_t", "N m-1", NOT_NEGATIVE, "stiffness.tangential", | FIELD_OPTIONAL),
     { 0 },
 };
 
@@ -357,10 +358,7 @@ const struct field found_fields[] = {
 
 /* ---- reports ---- */
 
-/*
- * /nsd/solver/NAME/value [frames][width]. The five numbers of eps are
- * eps_glob, motion, proj, bipotential, penetration.
- */
+/* /nsd/solver/NAME/value [frames][width]; the five numbers of eps are those of terms_fields */
 const struct field report_fields[] = {
     FIELD(struct report, err.contacts, I64, 1, "contacts", "1", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
@@ -379,6 +377,15 @@ const struct field report_fields[] = {
     FIELD(struct report, safeguarded, I64, 1, "safeguarded", "1", FIELD_MOVES,
           .range = FIELD_NOT_NEGATIVE),
     FIELD(struct report, gave_up, I64, 1, "gave_up", "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    { 0 },
+};
+
+const struct field terms_fields[] = {
+    FIELD(struct terms, eps_glob, F64, 1, "eps_glob", "1", FIELD_MOVES),
+    FIELD(struct terms, motion, F64, 1, "motion", "1", FIELD_MOVES),
+    FIELD(struct terms, proj, F64, 1, "proj", "1", FIELD_MOVES),
+    FIELD(struct terms, bipotential, F64, 1, "bipotential", "1", FIELD_MOVES),
+    FIELD(struct terms, penetration, F64, 1, "penetration", "1", FIELD_MOVES),
     { 0 },
 };
 

@@ -26,7 +26,7 @@ extern const struct field contact_fields[], contact_key_fields[], contact_law_fi
     found_fields[];
 
 /* Of struct report */
-extern const struct field report_fields[], velocity_fields[], balance_fields[];
+extern const struct field report_fields[], terms_fields[], velocity_fields[], balance_fields[];
 extern const struct field bond_balance_fields[], spring_balance_fields[], gain_balance_fields[],
     peculiar_balance_fields[], projection_balance_fields[];
 

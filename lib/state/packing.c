@@ -1,6 +1,8 @@
 /* state/packing.c: memory for a packing, and the check of its numbers. */
 #include "state/packing.h"
 
+#include "base/array.h"
+#include "shape/wall_in_cell.h"
 #include "state/fields.h"
 
 #include <stdio.h>
@@ -9,20 +11,10 @@
 
 int events_add(struct events *s, const struct event *e, struct failure *failure)
 {
-    if (s->n == s->room) {
-        int64_t room = s->room ? 2 * s->room : 64;
-        struct event *more = realloc(s->e, (size_t)room * sizeof *more);
-        if (!more) return failure_set(failure, EX_SOFTWARE, "no memory for events");
-        s->e = more, s->room = room;
-    }
+    if (!array_grow(&s->e, &s->room, s->n + 1, sizeof *s->e))
+        return failure_set(failure, EX_SOFTWARE, "no memory for events");
     s->e[s->n++] = *e;
     return 0;
-}
-
-void events_free(struct events *s)
-{
-    free(s->e);
-    *s = (struct events){ 0 };
 }
 
 const char *const overlap_name[OVERLAP_COUNT] = { "",     "keep",    "gap",
@@ -37,7 +29,8 @@ static void *array(int64_t n, size_t size)
 }
 
 #define ROW(ctype, member, type, width, name, unit, bounds, ...)                                   \
-    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds),
+    FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds,   \
+          .key = BODY_##member == BODY_material ? "kind" : NULL), /* "species" is H5MD's word */
 const struct field body_columns[] = { EACH_BODY_COLUMN(ROW){ 0 } };
 #undef ROW
 
@@ -391,15 +384,10 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     return packing_load_trouble(p, w);
 }
 
-/* Is the wall the same after a shift by this edge? */
-static bool repeats_along(const struct packing *p, const struct wall *w, vec3 edge)
+bool packing_wall_fits_edge(const struct packing *p, const struct wall *w, int k, double thick)
 {
-    double tiny = 1e-9 * v3_norm(edge);
-    for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns && w->shape == WALL_PLANE) return false;
-    if (w->shape == WALL_PLANE) return fabs(v3_dot(edge, w->n)) <= tiny;
-    if (w->shape != WALL_CYLINDER || w->size[2] > 0) return false;
-    return v3_norm(v3_cross(edge, w->n)) <= tiny;
+    struct wall_parts of = { .dim = p->dim, .drives = &p->drives, .mesh = &p->mesh };
+    return !p->cell.repeats[k] || wall_fits_edge(w, &of, &p->cell, k, thick);
 }
 
 static int check_images(const struct packing *p, int64_t first, struct failure *failure)
@@ -423,9 +411,12 @@ static int check_cell(const struct packing *p, struct failure *failure)
     if (check_images(p, 0, failure)) return failure->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
-            if (p->cell.repeats[k] && !repeats_along(p, &p->wall[i], p->cell.edge[k]))
-                return failure_set(failure, EX_DATAERR,
-                                   "wall %d: crosses a periodic edge of the cell", i);
+            if (!packing_wall_fits_edge(p, &p->wall[i], k, 2 * most))
+                return failure_set(
+                    failure, EX_DATAERR,
+                    "wall %d: crosses a periodic edge of the cell, is nearer to it than a "
+                    "grain is thick, or moves across it",
+                    i);
             if (p->cell.repeats[k] && cell_moves(&p->cell, k))
                 return failure_set(failure, EX_DATAERR,
                                    "wall %d: the edges along it move, so that its bodies' images "
@@ -534,8 +525,9 @@ struct cell_flow packing_flow(const struct packing *p)
     return f;
 }
 
-void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
-                         double *mass, double *inertia)
+/* Mass and inertia of a shape of this radius, as packing_solid() */
+static void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
+                                double *mass, double *inertia)
 {
     const double *m = s->moment;
     double mean = dim == 2 ? m[2] : (m[0] + m[1] + m[2]) / 3;
@@ -553,4 +545,20 @@ void packing_solid(int dim, double radius, double density, double *mass, double 
     }
     *mass = density * 4.0 / 3 * M_PI * r2 * radius;
     *inertia = 0.4 * *mass * r2;
+}
+
+bool packing_set_body(struct packing *p, int64_t i, const struct new_body *b)
+{
+    double mass, inertia;
+    if (b->shape)
+        packing_solid_shape(p->dim, &p->shapes.s[b->shape], b->radius, b->density, &mass, &inertia);
+    else
+        packing_solid(p->dim, b->radius, b->density, &mass, &inertia);
+    if (b->weighed) inertia *= b->mass / mass, mass = b->mass;
+    p->x[i] = b->x, p->v[i] = b->v, p->w[i] = b->w, p->q[i] = b->q;
+    p->radius[i] = b->radius, p->material[i] = b->material;
+    p->mass[i] = b->fixed ? 0 : mass, p->inertia[i] = b->fixed ? 0 : inertia;
+    if (p->shape) p->shape[i] = b->shape;
+    if (p->group) p->group[i] = b->group;
+    return b->fixed || (mass > 0 && inertia > 0);
 }

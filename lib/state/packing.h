@@ -112,7 +112,6 @@ struct events {
 
 /* Returns 0 or EX_SOFTWARE. */
 int events_add(struct events *events, const struct event *event, struct failure *failure);
-void events_free(struct events *events);
 
 struct whole;
 
@@ -354,6 +353,8 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
     return v3_axpy(p->x[i], step_ahead(p), p->v[i]);
 }
 
+/* Is the wall along the periodic edge k, or between its faces, farther from them than `thick` (m), for ever [shape/wall_in_cell.h]? */
+bool packing_wall_fits_edge(const struct packing *p, const struct wall *w, int k, double thick);
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 
@@ -398,9 +399,18 @@ static inline const struct shape *packing_shape(const struct packing *p, int64_t
 {
     return p->shape && p->shape[i] > 0 ? &p->shapes.s[p->shape[i]] : NULL;
 }
-/* Mass and inertia of a shape of this radius, as packing_solid() */
-void packing_solid_shape(int dim, const struct shape *s, double radius, double density,
-                         double *mass, double *inertia);
+/* What a new body is */
+struct new_body {
+    vec3 x, v, w;
+    quat q;
+    double radius, density; /* m, kg/m^3; in 2D kg/m^2 */
+    double mass;            /* kg, in place of the density, where it is given */
+    bool weighed;           /* it is */
+    bool fixed;             /* mass and inertia are 0 */
+    int32_t material, shape, group;
+};
+/* Body i, whose arrays exist. False: its radius is so small, or so large, that it has no mass. */
+bool packing_set_body(struct packing *p, int64_t i, const struct new_body *body);
 
 /* Mass (kg) and inertia (kg m^2) of a solid ball or disc: radius in m, density in kg m^-3, of a
    disc in kg m^-2. */

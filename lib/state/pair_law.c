@@ -6,6 +6,19 @@
 #include <math.h>
 #include <stddef.h>
 
+const struct law_name law_names[] = {
+    { "cohesion", pair_law_coheres }, { "capillary", pair_law_wets },
+    { "rolling", pair_law_rolls },    { "stiffness", pair_law_springs },
+    { "adhesion", pair_law_adheres }, { 0 },
+};
+
+bool pair_law_acts(const struct pair_law *l)
+{
+    bool any = l->impact > 0;
+    for (const struct law_name *k = law_names; k->name; k++) any = any || k->is_of(l);
+    return any;
+}
+
 const char *pair_law_trouble(const struct pair_law *l)
 {
     if (!(l->wetting < M_PI / 2)) return "the wetting angle must lie in [0, pi/2)";

@@ -66,11 +66,24 @@ static inline bool pair_law_rolls(const struct pair_law *l)
 {
     return l->mu_r > 0 || l->mu_p > 0 || l->mu_r_ratio > 0 || l->mu_p_ratio > 0;
 }
+static inline bool pair_law_coheres(const struct pair_law *l)
+{
+    return l->cohesion > 0;
+}
 /* Does the pair hold together over a gap? */
 static inline bool pair_law_attracts(const struct pair_law *l)
 {
-    return l->cohesion > 0 || pair_law_wets(l) || pair_law_adheres(l);
+    return pair_law_coheres(l) || pair_law_wets(l) || pair_law_adheres(l);
 }
+
+/* The laws beyond friction and restitution: name, as in scenes, and whether a pair has it */
+struct law_name {
+    const char *name;
+    bool (*is_of)(const struct pair_law *law);
+};
+extern const struct law_name law_names[]; /* one without a name ends them */
+/* Has a pair any of them? */
+bool pair_law_acts(const struct pair_law *law);
 
 /* m: R of the bridge between bodies of these radii, or, b alone, between b and a wall */
 double bridge_radius(double a, double b);

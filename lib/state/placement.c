@@ -12,7 +12,7 @@ void placed_free(struct placed *s)
 /* Normals of a hull: in the plane one for each side */
 static int32_t normals_of(const struct shape *s, int dim)
 {
-    return s->form != SHAPE_HULL ? 0 : dim == 2 ? s->vertices : s->faces;
+    return !shape_has_faces(s) ? 0 : dim == 2 ? s->vertices : s->faces;
 }
 
 int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
@@ -52,7 +52,7 @@ int placed_init(struct placed *s, const struct packing *p, const struct position
 int32_t placed_cores(const struct placed *s, int64_t i)
 {
     const struct shape *shape = packing_shape(s->p, i);
-    return shape && shape->form == SHAPE_CLUMP ? shape->vertices : 1;
+    return shape ? shape_parts(shape) : 1;
 }
 
 struct core placed_core(const struct placed *s, int64_t i, int32_t k)
@@ -61,14 +61,7 @@ struct core placed_core(const struct placed *s, int64_t i, int32_t k)
     double r = s->p->radius[i];
     const vec3 *v = s->vertex + s->first[i];
     if (!shape) return (struct core){ .n = 1, .v = &s->x[i], .round = r, .centre = s->x[i] };
-    if (shape->form == SHAPE_CLUMP)
-        return (struct core){ .n = 1, .v = v + k, .round = r * shape->ball[k], .centre = v[k] };
-    return (struct core){ .n = shape->vertices,
-                          .v = v,
-                          .normal = s->normal + s->face[i],
-                          .hull = shape->form == SHAPE_HULL ? shape : NULL,
-                          .round = r * shape->round,
-                          .centre = s->x[i] };
+    return shape_core(shape, r, s->x[i], v, s->normal + s->face[i], k);
 }
 
 static int8_t placement_clamp(int64_t s)

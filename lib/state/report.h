@@ -39,8 +39,8 @@ struct err {
     double natural;              /* |r - P(r - rho_a u^)| / |r|, rho_a = 1/lambda_max(W_aa) */
     double natural_siconos;      /* |r - P(r - u^)| / |q|, step 1: not scale-free */
     double natural_q;            /* |(r - P(r - rho_a u^))/rho_a| / |q| */
-    double velocity_error;       /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
-    double velocity;             /* the same over the scene's own velocity [solve/problem.h] */
+    double velocity;       /* velocity_error over the scene's own velocity [solve/problem.h] */
+    double velocity_error; /* m/s: the largest |(r - P(r - rho_a u^))/rho_a| of a contact */
     int64_t jammed; /* contacts that are left out of these, for their reactions grow without end */
     double stray;   /* natural_q's over max(|q|, sqrt(n) g dt); of an FCLIB problem velocity */
 };
@@ -122,7 +122,8 @@ struct report {
     int64_t passed; /* bodies that went through a wall or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
-    struct endless endless;            /* for which the step was not made */
+    int64_t small;           /* small steps, of which it is made; 0: it was made at once */
+    struct endless endless;  /* for which the step was not made */
     double work;             /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *given_up;    /* why it ended before its limits, a literal; or NULL */
     const char *on_cpu;      /* why the device asked for did not solve it, a literal; or NULL */

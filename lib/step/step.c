@@ -14,6 +14,7 @@
 #include "step/hit_bound.h"
 #include "step/move.h"
 #include "step/project.h"
+#include "step/small_step.h"
 #include "step/sum_step.h"
 
 #include <stdlib.h>
@@ -142,6 +143,7 @@ void step_forget(struct step_memory *m)
 {
     neighbours_free(&m->near);
     plan_free(m->plan);
+    small_list_free(&m->small);
     *m = (struct step_memory){ 0 };
 }
 
@@ -402,6 +404,14 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
                          .watch = watch_alone,
                          .substeps = &steps },
                        kept };
+    rep->small = 0;
+    if (o->small > 0 && kept && !small_lacks(p)) {
+        const struct small_opt small = { o->small, o->solve.threads, o->warm };
+        bool made;
+        rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
+        if (small_advance(p, s, &kept->small, &small, rep, &made, failure) || made)
+            return failure->status;
+    }
     substeps_begin(&steps, p);
     while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
         const struct step_opt part = step_opt_part(o, &steps);

@@ -12,6 +12,7 @@
 #include "step/balance.h"
 #include "step/impulse.h"
 #include "step/project.h"
+#include "step/small_list.h"
 #include "step/substeps.h"
 
 struct step_opt {
@@ -22,6 +23,9 @@ struct step_opt {
         warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
     int64_t substeps; /* of a step, at most: 1: it is never divided */
     bool bare;        /* nobody reads the report's balance of this step: it is left out */
+    double
+        small; /* radii: a step is made in small ones, of which each moves a body by so much at most
+                      [step/small_step.h]; 0: at once */
     struct solve_opt solve;
 };
 
@@ -29,6 +33,7 @@ struct step_opt {
 struct step_memory {
     struct neighbours near;
     struct plan *plan;
+    struct small_list small;
 };
 void step_forget(struct step_memory *m); /* all; m is empty again */
 

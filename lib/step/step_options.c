@@ -244,6 +244,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
     return (struct step_opt){
         .gap = o->gap,
         .substeps = o->substeps,
+        .small = o->small,
         .alpha = o->alpha,
         .order = order,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
@@ -289,6 +290,7 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     json_object_set_new(j, "order", json_string(order_name[o->order]));
     json_object_set_new(j, "warm", json_boolean(o->warm));
     if (o->substeps != SUBSTEPS_MOST) json_object_set_new(j, "substeps", json_integer(o->substeps));
+    if (o->small > 0) json_object_set_new(j, "small_steps", json_real(o->small));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
     return text;

@@ -18,6 +18,7 @@ struct options {
     double theta;
     int64_t max_sweeps, newton_max, threads;
     int64_t substeps; /* of a step in which fast bodies meet, at most */
+    double small;     /* radii: small steps; 0: none */
     bool warm, every_sweep, history, strict, keep_going;
     const char *log;    /* or NULL */
     const char *device; /* that makes the sweeps, as device_open() has it; NULL: the CPU */

@@ -133,6 +133,23 @@ jq -c 'del(.cell.gradient) | .walls = [{ point: [0, 0], normal: [0, 1] }] | .gra
     .cell.repeats = [true, false]' scenes/shear.json >"$tmp/slope.json"
 ok 'a slope that repeats downhill is a scene' nsd-gen "$tmp/slope.json"
 
+# A ball crosses the periodic edge and meets a segment that stands in the cell, after 0.6 s: then it returns with half the speed.
+post='{ "dim": 2, "dt": 1e-3, "gravity": [0, 0], "e_n": 0.5, "cell": { "lengths": [1, 1], "repeats": [true, false] },
+    "walls": [{ "segment": [[0.5, 0], [0.5, 0.3]] }], "bodies": [{ "x": [0.8, 0.1], "radius": 0.1, "v": [1, 0] }] }'
+echo "$post" >"$tmp/post.json"
+returned() { nsd-gen "$1" | nsd-step -n 1000 --every 1000 --overlap gap 2>/dev/null | nsd-info --last -p - | jq -e '.x[0] - (.x[0] | floor) - 0.2 | fabs < 1e-3'; }
+ok 'a wall that stands in the cell is met from both sides, and across the edge' returned "$tmp/post.json"
+jq -c '.walls[0].segment = [[0.19, 0], [0.19, 0.3]]' "$tmp/post.json" >"$tmp/bad.json"
+refuses 65 'one that images of bodies would meet is refused' nsd-gen "$tmp/bad.json"
+jq -c '.walls[0].drives = [{ along: [1, 0], speed: 1 }]' "$tmp/post.json" >"$tmp/bad.json"
+refuses 65 'and one that moves across the edge' nsd-gen "$tmp/bad.json"
+nsd-gen "$tmp/post.json" >"$tmp/post.h5"
+status 69 'also by a program in the loop' nsd-step --with "jq -c --unbuffered '{boundaries: {\"0\": {velocity: [1, 0]}}}'" -n 3 -o "$tmp/moved.h5" "$tmp/post.h5"
+jq -c '.walls = [{ mesh: { file: "tri.obj" } }] | .dim = 3 | .gravity = [0, 0, 0] | .cell = { lengths: [1, 1, 1], repeats: [true, false, false] } |
+    .bodies[0] += { x: [0.8, 0.1, 0.1], v: [1, 0, 0] }' "$tmp/post.json" >"$tmp/mesh.json"
+printf 'v 0.5 -1 -1\nv 0.5 2 -1\nv 0.5 0 2\nf 1 2 3\n' >"$tmp/tri.obj"
+ok 'and so is a mesh' returned "$tmp/mesh.json"
+
 # ---- documents that lie ----
 
 if have_h5py; then

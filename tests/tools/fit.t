@@ -42,6 +42,13 @@ like "and several sets fit" "$(cat ridge.out)" 'sets of parameters that are far 
 problem 0.5 0.9 3 | jq '.command = "jq .mu" | del(.targets.q)' >one.json
 nsd-fit --quiet one.json >one.out 2>&1 || true
 like "what has no influence is not determined" "$(cat one.out)" 'b is not determined by the targets'
+# one packing has both measures, so that the second one has no new information; if its error counted as independent, the interval would be 0.7 times as wide
+width() { jq '.parameters.a.interval90 | .[1] - .[0]' "$1.fit/result.json"; }
+problem 0.5 0.9 3 | jq '.targets = { p: { value: 0.5 } } | del(.parameters.b) |
+    .command = "jq \"(((.seed * 7919 % 1009) / 1009 - 0.5) * 0.05) as \\$n | {p: (.mu + \\$n), q: (.mu + \\$n)}\""' >alone.json
+jq '.targets.q = .targets.p' alone.json >twice.json
+for n in alone twice; do nsd-fit --quiet $n.json >$n.out 2>&1 || true; done
+ok "a measure that repeats another one makes no interval narrower" jq -n -e "$(width twice) / $(width alone) > 0.9"
 jq '.targets.p.value = 40 | .evaluations = 40' known.json >far.json
 nsd-fit --quiet far.json >far.out 2>&1 || true
 like "targets out of reach" "$(cat far.out)" 'no parameters in their ranges reach the targets'

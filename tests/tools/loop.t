@@ -34,6 +34,12 @@ if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
 else
     skip "boundaries" "no h5py"
 fi
+spins='{ "dt": 1e-3, "bodies": [], "walls": [{ "disc": { "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.1 }, "drives": [{ "about": [0, 0, 0], "axis": [0, 0, 1], "speed": 3 }] }] }'
+echo "$spins" | nsd-gen - >"$tmp/spins.h5"
+quiet -n 100 --with "$(answering '{"boundaries":{"0":{"velocity":[0,0,2]}}}')" "$tmp/spins.h5" >"$tmp/screw.h5"
+is "a boundary that rotates glides along its axis, as a screw" \
+    "$(nsd-info -w --last "$tmp/screw.h5" | jq -c '[(.point[2] * 1e6 | round / 1e6), .velocity[2], .spin[2]]')" '[0.2,2,3]'
+status 69 "and not across it" nsd-step -n 2 --with "$(answering '{"boundaries":{"0":{"velocity":[1,0,0]}}}')" -o "$tmp/across.h5" "$tmp/spins.h5"
 ok "gravity: v = g t" near "$(number -p "$tmp/walls.h5" | jq -s '.[0].v[2]')" -0.4
 quiet -n 3 --with 'read -r l; echo "{\"velocities\":{\"1\":[0,2,0]},\"angular_velocities\":{\"1\":[0,0,3]}}"; while read -r l; do echo "{}"; done' "$tmp/ball.h5" >"$tmp/moved.h5"
 is "velocities of bodies" "$(number -p "$tmp/moved.h5" | jq -sc '[.[1].v, .[1].w, .[0].v]')" '[[0,2,0],[0,0,3],[0,0,0]]'

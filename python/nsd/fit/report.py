@@ -36,7 +36,7 @@ def together(p: Posterior, i: int, j: int) -> float:
 def alternatives(p: Posterior, names: list[str]) -> list[int]:
     """Samples that fit as well as the best one within the errors, far from each other, the best one first"""
     near = np.flatnonzero((p.misfit <= p.misfit.min() + 1) & (p.weight > 1e-3 * p.weight.max()))
-    chosen = [int(np.argmin(p.misfit))]
+    chosen = [p.best()]
     for _ in range(3):
         if len(near) == 0:
             break
@@ -50,7 +50,7 @@ def alternatives(p: Posterior, names: list[str]) -> list[int]:
 def judge(problem: Problem, model: Surrogate, p: Posterior, table: Table, n: int) -> dict[str, Any]:
     """All that result.json has."""
     names = [q.name for q in problem.parameters]
-    best = p.best()
+    best = p.x[p.best()]
     found: dict[str, Any] = {}
     remarks = []
     for j, q in enumerate(problem.parameters):

@@ -1,0 +1,205 @@
+/*
+ * solve/small.h: small steps of balls: pairs that are kept over many steps, in bundles of eight, and one sweep of each
+ * step, in which a pair finds its gap, starts from the part of its reaction that persists and is solved in closed form.
+ * The passes of a step, and the bytes that each moves:
+ *
+ *     bodies    v <- v + (v - v^-), the free motion and what persists of all reactions         200 per body
+ *     walls     each body against the walls that are near it                                   600 per contact
+ *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             500 per pair in reach,
+ *                                                                                              140 per other pair
+ *     again     pairs of bodies that a sweep has changed by more than is allowed
+ *     settle    what of a new reaction does not persist is taken out of v^-                    500 per such pair
+ *     move      x <- x + h v                                                                   150 per body
+ *
+ * Reactions are vectors in space, f on b. A step begins with the reactions of the one before, which the velocities then
+ * contain: with v^- and v before and after the last step, of the same length, the free motion and the same impulses once
+ * more make v + (v - v^-). Nobody has to apply them.
+ *
+ * The law is that of rigid contacts, with a compliance that is small beside W of the heaviest body:
+ *
+ *     u~ = u + q + C (f - f_0),   C = diag(c_n, c_t, c_t)
+ *
+ *     pairs that push    q = n g/h where g > 0, else n max(g/(h + tau), -v_push),   f_0 = (0, f_t^-)
+ *     impacts            q = E u^- (and n g/h where e_n = 0),                       f_0 = r^, of the pair alone
+ *
+ * C makes the reactions of a packing unique and bounds the number of sweeps. An impact is a pair that pushes little and
+ * would meet in this step by u^-; it has Newton's law exactly where it is alone. Pairs that are apart, rebound and are not
+ * met by their own motion wait: what others make of it is the impact of a later step. Overlaps are left slowly,
+ * at v_push at most.
+ *
+ * Groups of bundles share no body, so that any number of threads gives the same bits.
+ */
+#ifndef NSD_SMALL_H
+#define NSD_SMALL_H
+
+#include "solve/bundle.h"
+
+/* Where a body is, in the place of its struct body */
+struct small_place {
+    double x[3], r; /* m */
+    double spare[4];
+};
+
+struct small_bundle {
+    int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies [solve/bundle.h] */
+    double f[3][BUNDLE];          /* N s: of this step; between steps, what persists of it */
+    double kept[BUNDLE];          /* N s: of f along n, with which the step began */
+    double q[3][BUNDLE];          /* m/s: q - C f_0 */
+    double sum[3][BUNDLE];        /* N s: of f, in the steps before this one */
+    double mu[BUNDLE];
+    double e[2][BUNDLE]; /* e_n, e_t */
+};
+
+/* Rolling and pivoting friction of a bundle */
+struct small_turn {
+    double m[3][BUNDLE];    /* N m s: on b */
+    double most[2][BUNDLE]; /* m: mu_p, mu_r */
+};
+
+struct small_shift {
+    double d[3][BUNDLE]; /* m: the image of b that a meets is so far from b */
+};
+
+/* What a step is made with */
+struct small_rates {
+    double h, per_h; /* s, 1/s */
+    double relax;    /* 1/s: 1/(h + tau) */
+    double push;     /* m/s: v_push */
+    double soft;     /* C over W of the pair */
+    double calm;     /* m/s: no pair at rest approaches faster [state/freedom.h] */
+    double reach;    /* m: pairs that are farther apart do not touch in this step */
+    double allowed
+        [2]; /* m/s: a change of a velocity that is not followed up, in the first sweep and in others */
+};
+
+struct small {
+    int64_t bodies; /* and two more at the end, far from each other, for lanes without a pair */
+    struct small_place *place;
+    struct body *body, *before; /* at v, w; at v^-, w^- */
+    int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
+    double *change; /* [bodies] m/s: by sweeps of this step since then */
+    int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
+    int64_t *group;                  /* [groups + 1] */
+    struct small_bundle *bundle;
+    struct small_turn *turn;   /* NULL: nothing rolls */
+    struct small_shift *shift; /* NULL: no images */
+    uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */
+    int32_t sweep;        /* counted over all steps, from 1 on */
+    struct small_rates rate;
+};
+
+/* ---- the law of a contact, in LANES lanes ---- */
+
+struct small_law {
+    vd n[3], gap;          /* m */
+    vd spin;               /* rad: of the pair about n in the step */
+    vd u[3];               /* m/s: of b against a, in space */
+    vd wn, wt, cn, ct, mu; /* 1/kg */
+    vd f[3];               /* N s */
+    vd q[3];               /* m/s */
+    vd rn;                 /* N s: f along n */
+};
+
+ALWAYS_INLINE void small_split(const vd n[3], const vd x[3], vd *along, vd across[3])
+{
+    *along = dot3(n, x);
+    for (int i = 0; i < 3; i++) across[i] = x[i] - *along * n[i];
+}
+
+/* x on the disc of radius most */
+ALWAYS_INLINE void small_cut(vd most, vd x[3])
+{
+    vd x2 = dot3(x, x), s = pick(lt(most * most, x2), most / root(x2), splat(1));
+    for (int i = 0; i < 3; i++) x[i] = s * x[i];
+}
+
+/* q of a pair that pushes, whose friction turns with it */
+ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
+{
+    vd rn, t[3], turn[3], zero = splat(0);
+    vd left = larger(l->gap * o->relax, splat(-o->push));
+    vd qn = pick(lt(l->gap, zero), left, l->gap * o->per_h);
+    small_split(l->n, l->f, &rn, t);
+    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) turn[i] = l->n[j] * t[k] - l->n[k] * t[j];
+    for (int i = 0; i < 3; i++) l->q[i] = qn * l->n[i] - l->ct * (t[i] + l->spin * turn[i]);
+}
+
+/* Of the reactions of the last step: the part that a step starts from */
+#define SMALL_WARM 0.98
+
+/* Of the impulse of an impact: what a pair pushes that is taken to meet */
+#define SMALL_SLIGHT 0.01
+
+/* q of pairs that meet, and of those that wait; before: u^- */
+ALWAYS_INLINE void small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
+                              vd kept, vd en, vd et)
+{
+    vd un, ut[3], hit[3], zero = splat(0);
+    small_split(l->n, before, &un, ut);
+    vm meets = lt(un, splat(-o->calm)) & lt(un + l->gap * o->per_h, zero) &
+               le(l->wn * kept, -SMALL_SLIGHT * un);
+    vm waits = le(kept, zero) & lt(zero, l->gap) & lt(zero, en) & ~meets;
+    vd open = pick(le(en, zero), larger(l->gap, zero) * o->per_h, zero);
+    vd rn = larger(-(un + en * un + open) / l->wn, zero);
+    for (int i = 0; i < 3; i++) hit[i] = -(1 + et) * ut[i] / l->wt;
+    small_cut(l->mu * rn, hit);
+    for (int i = 0; i < 3; i++) {
+        vd q = (en * un + open - l->cn * rn) * l->n[i] + et * ut[i] - l->ct * hit[i];
+        l->q[i] = pick(meets, q, pick(waits, 1e30 * l->n[i], l->q[i]));
+    }
+}
+
+/* f in closed form, where f makes u; df: its change */
+ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
+{
+    vd un, ut[3], qn, qt[3], rn, rt[3];
+    small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
+    small_split(l->n, l->f, &rn, rt);
+    l->rn = larger(rn - (un + qn + l->cn * rn) / (l->wn + l->cn), splat(0));
+    vd s = 1 / (l->wt + l->ct);
+    for (int i = 0; i < 3; i++) rt[i] -= s * (ut[i] + qt[i] + l->ct * rt[i]);
+    small_cut(l->mu * l->rn, rt);
+    for (int i = 0; i < 3; i++) {
+        vd f = l->rn * l->n[i] + rt[i];
+        df[i] = f - l->f[i], l->f[i] = f;
+    }
+}
+
+/* m of rolling and pivoting friction, where it makes w of b against a; wr (1/(kg m^2)), dm: its change */
+ALWAYS_INLINE void small_roll(const vd n[3], vd rn, const vd w[3], vd wr, const vd most[2], vd m[3],
+                              vd dm[3])
+{
+    vd wn, wt[3], mn, mt[3], s = 1 / wr, top = most[0] * rn;
+    small_split(n, w, &wn, wt), small_split(n, m, &mn, mt);
+    mn = mn - s * wn;
+    mn = pick(lt(top, mn), top, pick(lt(mn, -top), -top, mn));
+    for (int i = 0; i < 3; i++) mt[i] -= s * wt[i];
+    small_cut(most[1] * rn, mt);
+    for (int i = 0; i < 3; i++) {
+        vd x = mn * n[i] + mt[i];
+        dm[i] = x - m[i], m[i] = x;
+    }
+}
+
+/* N s: so much at most persists of a reaction of which so much was kept before: twice that and what holds a body at
+   rest; where nothing falls, an eighth of it, rn, at least. w (1/kg): of the pair along n */
+ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, double w, double rn)
+{
+    const double most = 2 * (kept + o->calm / w);
+    return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
+}
+
+/* ---- kernels ---- */
+
+/* Bundles first .. end-1 of one group; again: it is not the first sweep of the step. Returns whether a body has changed by more
+   than is allowed. */
+typedef bool small_sweep(struct small *s, int64_t first, int64_t end, bool again);
+/* Bodies get the reactions that the bundles have. */
+typedef void small_push(struct small *s, int64_t first, int64_t end);
+
+struct small_kernels {
+    small_sweep *sweep;
+    small_push *push;
+};
+
+#endif

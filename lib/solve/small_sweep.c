@@ -1,0 +1,260 @@
+/* solve/small_sweep.c: the sweep of small steps, compiled once for each vector width [solve/small.h]. */
+#include "solve/small.h"
+
+/* LANES pairs of bundle i from lane k on */
+struct small_pairs {
+    struct small_bundle *c;
+    int64_t i;
+    int k;
+    struct bodies a, b;
+    struct twist ma, mb;
+    vd ra, rb, d[3], d2;  /* m: radii; from a to b, the image that a meets; m^2 */
+    vd n[3], gap, la, lb; /* m: arms along n */
+};
+
+ALWAYS_INLINE void small_load_places(const struct small_place *from, const int32_t *place, vd x[4])
+{
+    const double *at = (const double *)from;
+#if LANES <= 2
+    for (int k = 0; k < 4; k += LANES) {
+        for (int i = 0; i < LANES; i++) x[k + i] = vload(at + place[i] + k);
+        transpose(x + k);
+    }
+#else
+    vd y[LANES];
+    for (int i = 0; i < LANES; i++) y[i] = vload(at + place[i]);
+    transpose(y);
+    for (int k = 0; k < 4; k++) x[k] = y[k];
+#endif
+}
+
+ALWAYS_INLINE void small_load(vd x[3], double (*from)[BUNDLE], int k)
+{
+    for (int i = 0; i < 3; i++) x[i] = vload(from[i] + k);
+}
+ALWAYS_INLINE void small_store(double (*to)[BUNDLE], int k, const vd x[3])
+{
+    for (int i = 0; i < 3; i++) vstore(to[i] + k, x[i]);
+}
+
+/* Distances alone */
+ALWAYS_INLINE void small_pairs_look(struct small_pairs *y, const struct small *s, int64_t i, int k)
+{
+    vd xa[4], xb[4];
+    y->c = &s->bundle[i], y->i = i, y->k = k;
+    small_load_places(s->place, y->c->a + k, xa), small_load_places(s->place, y->c->b + k, xb);
+    for (int j = 0; j < 3; j++) y->d[j] = xb[j] - xa[j];
+    for (int j = 0; j < 3 && s->shift; j++) y->d[j] += vload(s->shift[i].d[j] + k);
+    y->d2 = dot3(y->d, y->d), y->ra = xa[3], y->rb = xb[3];
+}
+
+/* The rest */
+ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s)
+{
+    bodies_load(&y->a, s->body, y->c->a + y->k, &y->ma);
+    bodies_load(&y->b, s->body, y->c->b + y->k, &y->mb);
+    vd distance = root(y->d2), per = 1 / distance;
+    for (int j = 0; j < 3; j++) y->n[j] = y->d[j] * per;
+    y->gap = distance - (y->ra + y->rb);
+    y->la = y->ra + 0.5 * y->gap, y->lb = y->rb + 0.5 * y->gap;
+}
+
+/* m/s: of b against a at the point of contact */
+ALWAYS_INLINE void small_velocity(const struct small_pairs *y, const struct twist *a,
+                                  const struct twist *b, vd u[3])
+{
+    vd m[3];
+    for (int i = 0; i < 3; i++) m[i] = y->la * a->w[i] + y->lb * b->w[i];
+    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++)
+        u[i] = b->v[i] - a->v[i] - (m[j] * y->n[k] - m[k] * y->n[j]);
+}
+
+/* Both bodies get df at their arms, and a moment dm where it is not NULL. */
+ALWAYS_INLINE void small_give(const struct small_pairs *y, struct small *s, const vd df[3],
+                              const vd *dm)
+{
+    struct twist da, db;
+    vd ta = -(y->a.ii * y->la), tb = -(y->b.ii * y->lb);
+    for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) {
+        vd m = y->n[j] * df[l] - y->n[l] * df[j];
+        da.v[i] = -y->a.im * df[i], db.v[i] = y->b.im * df[i];
+        da.w[i] = ta * m, db.w[i] = tb * m;
+        if (dm) da.w[i] -= y->a.ii * dm[i], db.w[i] += y->b.ii * dm[i];
+    }
+    bodies_add(s->body, y->c->a + y->k, &da), bodies_add(s->body, y->c->b + y->k, &db);
+}
+
+/* The law in the first sweep of a step */
+ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *s,
+                               struct small_law *l)
+{
+    const struct small_rates *o = &s->rate;
+    const int k = y->k;
+    struct small_bundle *c = y->c;
+    vd sum[3], w[3];
+    small_load(sum, c->sum, k);
+    for (int j = 0; j < 3; j++) sum[j] += l->f[j], l->f[j] = SMALL_WARM * l->f[j];
+    vd kept = dot3(l->n, l->f);
+    for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j];
+    small_store(c->sum, k, sum);
+    vstore(c->kept + k, kept);
+    l->spin = 0.5 * o->h * dot3(w, l->n);
+    small_press(l, o);
+    vm near =
+        le(l->gap, splat(o->reach)) & le(l->wn * kept, splat(SMALL_SLIGHT * o->reach * o->per_h));
+    if (any(near)) {
+        struct bodies a, b;
+        struct twist ma, mb;
+        vd before[3];
+        bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
+        small_velocity(y, &ma, &mb, before);
+        small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
+    }
+    small_store(c->q, k, l->q);
+}
+
+/* The change of the moments that the change df leaves to be made */
+ALWAYS_INLINE void small_turn_pairs(const struct small_pairs *y, const struct small *s,
+                                    const struct small_law *l, vm acts, double warm, const vd df[3],
+                                    vd dm[3])
+{
+    struct small_turn *t = &s->turn[y->i];
+    vd w[3], m[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
+    for (int j = 0, p = 1, q = 2; j < 3; p = q, q = j++)
+        w[j] = y->mb.w[j] - y->ma.w[j] - turn * (y->n[p] * df[q] - y->n[q] * df[p]);
+    small_load(m, t->m, y->k);
+    for (int j = 0; j < 3; j++) m[j] *= warm;
+    for (int j = 0; j < 2; j++) most[j] = vload(t->most[j] + y->k);
+    vd had[3] = { m[0], m[1], m[2] };
+    small_roll(y->n, l->rn, w, y->a.ii + y->b.ii, most, m, dm);
+    for (int j = 0; j < 3; j++)
+        m[j] = pick(acts, m[j], had[j]), dm[j] = pick(acts, dm[j], splat(0));
+    small_store(t->m, y->k, m);
+}
+
+/* A body has changed by x (m/s): marks it where that is more than is allowed, with what has not been followed up. */
+static bool small_mark_body(struct small *s, int64_t i, double x, double allowed)
+{
+    s->change[i] += x;
+    if (!(s->change[i] > allowed)) return false;
+    s->change[i] = 0, s->hot[i] = s->sweep;
+    return true;
+}
+
+/* The same of pairs, whose u has changed. Where one body is much heavier less is allowed, for sweeps carry little from one
+   to the other. */
+ALWAYS_INLINE bool small_mark(const struct small_pairs *y, struct small *s, vd change, bool again)
+{
+    vd ia = y->a.im, ib = y->b.im, zero = splat(0);
+    vd least = pick(lt(ia, ib), ia, ib), most = larger(ia, ib);
+    vd allowed = s->rate.allowed[again] * pick(lt(zero, least), root(least / most), splat(1));
+    double x[LANES], top[LANES];
+    bool far = false;
+    if (!again && !any(lt(allowed, change))) return false;
+    vstore(x, change), vstore(top, allowed);
+    for (int j = 0; j < LANES; j++) {
+        if (!(x[j] > (again ? 0 : top[j]))) continue;
+        far |= small_mark_body(s, body_index(y->c->a[y->k + j]), x[j], top[j]);
+        far |= small_mark_body(s, body_index(y->c->b[y->k + j]), x[j], top[j]);
+    }
+    return far;
+}
+
+/* Has a body of pair j of the bundle changed in this sweep or the one before? */
+ALWAYS_INLINE bool small_is_hot(const struct small *s, const struct small_bundle *c, int j)
+{
+    const int32_t a = s->hot[body_index(c->a[j])], b = s->hot[body_index(c->b[j])];
+    return (a > b ? a : b) >= s->sweep - 1;
+}
+
+/* The lanes that a later sweep of the step solves */
+ALWAYS_INLINE vm small_hot(const struct small *s, const struct small_bundle *c, int k)
+{
+    double hot[LANES];
+    for (int j = 0; j < LANES; j++) hot[j] = small_is_hot(s, c, k + j);
+    return lt(splat(0), vload(hot));
+}
+
+/* Lanes that are not among `those` keep what they have, whatever the width. */
+ALWAYS_INLINE void small_keep(struct small_law *l, const vd had[3], vm those, vd df[3])
+{
+    for (int j = 0; j < 3; j++)
+        l->f[j] = pick(those, l->f[j], had[j]), df[j] = pick(those, df[j], splat(0));
+    l->rn = pick(those, l->rn, dot3(l->n, l->f));
+}
+
+/* hot: of small_hot() in a later sweep, else NULL */
+ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot, bool rolls)
+{
+    struct small_pairs y;
+    struct small_law l;
+    vd had[3], df[3], dm[3];
+    small_pairs_look(&y, s, i, k);
+    vd most = y.ra + y.rb + s->rate.reach;
+    vm near = le(y.d2, most * most);
+    if (!s->live[BUNDLE * i + k] && !any(near)) return false;
+    small_pairs_load(&y, s);
+    small_velocity(&y, &y.ma, &y.mb, l.u);
+    for (int j = 0; j < 3; j++) l.n[j] = y.n[j];
+    l.gap = y.gap, l.wn = y.a.im + y.b.im;
+    l.wt = l.wn + y.la * y.la * y.a.ii + y.lb * y.lb * y.b.ii;
+    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt, l.mu = vload(y.c->mu + k);
+    small_load(l.f, y.c->f, k);
+    const double warm = hot ? 1 : SMALL_WARM;
+    for (int j = 0; j < 3; j++) had[j] = warm * l.f[j];
+    vm acts = near | lt(splat(0), dot3(had, had));
+    if (hot)
+        small_load(l.q, y.c->q, k), acts = acts & *hot;
+    else
+        small_begin(&y, s, &l);
+    small_solve(&l, df);
+    small_keep(&l, had, acts, df);
+    small_store(y.c->f, k, l.f);
+    if (rolls) small_turn_pairs(&y, s, &l, acts, warm, df, dm);
+    s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn));
+    s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + s->rate.calm / l.wn), l.rn));
+    small_give(&y, s, df, rolls ? dm : NULL);
+    return small_mark(&y, s, l.wn * norm3(df), hot);
+}
+
+ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bool again,
+                                 bool rolls)
+{
+    bool far = false;
+    for (int64_t i = first; i < end; i++)
+        for (int k = 0; k < BUNDLE; k += LANES) {
+            vm hot = NONE;
+            if (again) hot = small_hot(s, &s->bundle[i], k);
+            if (!again || any(hot)) far |= small_lanes(s, i, k, again ? &hot : NULL, rolls);
+        }
+    return far;
+}
+
+static bool small_sweep_bundles(struct small *s, int64_t first, int64_t end, bool again)
+{
+    if (s->turn)
+        return again ? small_bundles(s, first, end, true, true)
+                     : small_bundles(s, first, end, false, true);
+    return again ? small_bundles(s, first, end, true, false)
+                 : small_bundles(s, first, end, false, false);
+}
+
+static void small_push_bundles(struct small *s, int64_t first, int64_t end)
+{
+    for (int64_t i = first; i < end; i++)
+        for (int k = 0; k < BUNDLE; k += LANES) {
+            struct small_pairs y;
+            vd f[3], m[3] = { splat(0), splat(0), splat(0) };
+            if (!s->live[BUNDLE * i + k]) continue;
+            small_pairs_look(&y, s, i, k), small_pairs_load(&y, s);
+            small_load(f, y.c->f, k);
+            if (s->turn) small_load(m, s->turn[i].m, k);
+            for (int j = 0; j < 3; j++) f[j] *= SMALL_WARM, m[j] *= SMALL_WARM;
+            small_give(&y, s, f, s->turn ? m : NULL);
+        }
+}
+
+#define SMALL_(lanes)   small_##lanes
+#define SMALL_OF(lanes) SMALL_(lanes)
+extern const struct small_kernels SMALL_OF(LANES);
+const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles };

@@ -1,0 +1,458 @@
+/* step/small_list.c: pairs with a margin, in groups without a common body [step/small_list.h]. */
+#include "step/small_list.h"
+
+#include "contact/touching.h"
+#include "solve/lay.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the smallest radius: how much farther than contacts pairs are listed, and how near those are that come first */
+#define MARGIN 0.3
+#define BESIDE 0.1
+
+enum { COLOURS = 64 };
+
+static void small_arrays_free(struct small_list *l)
+{
+    struct small *s = &l->s;
+    free(s->bundle), free(s->turn), free(s->shift), free(s->live), free(s->late), free(s->group);
+    free(l->slot), free(l->touch), free(l->pairs.pair);
+}
+
+/* The list has none of them. */
+static void small_forget(struct small_list *l)
+{
+    struct small *s = &l->s;
+    s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->live = s->late = NULL, s->group = NULL;
+    s->bundles = s->groups = s->serial = 0;
+    l->slot = NULL, l->touch = NULL, l->touches = l->room = 0;
+    l->pairs = (struct pairs){ 0 };
+}
+
+void small_list_free(struct small_list *l)
+{
+    small_arrays_free(l);
+    free(l->s.place), free(l->s.body), free(l->s.before), free(l->s.hot), free(l->s.change);
+    free(l->listed);
+    *l = (struct small_list){ 0 };
+}
+
+static const struct pair_law *law_between(const struct packing *p, int32_t a, int32_t b)
+{
+    static const struct pair_law none;
+    return p->law ? &p->law[packing_pair(p, a, b)] : &none;
+}
+
+/* ---- bodies ---- */
+
+static int small_bodies(struct small_list *l, const struct packing *p, struct failure *failure)
+{
+    struct small *s = &l->s;
+    const int64_t n = p->n + 2;
+    if (s->bodies == p->n && s->body) return 0;
+    s->bodies = p->n;
+    s->place = lay_lines(n, sizeof *s->place), s->body = lay_lines(n, sizeof *s->body);
+    s->before = lay_lines(n, sizeof *s->before), s->hot = calloc((size_t)n, sizeof *s->hot);
+    s->change = calloc((size_t)n, sizeof *s->change);
+    l->listed = calloc((size_t)n, sizeof *l->listed);
+    if (!s->place || !s->body || !s->before || !s->hot || !s->change || !l->listed)
+        return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+    for (int k = 0; k < 2; k++) s->place[p->n + k].x[0] = k ? 1e100 : -1e100;
+    for (int64_t i = 0; i < p->n; i++) {
+        s->place[i].r = p->radius[i];
+        if (!(p->mass[i] > 0)) continue;
+        s->body[i].im = s->before[i].im = 1 / p->mass[i];
+        s->body[i].ii = s->before[i].ii = 1 / p->inertia[i];
+    }
+    return 0;
+}
+
+/* ---- groups ---- */
+
+/* A pair's group; those of a class come after those of the classes before. */
+struct small_colours {
+    uint64_t *used; /* [bodies] */
+    uint8_t *of;    /* [pairs] its colour; COLOURS: none is left */
+    int64_t count[2][COLOURS + 1];
+};
+
+static double pair_gap(const struct packing *p, const vec3 *x, const vec3 *edge,
+                       const struct pair *pair)
+{
+    vec3 d = v3_sub(x[pair->b], x[pair->a]);
+    if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
+    return v3_norm(d) - p->radius[pair->a] - p->radius[pair->b];
+}
+
+static void colour_class(struct small_colours *c, const struct packing *p,
+                         const struct small_list *l, const bool *beside, int class)
+{
+    memset(c->used, 0, (size_t)p->n * sizeof *c->used);
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        const struct pair *pair = &l->pairs.pair[i];
+        if (beside[i] != !class) continue;
+        const uint64_t free = ~(c->used[pair->a] | c->used[pair->b]);
+        const int k = free ? __builtin_ctzll(free) : COLOURS;
+        c->of[i] = (uint8_t)k, c->count[class][k]++;
+        if (free) c->used[pair->a] |= 1ULL << k, c->used[pair->b] |= 1ULL << k;
+    }
+}
+
+static int64_t in_bundles(int64_t pairs)
+{
+    return (pairs + BUNDLE - 1) / BUNDLE;
+}
+
+/* Groups and slots of all pairs; false when memory is short. */
+static bool small_lay(struct small_list *l, struct small_colours *c, const bool *beside)
+{
+    struct small *s = &l->s;
+    int64_t next[2][COLOURS + 1], groups = 0, alone = c->count[0][COLOURS] + c->count[1][COLOURS];
+    s->group = malloc((size_t)(2 * COLOURS + alone + 1) * sizeof *s->group);
+    if (!s->group) return false;
+    s->bundles = 0;
+    for (int class = 0; class < 2; class ++)
+        for (int k = 0; k < COLOURS; k++) {
+            next[class][k] = BUNDLE * s->bundles;
+            if (!c->count[class][k]) continue;
+            s->group[groups++] = s->bundles;
+            s->bundles += in_bundles(c->count[class][k]);
+        }
+    s->serial = groups;
+    for (int class = 0; class < 2; class ++) {
+        next[class][COLOURS] = BUNDLE * s->bundles;
+        for (int64_t i = 0; i < c->count[class][COLOURS]; i++) s->group[groups++] = s->bundles++;
+    }
+    s->groups = groups, s->group[groups] = s->bundles;
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        int64_t *at = &next[!beside[i]][c->of[i]];
+        l->slot[i] = *at;
+        *at += c->of[i] == COLOURS ? BUNDLE : 1;
+    }
+    return true;
+}
+
+static bool small_colour(struct small_list *l, const struct packing *p, const vec3 *x,
+                         const vec3 *edge)
+{
+    struct small_colours c = { .used = malloc((size_t)(p->n + 1) * sizeof *c.used),
+                               .of = malloc((size_t)l->pairs.n + 1) };
+    bool *beside = malloc((size_t)l->pairs.n + 1);
+    l->slot = malloc((size_t)(l->pairs.n + 1) * sizeof *l->slot);
+    bool room = c.used && c.of && beside && l->slot;
+    const double near = BESIDE / MARGIN * l->margin;
+    for (int64_t i = 0; room && i < l->pairs.n; i++)
+        beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
+    for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
+    room = room && small_lay(l, &c, beside);
+    free(c.used), free(c.of), free(beside);
+    return room;
+}
+
+/* ---- pairs ---- */
+
+static void set_pair(struct small_list *l, const struct packing *p, const vec3 *edge, int64_t i)
+{
+    const struct pair *pair = &l->pairs.pair[i];
+    const int32_t m = packing_pair(p, pair->a, pair->b);
+    const int k = (int)(l->slot[i] % BUNDLE);
+    struct small_bundle *c = &l->s.bundle[l->slot[i] / BUNDLE];
+    c->a[k] = body_place(pair->a), c->b[k] = body_place(pair->b);
+    c->mu[k] = p->mu[m], c->e[0][k] = p->en[m], c->e[1][k] = p->et[m];
+    if (l->s.shift) {
+        vec3 d = cell_shift(edge, pair->shift);
+        struct small_shift *to = &l->s.shift[l->slot[i] / BUNDLE];
+        to->d[0][k] = d.x, to->d[1][k] = d.y, to->d[2][k] = d.z;
+    }
+    if (!l->s.turn) return;
+    const double ra = p->radius[pair->a], rb = p->radius[pair->b], R = ra * rb / (ra + rb);
+    const struct pair_law *law = law_between(p, pair->a, pair->b);
+    struct small_turn *t = &l->s.turn[l->slot[i] / BUNDLE];
+    t->most[0][k] = law->mu_p + law->mu_p_ratio * R,
+    t->most[1][k] = law->mu_r + law->mu_r_ratio * R;
+}
+
+static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x)
+{
+    struct small *s = &l->s;
+    vec3 edge[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
+    if (cell_repeats(&p->cell)) cell_predict(&p->cell, 0, edge);
+    if (!small_colour(l, p, x, edge)) return false;
+    s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
+    if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
+    if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
+    s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
+    s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
+    if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
+        !s->live || !s->late)
+        return false;
+    for (int64_t i = 0; i < s->bundles; i++)
+        for (int k = 0; k < BUNDLE; k++)
+            s->bundle[i].a[k] = body_place(p->n), s->bundle[i].b[k] = body_place(p->n + 1);
+    for (int64_t i = 0; i < l->pairs.n; i++) set_pair(l, p, edge, i);
+    return true;
+}
+
+/* What a slot has of the past */
+struct small_past {
+    double f[3], m[3], sum[3];
+};
+
+static struct small_past past_of(const struct small *s, int64_t slot)
+{
+    struct small_past x;
+    const int k = (int)(slot % BUNDLE);
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    for (int j = 0; j < 3; j++) {
+        x.f[j] = c->f[j][k], x.sum[j] = c->sum[j][k];
+        x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
+    }
+    return x;
+}
+
+static void set_past(struct small *s, int64_t slot, const struct small_past *x)
+{
+    const int k = (int)(slot % BUNDLE);
+    struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    for (int j = 0; j < 3; j++) {
+        c->f[j][k] = x->f[j], c->sum[j][k] = x->sum[j];
+        if (s->turn) s->turn[slot / BUNDLE].m[j][k] = x->m[j];
+    }
+    if (!small_is_zero(x->f)) memset(&s->live[slot / BUNDLE * BUNDLE], 1, BUNDLE);
+}
+
+vec3 small_branch(const struct small *s, int64_t slot)
+{
+    const int k = (int)(slot % BUNDLE);
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    const struct small_place *a = &s->place[body_index(c->a[k])];
+    const struct small_place *b = &s->place[body_index(c->b[k])];
+    vec3 d = v3_sub(small_vec(b->x), small_vec(a->x));
+    if (!s->shift) return d;
+    const struct small_shift *h = &s->shift[slot / BUNDLE];
+    return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
+}
+
+static int pair_order(const struct pair *x, const struct pair *y)
+{
+    if (x->a != y->a) return x->a < y->a ? -1 : 1;
+    if (x->b != y->b) return x->b < y->b ? -1 : 1;
+    for (int k = 0; k < 3; k++)
+        if (x->shift[k] != y->shift[k]) return x->shift[k] < y->shift[k] ? -1 : 1;
+    return 0;
+}
+
+/* Pairs that were in the list before */
+static void carry_pairs(struct small_list *to, const struct small_list *from)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i < from->pairs.n; i++) {
+        const struct small_past x = past_of(&from->s, from->slot[i]);
+        if (small_is_zero(x.f) && small_is_zero(x.sum)) continue;
+        while (k < to->pairs.n && pair_order(&to->pairs.pair[k], &from->pairs.pair[i]) < 0) k++;
+        if (k < to->pairs.n && pair_order(&to->pairs.pair[k], &from->pairs.pair[i]) == 0)
+            set_past(&to->s, to->slot[k], &x);
+    }
+}
+
+/* ---- walls ---- */
+
+double small_wall_distance(const struct packing *p, const struct pose *pose, int32_t w, vec3 x,
+                           double r, vec3 *n)
+{
+    const struct wall *wall = &p->wall[w];
+    struct touch t;
+    vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), wall->x);
+    if (wall->shape == WALL_PLANE) {
+        t.n = wall->n, t.distance = v3_dot(c, wall->n);
+    } else if (!wall_nearest(wall, p->dim, c, r, &t)) {
+        return INFINITY;
+    }
+    *n = quat_turn(pose->q, t.n);
+    return t.distance;
+}
+
+static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, int32_t i)
+{
+    const struct pair_law *law = law_between(p, -1 - w, i);
+    const int32_t m = packing_pair(p, -1 - w, i);
+    if (l->touches == l->room) {
+        const int64_t room = l->room ? 2 * l->room : 1024;
+        struct small_touch *t = realloc(l->touch, (size_t)room * sizeof *t);
+        if (!t) return false;
+        l->touch = t, l->room = room;
+    }
+    l->touch[l->touches++] = (struct small_touch){
+        .wall = w,
+        .body = i,
+        .mu = p->mu[m],
+        .e = { p->en[m], p->et[m] },
+        .most = { law->mu_p + law->mu_p_ratio * p->radius[i],
+                  law->mu_r + law->mu_r_ratio * p->radius[i] },
+    };
+    return true;
+}
+
+static bool find_touches(struct small_list *l, const struct packing *p, const vec3 *x, double t)
+{
+    struct pose *pose = malloc(((size_t)p->walls + 1) * sizeof *pose);
+    bool room = pose != NULL;
+    for (int32_t w = 0; room && w < p->walls; w++) pose[w] = wall_pose(p, &p->wall[w], t);
+    for (int64_t i = 0; room && i < p->n; i++)
+        for (int32_t w = 0; room && w < p->walls; w++) {
+            vec3 n;
+            if (!wall_there(&p->wall[w], t) || !packing_may_meet(p, -1 - w, (int32_t)i)) continue;
+            const double r = p->radius[i];
+            if (small_wall_distance(p, &pose[w], w, x[i], r + l->margin, &n) <= r + l->margin)
+                room = add_touch(l, p, w, (int32_t)i);
+        }
+    free(pose);
+    return room;
+}
+
+static int touch_order(const struct small_touch *x, const struct small_touch *y)
+{
+    if (x->body != y->body) return x->body < y->body ? -1 : 1;
+    return x->wall < y->wall ? -1 : x->wall > y->wall;
+}
+
+static void carry_touches(struct small_list *to, const struct small_list *from)
+{
+    int64_t k = 0;
+    for (int64_t i = 0; i < from->touches; i++) {
+        const struct small_touch *t = &from->touch[i];
+        while (k < to->touches && touch_order(&to->touch[k], t) < 0) k++;
+        if (k < to->touches && touch_order(&to->touch[k], t) == 0) {
+            to->touch[k] = *t;
+        } else {
+            const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
+            to->gone_work += t->work, to->gone_impulse = v3_add(to->gone_impulse, sum);
+        }
+    }
+}
+
+/* ---- the list ---- */
+
+int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
+                    struct failure *failure)
+{
+    struct small_list was;
+    vec3 edge[3];
+    bool room = true;
+    if (small_bodies(l, p, failure)) return failure->status;
+    was = *l;
+    small_forget(l);
+    l->margin = MARGIN * packing_whole(p).small, l->way = 0;
+    l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
+    cell_predict(&p->cell, 0, edge);
+    if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
+        room = small_pairs_lay(l, p, x) && find_touches(l, p, x, t);
+        if (room) carry_pairs(l, &was), carry_touches(l, &was);
+    }
+    if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+    memcpy(l->listed, x, (size_t)p->n * sizeof *x);
+    small_arrays_free(&was);
+    return failure->status;
+}
+
+/* ---- reactions, from what the packing remembers ---- */
+
+static int64_t find_pair(const struct small_list *l, int64_t from, const struct pair *key)
+{
+    while (from < l->pairs.n && pair_order(&l->pairs.pair[from], key) < 0) from++;
+    return from;
+}
+
+static struct small_touch *find_touch(const struct small_list *l, int32_t wall, int32_t body)
+{
+    int64_t lo = 0, hi = l->touches;
+    const struct small_touch key = { .wall = wall, .body = body };
+    while (lo < hi) {
+        const int64_t mid = lo + (hi - lo) / 2;
+        if (touch_order(&l->touch[mid], &key) < 0)
+            lo = mid + 1;
+        else
+            hi = mid;
+    }
+    return lo < l->touches && touch_order(&l->touch[lo], &key) == 0 ? &l->touch[lo] : NULL;
+}
+
+static void to_array(double to[3], vec3 x, double times)
+{
+    to[0] = times * x.x, to[1] = times * x.y, to[2] = times * x.z;
+}
+
+void small_list_recall(struct small_list *l, const struct packing *p, double part)
+{
+    int64_t at = 0;
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        const struct recall *r = &p->memory.recall[i];
+        struct small_touch *t = r->a < 0 ? find_touch(l, -1 - r->a, r->b) : NULL;
+        if (t) to_array(t->f, r->r, part), to_array(t->m, r->m, part);
+        if (r->a < 0) continue;
+        const struct pair key = { r->a, r->b, { r->shift[0], r->shift[1], r->shift[2] } };
+        struct small_past x = { 0 };
+        at = find_pair(l, at, &key);
+        if (at == l->pairs.n || pair_order(&l->pairs.pair[at], &key) != 0) continue;
+        to_array(x.f, r->r, part), to_array(x.m, r->m, part);
+        set_past(&l->s, l->slot[at], &x);
+    }
+}
+
+/* ---- and back ---- */
+
+/* In the order of contacts: walls first, the last one of them first */
+static int touch_key_order(const void *x, const void *y)
+{
+    const struct small_touch *s = *(const struct small_touch *const *)x;
+    const struct small_touch *t = *(const struct small_touch *const *)y;
+    if (s->wall != t->wall) return s->wall > t->wall ? -1 : 1;
+    return s->body < t->body ? -1 : s->body > t->body;
+}
+
+struct small_touch **small_list_touches(const struct small_list *l)
+{
+    struct small_touch **by = malloc(((size_t)l->touches + 1) * sizeof(struct small_touch *));
+    for (int64_t i = 0; by && i < l->touches; i++) by[i] = &l->touch[i];
+    if (by) qsort(by, (size_t)l->touches, sizeof(struct small_touch *), touch_key_order);
+    return by;
+}
+
+static void remember_one(struct memory *m, struct contact_key k, const double f[3],
+                         const double moment[3], double times)
+{
+    if (small_is_zero(f)) return;
+    m->recall[m->n++] = (struct recall){ k.a,
+                                         k.b,
+                                         0,
+                                         { k.shift[0], k.shift[1], k.shift[2] },
+                                         v3_scale(times, small_vec(f)),
+                                         v3_scale(times, small_vec(moment)) };
+}
+
+int small_list_remember(const struct small_list *l, struct packing *p, double part,
+                        struct failure *failure)
+{
+    struct small_touch **by = small_list_touches(l);
+    struct memory m = { .on = true, .room = l->touches + l->pairs.n };
+    m.recall = malloc((size_t)(m.room + 1) * sizeof *m.recall);
+    if (!by || !m.recall) {
+        free(by), free(m.recall);
+        return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
+    }
+    for (int64_t i = 0; i < l->touches; i++) {
+        const struct contact_key k = { .a = -1 - by[i]->wall, .b = by[i]->body };
+        remember_one(&m, k, by[i]->f, by[i]->m, 1 / part);
+    }
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        const struct pair *q = &l->pairs.pair[i];
+        const struct contact_key k = { q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
+        const struct small_past x = past_of(&l->s, l->slot[i]);
+        remember_one(&m, k, x.f, x.m, 1 / part);
+    }
+    free(by);
+    memory_free(&p->memory);
+    p->memory = m;
+    return 0;
+}

@@ -1,0 +1,73 @@
+/*
+ * step/small_list.h: what small steps work on: pairs and touches of walls, found with a margin, which serve until something
+ * has moved through half of it; and their reactions, which the packing remembers from step to step.
+ */
+#ifndef NSD_SMALL_LIST_H
+#define NSD_SMALL_LIST_H
+
+#include "contact/seek.h"
+#include "solve/small.h"
+#include "state/packing.h"
+
+/* A body near a wall: numbers as in struct small_bundle */
+struct small_touch {
+    int32_t wall, body;
+    double f[3], kept, q[3], sum[3];
+    double m[3], most[2];
+    double mu, e[2];
+    /* Of the step in hand */
+    bool near;
+    vec3 n, v;   /* normal; m/s: of the wall's material there */
+    double arm;  /* m: from the body's centre to the wall, along -n */
+    double work; /* J: that the body has done on the wall in this interval */
+};
+
+struct small_list {
+    struct small s;
+    double margin, way; /* m: pairs are listed to this gap; and nothing has moved farther since */
+    vec3 *listed;       /* [bodies] m: where bodies were */
+    struct pairs pairs;
+    int64_t *slot; /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
+    int64_t touches, room;
+    struct small_touch *touch; /* [touches] by body, then by wall */
+    /* Of this interval, by touches that are in the list no more */
+    double gone_work;  /* J */
+    vec3 gone_impulse; /* N s */
+};
+
+void small_list_free(struct small_list *l);
+/*
+ * Finds the pairs of bodies at x (m), and of these with walls at time t (s). What pairs and touches of the list before
+ * have is kept. Returns 0, EX_SOFTWARE or EX_DATAERR.
+ */
+int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
+                    struct failure *failure);
+/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. */
+void small_list_recall(struct small_list *l, const struct packing *p, double part);
+/* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
+int small_list_remember(const struct small_list *l, struct packing *p, double part,
+                        struct failure *failure);
+/* [touches] in the order of contacts; NULL when memory is short. To be freed */
+struct small_touch **small_list_touches(const struct small_list *l);
+
+/* m, from a to the image of b that it meets: of slot i */
+vec3 small_branch(const struct small *s, int64_t slot);
+/* m: how far the point x is from wall w, where `pose` has brought it, and the normal there; infinite where a ball of radius r
+   has left it */
+double small_wall_distance(const struct packing *p, const struct pose *pose, int32_t w, vec3 x,
+                           double r, vec3 *n);
+
+static inline vec3 small_vec(const double x[3])
+{
+    return v3(x[0], x[1], x[2]);
+}
+static inline void small_array(double to[3], vec3 x)
+{
+    to[0] = x.x, to[1] = x.y, to[2] = x.z;
+}
+static inline bool small_is_zero(const double x[3])
+{
+    return x[0] == 0 && x[1] == 0 && x[2] == 0;
+}
+
+#endif

@@ -1,0 +1,372 @@
+/* step/small_loop.c: the passes of a small step [step/small_loop.h]. */
+#include "step/small_loop.h"
+
+#include "base/team.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { SWEEPS_MOST = 60 }; /* of a small step */
+
+/* Thread `me` of `threads` has first .. end-1 of n. */
+static void small_share(int64_t n, int me, int threads, int64_t *first, int64_t *end)
+{
+    *first = n * me / threads, *end = n * (me + 1) / threads;
+}
+
+/* ---- bodies ---- */
+
+/* v^- and v; in the first step of an interval v is free, and the reactions follow. Returns the largest v^2. */
+static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
+{
+    struct small *s = &r->l->s;
+    const vec3 g = r->p->g;
+    const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
+    double most = 0;
+    for (int64_t i = first; i < end; i++) {
+        struct body *b = &s->body[i], *was = &s->before[i];
+        double v2 = 0;
+        for (int k = 0; k < 3; k++) {
+            const double v = b->v[k], w = b->w[k], free = b->im > 0 ? fall[k] : 0;
+            b->v[k] = v + free + (r->begins ? 0 : SMALL_WARM * (v - was->v[k] - free));
+            b->w[k] = w + (r->begins ? 0 : SMALL_WARM * (w - was->w[k]));
+            was->v[k] = v, was->w[k] = w;
+            v2 += v * v;
+        }
+        most = v2 <= most ? most : v2; // not a number: it is the largest
+    }
+    return most;
+}
+
+static void move_bodies(struct small_run *r, int64_t first, int64_t end)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = first; i < end; i++) {
+        const struct body *b = &s->body[i];
+        for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
+        r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
+    }
+}
+
+/* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
+static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
+{
+    vec3 w = v3_axpy(m, -arm, v3_cross(n, f));
+    b->v[0] += b->im * f.x, b->v[1] += b->im * f.y, b->v[2] += b->im * f.z;
+    b->w[0] += b->ii * w.x, b->w[1] += b->ii * w.y, b->w[2] += b->ii * w.z;
+}
+
+/* ---- walls ---- */
+
+static void set_walls(struct small_run *r)
+{
+    const struct packing *p = r->p;
+    const double t = p->t + r->ahead;
+    for (int32_t w = 0; w < p->walls; w++) {
+        const struct wall *wall = &p->wall[w];
+        const vec3 at = wall_at(p, wall, t);
+        r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
+                                          .pose = wall_pose(p, wall, t),
+                                          .at = at,
+                                          .v = wall_held(p, wall, at),
+                                          .spin = wall_spin(p, wall) };
+        r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
+    }
+}
+
+bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach)
+{
+    const struct small_wall *w = &r->wall[t->wall];
+    const struct small_place *b = &r->l->s.place[t->body];
+    const vec3 x = small_vec(b->x);
+    if (!w->there) return false;
+    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
+    if (!(t->arm - b->r <= reach)) return false;
+    t->v = v3_add(w->v, v3_cross(w->spin, v3_sub(v3_axpy(x, -t->arm, t->n), w->at)));
+    t->v = v3_add(t->v, v3_axpy(w->belt, -v3_dot(w->belt, t->n), t->n));
+    return true;
+}
+
+/* m/s: of the body b against the wall at the contact */
+static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
+{
+    vec3 v = v3_sub(small_vec(b->v), t->v);
+    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
+}
+
+/* The law in the first sweep of a step */
+static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const struct small *s = &r->l->s;
+    double before[3];
+    for (int k = 0; k < 3; k++)
+        t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM, t->m[k] *= SMALL_WARM;
+    t->kept = dot3(l->n, l->f);
+    vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
+    l->spin = 0.5 * r->h * v3_dot(w, t->n);
+    small_press(l, &s->rate);
+    small_array(before, touch_velocity(t, &s->before[t->body]));
+    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
+    memcpy(t->q, l->q, sizeof t->q);
+}
+
+static void roll_touch(const struct small_run *r, struct small_touch *t, const struct small_law *l,
+                       vec3 df, double dm[3])
+{
+    const struct body *b = &r->l->s.body[t->body];
+    double w[3];
+    vec3 spin = v3_axpy(small_vec(b->w), -b->ii * t->arm, v3_cross(t->n, df));
+    small_array(w, v3_sub(spin, r->wall[t->wall].spin));
+    small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
+}
+
+/* A touch whose body has left gives its reaction back. */
+static void leave_touch(struct small_run *r, struct small_touch *t)
+{
+    vec3 f = v3_scale(-SMALL_WARM, small_vec(t->f)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    if (!small_is_zero(t->f)) push_body(&r->l->s.body[t->body], t->n, t->arm, f, m);
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
+    t->kept = 0, t->near = false;
+}
+
+static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
+{
+    struct small *s = &r->l->s;
+    struct body *b = &s->body[t->body];
+    struct small_law l = { .mu = t->mu };
+    double df[3], dm[3] = { 0, 0, 0 };
+    if (!again && !small_look_at_touch(r, t, s->rate.reach)) {
+        leave_touch(r, t);
+        return;
+    }
+    if (again && !t->near) return;
+    t->near = true;
+    small_array(l.n, t->n), small_array(l.u, touch_velocity(t, b));
+    l.gap = t->arm - s->place[t->body].r;
+    l.wn = b->im, l.wt = b->im + t->arm * t->arm * b->ii;
+    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt;
+    memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    if (!again) begin_touch(r, t, &l);
+    small_solve(&l, df);
+    memcpy(t->f, l.f, sizeof t->f);
+    if (s->turn) roll_touch(r, t, &l, small_vec(df), dm);
+    push_body(b, t->n, t->arm, small_vec(df), small_vec(dm));
+    const double change = l.wn * norm3(df);
+    if (!again && !(change > s->rate.allowed[0])) return;
+    s->change[t->body] += change;
+    if (!(s->change[t->body] > s->rate.allowed[again])) return;
+    s->change[t->body] = 0, s->hot[t->body] = s->sweep;
+    r->far = true;
+}
+
+/* The first touch of body i, or of a later one */
+static int64_t first_touch(const struct small_list *l, int64_t i)
+{
+    int64_t lo = 0, hi = l->touches;
+    while (lo < hi) {
+        const int64_t mid = lo + (hi - lo) / 2;
+        if (l->touch[mid].body < i)
+            lo = mid + 1;
+        else
+            hi = mid;
+    }
+    return lo;
+}
+
+/* Of bodies first .. end-1 */
+static void sweep_touches(struct small_run *r, int64_t first, int64_t end, bool again)
+{
+    struct small_list *l = r->l;
+    const int64_t last = first_touch(l, end);
+    for (int64_t i = first_touch(l, first); i < last; i++)
+        if (!again || l->s.hot[l->touch[i].body] >= l->s.sweep - 1)
+            solve_touch(r, &l->touch[i], again);
+}
+
+/* What persists of the reactions of touches, and what they have done to walls */
+static void end_touches(struct small_run *r, int64_t first, int64_t end)
+{
+    struct small_list *l = r->l;
+    const int64_t last = first_touch(l, end);
+    for (int64_t i = first_touch(l, first); i < last; i++) {
+        struct small_touch *t = &l->touch[i];
+        const vec3 f = small_vec(t->f), m = small_vec(t->m);
+        if (small_is_zero(t->f)) continue;
+        t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
+        const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
+        const double most = small_persists(&l->s.rate, t->kept, w, rn);
+        if (rn <= most) continue;
+        const double back = 1 - most / rn;
+        for (int k = 0; k < 3; k++) {
+            t->sum[k] += back * t->f[k];
+            t->f[k] *= most / rn, t->m[k] *= most / rn;
+        }
+        push_body(&l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));
+    }
+}
+
+/* ---- pairs ---- */
+
+static void sweep_pairs(struct small_run *r, int me, int threads, bool again)
+{
+    struct small *s = &r->l->s;
+    bool far = false;
+    for (int64_t g = 0; g < s->serial; g++) {
+        int64_t first, end;
+        small_share(s->group[g + 1] - s->group[g], me, threads, &first, &end);
+        far |= r->kernel->sweep(s, s->group[g] + first, s->group[g] + end, again);
+        team_meet();
+    }
+    if (s->serial < s->groups) {
+        if (!me) far |= r->kernel->sweep(s, s->group[s->serial], s->bundles, again);
+        team_meet();
+    }
+    if (far) r->far = true;
+}
+
+/* All bodies get the reactions that are remembered. */
+static void push_reactions(struct small_run *r, int me, int threads)
+{
+    struct small_list *l = r->l;
+    struct small *s = &l->s;
+    for (int64_t g = 0; g < s->serial; g++) {
+        int64_t first, end;
+        small_share(s->group[g + 1] - s->group[g], me, threads, &first, &end);
+        r->kernel->push(s, s->group[g] + first, s->group[g] + end);
+        team_meet();
+    }
+    if (me) return;
+    r->kernel->push(s, s->group[s->serial], s->bundles);
+    for (int64_t i = 0; i < l->touches; i++) {
+        struct small_touch *t = &l->touch[i];
+        if (small_is_zero(t->f)) continue;
+        if (small_look_at_touch(r, t, l->margin))
+            push_body(&s->body[t->body], t->n, t->arm, v3_scale(SMALL_WARM, small_vec(t->f)),
+                      v3_scale(SMALL_WARM, small_vec(t->m)));
+        else
+            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
+    }
+}
+
+/* Takes what does not persist of the reaction of a slot out of v^-: v + (v - v^-) then has less of it. */
+static void settle_slot(struct small *s, int64_t slot)
+{
+    const int64_t i = slot / BUNDLE;
+    const int k = (int)(slot % BUNDLE);
+    struct small_bundle *c = &s->bundle[i];
+    const int64_t a = body_index(c->a[k]), b = body_index(c->b[k]);
+    if (a >= s->bodies) return;
+    const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
+    const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
+    const vec3 n = v3_scale(1 / length, d);
+    const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
+    const double most = small_persists(&s->rate, c->kept[k], w, rn);
+    if (rn <= most) return;
+    const double left = most / rn, back = 1 - left;
+    vec3 m = v3(0, 0, 0);
+    for (int j = 0; j < 3; j++) c->sum[j][k] += back * c->f[j][k], c->f[j][k] *= left;
+    if (s->turn) {
+        struct small_turn *t = &s->turn[i];
+        m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
+        for (int j = 0; j < 3; j++) t->m[j][k] *= left;
+    }
+    push_body(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
+    push_body(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),
+              v3_scale(-back, m));
+}
+
+static void settle_pairs(struct small *s)
+{
+    for (int64_t i = 0; i < s->bundles; i++) {
+        uint64_t late;
+        memcpy(&late, &s->late[BUNDLE * i], sizeof late);
+        if (!late) continue;
+        memset(&s->late[BUNDLE * i], 0, BUNDLE);
+        for (int k = 0; k < BUNDLE; k++) settle_slot(s, BUNDLE * i + k);
+    }
+}
+
+/* ---- a small step ---- */
+
+/* m: the way of the body that has moved farthest since the list was made */
+static double farthest(const struct small_run *r)
+{
+    double most = 0;
+    for (int64_t i = 0; i < r->p->n; i++) {
+        vec3 d = v3_sub(small_vec(r->l->s.place[i].x), r->l->listed[i]);
+        most = fmax(most, v3_dot(d, d));
+    }
+    return sqrt(most);
+}
+
+double small_wall_speed(const struct packing *p)
+{
+    double most = 0;
+    for (int32_t w = 0; w < p->walls; w++)
+        most = fmax(most, wall_top_speed(p, &p->wall[w]) + v3_norm(p->wall[w].belt));
+    return most;
+}
+
+/* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
+static void prepare_step(struct small_run *r)
+{
+    struct small_list *l = r->l;
+    const double wall = small_wall_speed(r->p), way = r->h * fmax(sqrt(r->fastest), wall);
+    if (!isfinite(way)) r->failed = r->stop = true;
+    l->s.rate.reach = fmin(2 * way + r->h * l->s.rate.calm, l->margin);
+    if (wall == 0 && l->way + 2 * way > 0.49 * l->margin) l->way = farthest(r);
+    l->way += way;
+    r->stop = r->stop || l->way + way > 0.49 * l->margin;
+    r->fastest = 0;
+}
+
+static void small_sweeps(struct small_run *r, int me, int threads, int64_t first, int64_t end)
+{
+    bool far = true;
+    for (int k = 0; far && k < SWEEPS_MOST; k++) {
+        team_meet();
+        if (!me) r->l->s.sweep++, r->swept++, r->far = false;
+        team_meet();
+        sweep_touches(r, first, end, k > 0);
+        team_meet();
+        sweep_pairs(r, me, threads, k > 0);
+        team_meet();
+        far = r->far;
+    }
+}
+
+/* By one thread, after the sweeps */
+static void finish_step(struct small_run *r)
+{
+    struct small *s = &r->l->s;
+    if (r->far && r->uneven) r->failed = r->stop = true;
+    if (r->swept > 1) memset(s->change, 0, (size_t)s->bodies * sizeof *s->change);
+    settle_pairs(s);
+    r->sweeps += r->swept, r->swept = 0;
+    r->begins = false, r->made++;
+    r->p->t = r->p->t0 + (double)r->made * r->h;
+}
+
+void small_loop(void *arg, int me, int threads)
+{
+    struct small_run *r = arg;
+    int64_t first, end;
+    small_share(r->l->s.bodies, me, threads, &first, &end);
+    while (r->made < r->n && !r->stop) {
+        const double fastest = begin_bodies(r, first, end);
+        pthread_mutex_lock(&r->lock);
+        r->fastest = fastest <= r->fastest ? r->fastest : fastest;
+        pthread_mutex_unlock(&r->lock);
+        if (!me) set_walls(r);
+        team_meet();
+        if (r->begins) push_reactions(r, me, threads);
+        if (!me) prepare_step(r);
+        small_sweeps(r, me, threads, first, end);
+        end_touches(r, first, end);
+        team_meet();
+        if (!me) finish_step(r);
+        team_meet();
+        move_bodies(r, first, end);
+        team_meet();
+    }
+}

@@ -1,0 +1,32 @@
+/*
+ * step/small_step.h: a step in many small ones, each of one sweep [solve/small.h].
+ *
+ * The step's dt is an interval of n small steps of h = dt/n, which are steps of the theta method as any. It counts as one
+ * step: reactions are sums over the interval, and balances are those of its beginning and its end. An interval in which sweeps
+ * carry the reactions too slowly, as where a heavy body strikes light ones, is not made: the step is then made at once,
+ * by today's solvers.
+ */
+#ifndef NSD_SMALL_STEP_H
+#define NSD_SMALL_STEP_H
+
+#include "state/report.h"
+#include "step/small_list.h"
+
+struct small_opt {
+    double overlap; /* radii of the smallest body: none is moved farther by a small step */
+    int threads;
+    bool warm; /* the first one starts from what the packing remembers */
+};
+
+/* What of a packing small steps do not have, in words; NULL: they have all */
+const char *small_lacks(const struct packing *p);
+/* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
+   radii of the smallest: of its state alone */
+int64_t small_count(const struct packing *p, double overlap);
+/* The step: rep but for its criterion, and s, as of step_advance(). *made: false where the packing is as it was, for the step is to
+   be made at once. Returns 0, EX_SOFTWARE or EX_DATAERR. */
+int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
+                  const struct small_opt *o, struct report *rep, bool *made,
+                  struct failure *failure);
+
+#endif

@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# Steps in small ones of one sweep: impacts, sliding and rolling in closed form, a heavy ball on a bed, a gas that keeps its
+# energy, a pile that comes to rest; the same bytes for threads and resumed runs; what is made at once is said.
+# shellcheck source=tests/support/tap.sh disable=SC2154,SC2016 # jq, tap.sh sets tmp
+. tests/support/tap.sh
+
+floor='walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], gravity: [0, 0, -9.81], dt: 1e-3'
+scene() # MEMBERS OF THE SCENE: into $tmp/in.h5
+{
+    jq -n "{ $1 }" | nsd-gen - >"$tmp/in.h5"
+}
+small() # STEPS [OPTION ...]: the last frame of them is in $tmp/out.h5
+{
+    nsd-step --small-steps 0.01 -n "$1" --every "$1" "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+}
+last() # JQ PROGRAM: of the summary of the last frame
+{
+    nsd-info --last -l "$tmp/out.h5" | jq -c "select(.kinetic_energy != null) | $1"
+}
+body() # JQ PROGRAM: of the first body
+{
+    nsd-info --last -p "$tmp/out.h5" | jq -c "select(.id == 0) | $1"
+}
+near() # VALUE WANTED ERROR: jq's numbers
+{
+    jq -en "(($1) - ($2) | fabs) <= $3" >"$tmp/near"
+}
+
+# ---- one ball ----
+
+for e in 0.3 0.7 1; do
+    scene "$floor, e_n: $e, bodies: [{ x: [0, 0, 0.11], radius: 0.01 }]"
+    small 200 # it falls 0.1 m in 0.143 s: m g h e^2 is left of its energy above the floor
+    ok "a ball that falls from 0.1 m with e $e keeps e^2 of its energy" near \
+        "$(body '(.v[2] * .v[2] / 2 + 9.81 * (.x[2] - 0.01)) / 0.981')" "$e * $e" 2e-3
+done
+scene "$floor, mu: 0.3, bodies: [{ x: [0, 0, 0.01], radius: 0.01, v: [1, 0, 0] }]"
+small 300
+ok "a sliding ball ends at 5/7" near "$(body '.v[0]')" "5 / 7" 2e-5
+scene 'dim: 2, walls: [{ point: [0, 0], normal: [0, 1] }], gravity: [0, -9.81], dt: 1e-3, mu: 0.3,
+    bodies: [{ x: [0, 0.01], radius: 0.01, v: [1, 0] }]'
+small 300
+ok "a sliding disc ends at 2/3" near "$(body '.v[0]')" "2 / 3" 2e-5
+scene "$floor, mu: 0.5, rolling: { mu_r: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01, v: [1, 0, 0], w: [0, 100, 0] }]"
+small 300
+ok "rolling friction: v = v0 - 5/7 g mu_r t/r" near "$(body '.v[0]')" "1 - 5 / 7 * 9.81 * 0.01 * 0.3" 1e-5
+
+# ---- many ----
+
+# A ball of 20 mm on two layers of 2 mm, at 2 m/s with e 0.4: 0.62 to 0.72 m/s by Newton's law for simultaneous impacts
+jq -n '[range(7) as $i | range(7) as $j | { x: [0.002 * ($i - 3), 0.002 * ($j - 3), 0.001], radius: 0.001 }] +
+    [range(6) as $i | range(6) as $j | { x: [0.002 * ($i - 2.5), 0.002 * ($j - 2.5), 0.00242], radius: 0.001 }] +
+    [{ x: [0, 0, 0.0135], radius: 0.01, v: [0, 0, -2], kind: "steel" }] | { dim: 3, dt: 5e-5, gravity: [0, 0, -9.8],
+    density: 2500, mu: 0.3, e_n: 0.4, overlap: true, kinds: { steel: { density: 7200 } },
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: . }' | nsd-gen - >"$tmp/in.h5"
+for dt in 5e-5 1e-5; do
+    steps=$(jq -n "0.003 / $dt | round")
+    small "$steps" --dt "$dt"
+    ok "a heavy ball rebounds from a bed of light ones, dt $dt s" near \
+        "$(nsd-info --last -p "$tmp/out.h5" | jq 'select(.radius > 0.009) | .v[2]')" 0.67 0.05
+done
+
+jq -n '{ dim: 3, dt: 1e-3, gravity: [0, 0, 0], density: 2500, mu: 0, e_n: 1, seed: 3, cell: { lengths: [0.05, 0.05, 0.05] },
+    bodies: [range(6) as $i | range(6) as $j | range(6) as $k | { radius: 0.002, x: [$i, $j, $k] | map((. + 0.5) * 0.0083),
+    } | .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)]] | map(.v |= map(. * 0.5)) }' | nsd-gen - >"$tmp/in.h5"
+before=$(nsd-info --last -l "$tmp/in.h5" | jq .kinetic_energy)
+small 300
+ok "a gas of elastic balls keeps its energy" near "$(last .kinetic_energy) / $before" 1 0.01
+is "no step of it was made at once" "$(grep -c "at once" "$tmp/err")" 0
+
+nsd-gen 400 | nsd-step --small-steps 0.01 --until 1.5 --every 1000 -o "$tmp/pile.h5" 2>"$tmp/err"
+ok "a pile of 400 comes to rest: less than 1e-5 m g d per ball" \
+    eval 'nsd-info --last -p "$tmp/pile.h5" | jq -es "map(select(.id != null)) | (map(.v | map(. * .) | add) | add / length / 2)
+        < 1e-5 * 9.81 * 2 * .[0].radius" >"$tmp/rest"'
+
+# ---- bytes, and words ----
+
+nsd-gen 400 | nsd-step --small-steps 0.02 -n 40 --every 20 -o "$tmp/one.h5" 2>"$tmp/err"
+nsd-gen 400 | nsd-step -j 3 --small-steps 0.02 -n 40 --every 20 -o "$tmp/three.h5" 2>"$tmp/err"
+nsd-gen 400 | NSD_LANES=2 nsd-step --small-steps 0.02 -n 40 --every 20 -o "$tmp/narrow.h5" 2>"$tmp/err"
+nsd-gen 400 | nsd-step --small-steps 0.02 -n 20 --every 20 2>"$tmp/err" |
+    nsd-step --small-steps 0.02 -n 20 --every 20 -o "$tmp/again.h5" 2>"$tmp/err"
+frame() { nsd-info --last -p "$1"; }
+ok "three threads: the same bodies" cmp <(frame "$tmp/one.h5") <(frame "$tmp/three.h5")
+ok "two lanes: the same bodies" cmp <(frame "$tmp/one.h5") <(frame "$tmp/narrow.h5")
+ok "a resumed run: the same bodies" cmp <(frame "$tmp/one.h5") <(frame "$tmp/again.h5")
+ok "the end says how many small steps there were" grep -q "made in [0-9]* small ones" "$tmp/err"
+
+scene "$floor, stiffness: 1e5, bodies: [{ x: [0, 0, 0.02], radius: 0.01 }]"
+small 2
+ok "what small steps do not have is said" grep -q "no small steps with contacts with a stiffness" "$tmp/err"
+
+done_testing
