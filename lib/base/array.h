@@ -1,6 +1,5 @@
 /* base/array.h: arrays that grow. */
-#ifndef NSD_ARRAY_H
-#define NSD_ARRAY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -23,5 +22,3 @@ static inline bool array_grow(void *array, int64_t *room, int64_t least, size_t 
     *room = wanted;
     return true; // cppcheck-suppress memleak ; the caller's pointer has it
 }
-
-#endif

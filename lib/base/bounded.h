@@ -2,8 +2,7 @@
  * base/bounded.h: work on bytes that may come from anybody, done by a process of its own that is bounded in memory
  * and time. What breaks down there, is endless or takes all memory is a reason here (EX_DATAERR).
  */
-#ifndef NSD_BOUNDED_H
-#define NSD_BOUNDED_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -55,5 +54,3 @@ struct bounded_task {
  */
 int bounded_run(const struct bounded_task *task, void **answer, size_t *n, struct failure *failure);
 void bounded_free(void *answer, size_t n);
-
-#endif

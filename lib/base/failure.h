@@ -5,8 +5,7 @@
  * or an exit status of sysexits.h: EX_DATAERR (65) the input is wrong, EX_NOINPUT (66) it cannot be
  * opened, EX_SOFTWARE (70) out of memory or a bug, EX_IOERR (74) it cannot be written.
  */
-#ifndef NSD_WHY_H
-#define NSD_WHY_H
+#pragma once
 
 #include <sysexits.h>
 
@@ -29,6 +28,4 @@ void failure_plain(char *text);
 void why_said(const char *format, ...);
 #define failure_set(failure, code, ...)                                                            \
     ((failure)->status ? (failure)->status : (why_said(__VA_ARGS__), (failure)->status = (code)))
-#endif
-
 #endif

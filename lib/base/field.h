@@ -4,8 +4,7 @@
  * of thing; it ends with a field without a name. What is done with all members of a struct, and not with one that the
  * code knows, loops over its table: copy, compare, check, read, write, send.
  */
-#ifndef NSD_FIELD_H
-#define NSD_FIELD_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -103,5 +102,3 @@ int records_check(struct records records, const char *what, struct failure *fail
 bool field_equal(const struct field *field, const void *x, const void *y);
 /* Has a document that is written the field of these records? */
 bool field_is_kept(const struct field *field, const struct records *records);
-
-#endif

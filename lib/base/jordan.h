@@ -7,8 +7,7 @@
  * whose eigenvalues are x_0 +- |x_t|; and the scaling of Nesterov and Todd, a symmetric F that maps
  * x and z, both inside K, to one point l = F x = F^-1 z.
  */
-#ifndef NSD_JORDAN_H
-#define NSD_JORDAN_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -52,5 +51,3 @@ bool scaling_of(struct scaling *F, const double x[3], const double z[3]);
 /* out = F a; out = F^-1 a */
 void scaling_apply(const struct scaling *F, const double a[3], double out[3]);
 void scaling_inverse(const struct scaling *F, const double a[3], double out[3]);
-
-#endif

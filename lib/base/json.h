@@ -1,6 +1,5 @@
 /* base/json.h: numbers as JSON, which knows none that is infinite or no number. */
-#ifndef NSD_JSON_H
-#define NSD_JSON_H
+#pragma once
 
 #include "base/field.h"
 #include "base/vec.h"
@@ -26,5 +25,3 @@ static inline size_t mark_length(const char *text, size_t length)
 {
     return length >= 3 && !memcmp(text, "\xef\xbb\xbf", 3) ? 3 : 0;
 }
-
-#endif

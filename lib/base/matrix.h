@@ -1,6 +1,5 @@
 /* base/matrix.h: eigenvalues of small matrices, the same bits on every machine. */
-#ifndef NSD_MATRIX_H
-#define NSD_MATRIX_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -90,5 +89,3 @@ bool lu_factorise(struct lu *lu, double *a);
 int lu_sign(const struct lu *lu);
 /* x[n] = A^-1 x; false if that fails */
 bool lu_substitute(struct lu *lu, double *x);
-
-#endif

@@ -2,8 +2,7 @@
  * base/option.h: a row of a table of options: what it is called, the variable that it sets, and which values it takes.
  * Command lines (run/cli.h) and programs that call the library (run/nsd.h) read the same tables.
  */
-#ifndef NSD_OPTION_H
-#define NSD_OPTION_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -68,5 +67,3 @@ static inline bool range_has(const struct range *r, int64_t step)
 {
     return step >= r->from && step <= r->to && (step - r->from) % r->by == 0;
 }
-
-#endif

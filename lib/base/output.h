@@ -7,8 +7,7 @@
  *
  * An output has one writer: both files are locked, and a second writer is refused.
  */
-#ifndef NSD_OUTPUT_H
-#define NSD_OUTPUT_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -61,5 +60,3 @@ bool output_removed(int fd);
    other threads. */
 void embedded_set(void);
 bool embedded_is(void);
-
-#endif

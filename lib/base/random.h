@@ -1,6 +1,5 @@
 /* base/random.h: a generator of random numbers of GSL, whose own gsl_rng_alloc() ends the program where memory is short. */
-#ifndef NSD_RANDOM_H
-#define NSD_RANDOM_H
+#pragma once
 
 #include <gsl/gsl_rng.h>
 #include <stdint.h>
@@ -25,5 +24,3 @@ gsl_rng *counter_alloc(void);
 /* On to the beginning of the stream that belongs to this use and these numbers. */
 void counter_start(gsl_rng *rng, uint64_t seed, enum counter_use use, uint64_t a, uint64_t b,
                    uint64_t c);
-
-#endif

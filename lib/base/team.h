@@ -8,8 +8,7 @@
  * time, for half a millisecond, since between two works of a step less time passes, and to wake a thread of a
  * virtual machine takes a tenth of that; then it sleeps.
  */
-#ifndef NSD_TEAM_H
-#define NSD_TEAM_H
+#pragma once
 
 #include <stdatomic.h>
 #include <stdint.h>
@@ -45,5 +44,3 @@ int team_cores(void);
 
 /* Waits until *count is at least n; whoever counts up need not know that somebody waits. */
 void team_await(const _Atomic int64_t *count, int64_t n);
-
-#endif

@@ -3,8 +3,7 @@
  * Python programs do. And a text in memory, written as a stream. open_memstream() does the same, but where memory is exhausted it
  * drops what does not fit, and neither ferror() nor fclose() reports it.
  */
-#ifndef NSD_TEXT_H
-#define NSD_TEXT_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -25,5 +24,3 @@ FILE *text_open(struct text *text);
 /* Closes the stream, or NULL. Returns all bytes that were written, with a zero behind them, to be freed, and their number in *size;
    NULL: no memory */
 char *text_close(struct text *text, FILE *stream, size_t *size);
-
-#endif

@@ -1,6 +1,5 @@
 /* base/vec.h: vectors and rotations of space, passed by value. */
-#ifndef NSD_VEC_H
-#define NSD_VEC_H
+#pragma once
 
 #include <math.h>
 
@@ -132,5 +131,3 @@ static inline vec3 v3_turn_along(vec3 from, vec3 to, vec3 x)
     vec3 y = v3_cross(axis, x);
     return v3_axpy(v3_add(x, y), 1 / (1 + c), v3_cross(axis, y));
 }
-
-#endif

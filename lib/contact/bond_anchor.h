@@ -11,8 +11,7 @@
  * in place of those that are found within NEAR radii of it. Its key is (a, b, feature) with a negative
  * feature, counted down in each pair.
  */
-#ifndef NSD_ANCHOR_H
-#define NSD_ANCHOR_H
+#pragma once
 
 #include "state/placement.h"
 
@@ -32,5 +31,3 @@ static inline bool contact_anchored(const struct contact *c)
 /* Gives b, made at c of this step, its anchors and an area (m^2). The contact has been detected `ahead` (s) of the bodies. */
 void bond_anchor(struct bond *b, const struct packing *p, const struct contact *c, double area,
                  double ahead);
-
-#endif

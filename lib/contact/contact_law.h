@@ -26,8 +26,7 @@
  * Where a shape is, a pair has several places: they share its pull and the area of bonds that are made in
  * one step, and bonds keep their place [contact/bond_anchor.h].
  */
-#ifndef NSD_CONTACT_LAW_H
-#define NSD_CONTACT_LAW_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -107,5 +106,3 @@ bool contact_law_carries(const struct pair_law *law, struct bond *bond);
 /* p->bonds = what lasts of the contacts' ties; the bodies have not moved yet. Returns 0 or
    EX_SOFTWARE. */
 int contact_laws_keep(struct packing *p, const struct contacts *s, struct failure *failure);
-
-#endif

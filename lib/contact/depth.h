@@ -5,8 +5,7 @@
  * A body is wedged where two of its contacts are deeper than DEPTH_WEDGED and their normals point against each
  * other: neither velocities nor displacements free it without what holds it.
  */
-#ifndef NSD_DEPTH_H
-#define NSD_DEPTH_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -16,5 +15,3 @@
    all do. Returns 0 or EX_SOFTWARE. */
 int depth_of(struct depth *depth, const struct packing *p, const struct contacts *s,
              const bool *counts, struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * contact/detect.h: which bodies touch, where, and the local basis there. A time step looks at the
  * predicted positions q + (1 - theta) dt qdot [globalmapapp1].
  */
-#ifndef NSD_DETECT_H
-#define NSD_DETECT_H
+#pragma once
 
 #include "contact/neighbours.h"
 #include "state/contact.h"
@@ -32,5 +31,3 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
 /* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
                        double gap, struct failure *failure);
-
-#endif

@@ -7,8 +7,7 @@
  * cylinder is met as a ball or a capsule would be. The rims and ridges of rectangles, segments, meshes and
  * chains meet edges and faces, too [shape/wall_edge.h]; those of discs, cylinders and cones do not.
  */
-#ifndef NSD_DETECT_SHAPES_H
-#define NSD_DETECT_SHAPES_H
+#pragma once
 
 #include "contact/neighbours.h"
 #include "contact/seek.h"
@@ -27,5 +26,3 @@ bool detect_shapes_pair(struct contacts *out, const struct placed *s, const stru
    where it is, and places are relative to where it is. */
 bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32_t w, int64_t i,
                         double gap, vec3 ahead);
-
-#endif

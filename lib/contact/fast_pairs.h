@@ -5,8 +5,7 @@
  * Several processes have a part of the bodies each, and all of them the list of all fast bodies: each looks at the
  * pairs of its own bodies with those of the list.
  */
-#ifndef NSD_FAST_H
-#define NSD_FAST_H
+#pragma once
 
 #include "contact/tunnelling.h"
 #include "state/packing.h"
@@ -47,5 +46,3 @@ typedef void fast_visit(void *arg, const struct fast *a, const struct fast *b);
    fast bodies b is the one with the lower number. Pairs that cannot move, or do not act on each other, are left out. Returns 0 or EX_SOFTWARE. */
 int fast_pairs(const struct packing *p, const bool *of, const struct fast_list *list,
                struct window window, fast_visit *visit, void *arg, struct failure *failure);
-
-#endif

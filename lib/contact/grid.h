@@ -2,8 +2,7 @@
  * contact/grid.h: bodies sorted by size into levels of a factor of two, those of each level into the
  * cells of a grid of its own. Cells are hashed, so that a body far away costs nothing.
  */
-#ifndef NSD_GRID_H
-#define NSD_GRID_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -45,5 +44,3 @@ static inline uint64_t grid_bucket(const struct grid *g, int64_t i, int64_t j, i
    adjacent cells of the grid of the larger one. g: all zero; false: no memory. To be freed in any case. */
 bool grids_build(struct grid g[LEVELS], const struct packing *p, const vec3 *at, double reach);
 void grids_free(struct grid *g);
-
-#endif

@@ -15,13 +15,10 @@
  * [shape/wall_shape.h] and 1e-5 of the radius of s: a lower step is climbed. B and E may be one mesh, whose
  * triangles do not share all corners.
  */
-#ifndef NSD_SEAM_H
-#define NSD_SEAM_H
+#pragma once
 
 #include "contact/seek.h"
 #include "state/contact.h"
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
 int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);
-
-#endif

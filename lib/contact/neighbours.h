@@ -2,8 +2,7 @@
  * contact/neighbours.h: which bodies are near each other. A list made at one step serves later steps
  * for as long as no pair that is missing from it can have come too close.
  */
-#ifndef NSD_NEIGHBOURS_H
-#define NSD_NEIGHBOURS_H
+#pragma once
 
 #include "base/failure.h"
 #include "contact/seek.h"
@@ -38,5 +37,3 @@ void neighbours_shift(const struct neighbours *s, const struct packing *p, const
 /* Makes s->surface, if it is not there. Returns 0 or EX_SOFTWARE. */
 int neighbours_surfaces(struct neighbours *s, const struct packing *p, struct failure *failure);
 void neighbours_free(struct neighbours *s);
-
-#endif

@@ -8,8 +8,7 @@
  * lie within reach of the cell's border look from their images too, which costs as much as the
  * border has bodies.
  */
-#ifndef NSD_SEEK_H
-#define NSD_SEEK_H
+#pragma once
 
 #include "base/failure.h"
 #include "shape/mesh.h"
@@ -49,5 +48,3 @@ struct pairs {
  */
 int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const vec3 edge[3],
                struct failure *failure);
-
-#endif

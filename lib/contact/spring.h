@@ -38,8 +38,7 @@
  * the pair alone. A pair alone then has Newton's law exactly, and where others hold it C bounds r. Its moment has no spring. e is 0
  * unless the pair is new: it has not pushed in the step before.
  */
-#ifndef NSD_SPRING_H
-#define NSD_SPRING_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -84,5 +83,3 @@ double spring_rise(const struct packing *p, const struct contact *c, const struc
 
 /* m, at most 0: the gap that a contact has but for its spring, which carries the rest */
 double spring_unloaded_gap(const struct contact *c, const struct contact_law *t);
-
-#endif

@@ -9,8 +9,7 @@
  *
  * They are counted. Substeps [contact/time_of_impact.h] are there to leave nothing to count.
  */
-#ifndef NSD_TIME_OF_IMPACT_H
-#define NSD_TIME_OF_IMPACT_H
+#pragma once
 
 #include "contact/fast_pairs.h"
 
@@ -41,5 +40,3 @@ int tunnelling_count(struct passed *s, const struct packing *p, const bool *of,
 int time_of_impact_part(double *part, const struct packing *p, const bool *of,
                         const struct fast_list *list, double rest, int64_t left,
                         struct failure *failure);
-
-#endif

@@ -3,13 +3,10 @@
  * recedes or spins is apart: its bond or liquid bridge is made here, before. Not of pairs that touch there, too, which
  * the laws find themselves [contact/contact_law.h].
  */
-#ifndef NSD_TOUCHING_H
-#define NSD_TOUCHING_H
+#pragma once
 
 #include "state/packing.h"
 
 /* Adds to p->bonds those of such pairs, in the step that bonds are made in by their time, and in the first one of all.
    Bodies are where the step begins, in the cell. Returns 0 or EX_SOFTWARE. */
 int touching_bond(struct packing *p, struct failure *failure);
-
-#endif

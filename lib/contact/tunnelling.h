@@ -11,8 +11,7 @@
  * What still gets through is counted after the step; at the start of a run also what goes through something before
  * the place where contacts are sought first. A contact there would leave the body where it is, behind what it met.
  */
-#ifndef NSD_SWIFT_H
-#define NSD_SWIFT_H
+#pragma once
 
 #include "contact/seek.h"
 #include "state/contact.h"
@@ -73,5 +72,3 @@ bool tunnelling_watches(const struct packing *p);
 /* In the window, of bodies for which of[p->n] is true; NULL: all */
 void tunnelling_passed(struct passed *s, const struct packing *p, const bool *of,
                        const struct surface *surface, struct window window);
-
-#endif

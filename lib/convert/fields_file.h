@@ -1,6 +1,5 @@
 /* convert/fields_file.h: fields of coarse graining as an HDF5 file [nsd-format(5), "Fields"]. */
-#ifndef NSD_FIELDS_FILE_H
-#define NSD_FIELDS_FILE_H
+#pragma once
 
 #include "base/failure.h"
 #include "measure/fields.h"
@@ -22,5 +21,3 @@ int fields_file_close(struct fields_file *file, struct failure *failure);
 /* XML with the numbers of the points appended as they are in memory. 0 also where the disk is full:
    ferror(out) tells. Symmetric or not, tensors have nine numbers, by rows. */
 void vti_write(FILE *out, const struct fields *fields, int64_t step, double t);
-
-#endif

@@ -2,8 +2,7 @@
  * convert/format.h: the table of the formats that nsd-export writes. A format is a file
  * (export/NAME.c) and its line in the table.
  */
-#ifndef NSD_FORMAT_H
-#define NSD_FORMAT_H
+#pragma once
 
 #include "base/failure.h"
 #include "state/contact.h"
@@ -93,5 +92,3 @@ struct some_bodies {
 int some_bodies_init(struct some_bodies *s, const struct packing *p, const struct selection *c,
                      struct failure *failure);
 void some_bodies_free(struct some_bodies *s);
-
-#endif

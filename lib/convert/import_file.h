@@ -2,8 +2,7 @@
  * convert/import_file.h: packings of other programs: LAMMPS' and LIGGGHTS' data files and dumps, Yade's tables.
  * A file is read by a process of its own [base/bounded.h], and what it says is checked as that of a document.
  */
-#ifndef NSD_IMPORT_FILE_H
-#define NSD_IMPORT_FILE_H
+#pragma once
 
 #include "convert/imported.h"
 #include "state/packing.h"
@@ -27,5 +26,3 @@ int import_file(struct packing *p, const char *path, const struct import_wish *w
 /* Of n bytes with a 0 behind them, as of a file of this name, in this process: for who tests the readers */
 int import_bytes(struct packing *p, const char *name, const char *bytes, int64_t n,
                  const struct import_wish *wish, struct failure *failure);
-
-#endif

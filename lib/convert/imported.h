@@ -2,8 +2,7 @@
  * convert/imported.h: what a file of another program says of its balls, in plain numbers: a head and a row for
  * each. It is read by a process of its own [base/bounded.h], and checked again before it is a packing.
  */
-#ifndef NSD_IMPORTED_H
-#define NSD_IMPORTED_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -120,5 +119,3 @@ int import_find_units(const struct import_units **units, struct words *w, struct
 bool import_are_units(struct word name);
 /* What was read, from the units that the file names to SI */
 void import_to_si(struct imported *to);
-
-#endif

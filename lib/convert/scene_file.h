@@ -1,8 +1,7 @@
 /*
  * convert/scene_file.h: a scene with all that it names: tables, meshes, and the documents that it takes bodies from.
  */
-#ifndef NSD_SCENE_FILE_H
-#define NSD_SCENE_FILE_H
+#pragma once
 
 #include "file/frame.h"
 #include "scene/scene.h"
@@ -19,5 +18,3 @@ char *scene_file_slurp(FILE *file, const char *name, size_t *n, struct failure *
  */
 int scene_file_parse(struct scene *s, const char *text, size_t n, const char *name, const char *dir,
                      struct failure *failure);
-
-#endif

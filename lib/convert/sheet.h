@@ -2,8 +2,7 @@
  * convert/sheet.h: a part of a moment as points, cells over them, and named columns of numbers: what
  * the formats of VTK and tables of text have in common.
  */
-#ifndef NSD_SHEET_H
-#define NSD_SHEET_H
+#pragma once
 
 #include "base/failure.h"
 #include "convert/format.h"
@@ -55,5 +54,3 @@ int sheet_add(struct sheet *s, int corners, const vec3 *x, struct failure *failu
 double *sheet_real(struct sheet *s, const char *name, const char *suffix, struct failure *failure);
 int32_t *sheet_whole(struct sheet *s, const char *name, const char *suffix,
                      struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * convert/vtk.h: what documents have for VTK besides their grains [file/vtkhdf.h]: the surfaces of grains
  * that are no balls, and the walls, as polygons.
  */
-#ifndef NSD_VTK_H
-#define NSD_VTK_H
+#pragma once
 
 #include "base/output.h"
 #include "file/vtkhdf.h"
@@ -25,5 +24,3 @@ int pvd_begin(struct pvd *list, const char *path, struct failure *failure);
 /* A file of the series, of this time (s); the name is relative to the list's. */
 int pvd_add(struct pvd *list, const char *name, double time, struct failure *failure);
 int pvd_end(struct pvd *list, struct failure *failure);
-
-#endif

@@ -9,8 +9,7 @@
  * the depth z below that plane nearer to the middle and smaller by eye/(eye + z), and z itself is
  * shrunk alike: so planes stay planes and lines lines, and what hides what is the same.
  */
-#ifndef NSD_CAMERA_H
-#define NSD_CAMERA_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -65,5 +64,3 @@ void camera_perspective(struct camera *c, const struct window *w, double angle);
 /* Shows the window in the middle of width x height pixels (0: chosen by its shape), as large as
    fits with a margin on each side, a share of the picture. */
 void camera_fit(struct camera *c, const struct window *w, double margin, int width, int height);
-
-#endif

@@ -3,8 +3,7 @@
  * triangles of their balls, rounded shapes by those of a ball whose corners are moved along its radii.
  * Balls are icosahedra whose faces are divided into four `detail` times; discs have 48 corners.
  */
-#ifndef NSD_FACETS_H
-#define NSD_FACETS_H
+#pragma once
 
 #include "base/failure.h"
 #include "state/packing.h"
@@ -34,5 +33,3 @@ static inline bool facets_are_faces(const struct shape *s)
 }
 /* How many triangles these polygons are, each cut into a fan */
 int64_t facets_triangles(const struct facets *f, const struct packing *p, int64_t i);
-
-#endif

@@ -1,6 +1,5 @@
 /* draw/film.h: pictures joined to a film by ffmpeg, where that is installed. */
-#ifndef NSD_FILM_H
-#define NSD_FILM_H
+#pragma once
 
 #include "draw/picture.h"
 
@@ -20,5 +19,3 @@ bool film_possible(void);
 int film_open(struct film **film, const char *path, int rate, struct failure *failure);
 int film_add(struct film *film, const struct picture *p, struct failure *failure);
 int film_close(struct film *film, struct failure *failure);
-
-#endif

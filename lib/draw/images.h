@@ -2,8 +2,7 @@
  * draw/images.h: where the cell repeats, what a picture shows of that: bodies are in the cell, those
  * that its border cuts on either side of it, and the cell's outline.
  */
-#ifndef NSD_IMAGES_H
-#define NSD_IMAGES_H
+#pragma once
 
 #include "draw/walls.h"
 
@@ -16,5 +15,3 @@ int images_append(struct packing *p, int64_t **of, struct failure *failure);
 
 /* Adds the cell's outline to the edges; along what does not repeat it is as long as the bodies reach. */
 void images_outline(struct walls *b, const struct packing *p);
-
-#endif

@@ -3,8 +3,7 @@
  * programs: each at the packing's time, round shapes by OUTLINE_FACETS facets. Planes have no end:
  * draw/walls.h cuts them.
  */
-#ifndef NSD_OUTLINE_H
-#define NSD_OUTLINE_H
+#pragma once
 
 #include "base/failure.h"
 #include "state/packing.h"
@@ -34,5 +33,3 @@ struct outline {
    Returns 0, or EX_SOFTWARE with nothing to free. */
 int outline_init(struct outline *o, const struct packing *p, double reach, struct failure *failure);
 void outline_free(struct outline *o);
-
-#endif

@@ -5,8 +5,7 @@
  * Words are in the stroke font that is part of cairo, so that they do not depend on the fonts of the
  * machine.
  */
-#ifndef NSD_OVERLAY_H
-#define NSD_OVERLAY_H
+#pragma once
 
 #include "draw/view.h"
 #include "state/contact.h"
@@ -37,5 +36,3 @@ void overlay_legend(cairo_t *cr, const struct overlay *o, const struct view *v,
 /* pic = the picture of view_draw() with all that o asks for. Returns 0, EX_DATAERR, EX_SOFTWARE. */
 int overlay_draw(const struct overlay *o, const struct view *v, const struct packing *p,
                  const struct contacts *contacts, struct picture *pic, struct failure *failure);
-
-#endif

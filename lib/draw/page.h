@@ -5,8 +5,7 @@
  * bits relative to each frame's extent, packed by zlib, in base64. page_begin(), page_frame() for
  * each frame, page_end(). What is written is said in draw/page.c, with its packing.
  */
-#ifndef NSD_PAGE_H
-#define NSD_PAGE_H
+#pragma once
 
 #include "draw/page_data.h"
 #include "state/contact.h"
@@ -22,5 +21,3 @@ int page_value(struct page *p, const char *name, const char *unit, double value,
                struct failure *failure);
 int page_end(struct page *p, struct failure *failure);
 void page_free(struct page *p);
-
-#endif

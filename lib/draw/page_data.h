@@ -1,6 +1,5 @@
 /* draw/page_data.h: numbers as the page has them: small, packed by zlib, in base64. */
-#ifndef NSD_PAGE_DATA_H
-#define NSD_PAGE_DATA_H
+#pragma once
 
 #include "draw/walls.h"
 #include "state/packing.h"
@@ -88,5 +87,3 @@ struct json_t *page_meta(const struct page *p);
  * b->at is to be freed in any case. Returns 0 or EX_SOFTWARE.
  */
 int page_shapes(struct chunk *b, int dim, const struct shapes *t, struct failure *failure);
-
-#endif

@@ -1,6 +1,5 @@
 /* draw/paint.h: the colour of a body, and the marks that show how it turns. */
-#ifndef NSD_PAINT_H
-#define NSD_PAINT_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -87,5 +86,3 @@ void values_free(struct values *v);
 /* out[p->n] = what colours of this meaning show; contacts, values may be NULL: NAN. */
 void values_of(double *out, enum colour by, const struct packing *p,
                const struct contacts *contacts, const struct values *values);
-
-#endif

@@ -1,6 +1,5 @@
 /* draw/picture.h: a picture in memory, written as a PNG file that is complete or not there. */
-#ifndef NSD_PICTURE_H
-#define NSD_PICTURE_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -31,5 +30,3 @@ int bytes_write(const struct bytes_out *b, const char *path, struct failure *fai
  * fails. A device or a pipe is written directly. Returns 0, EX_IOERR or EX_SOFTWARE.
  */
 int picture_write(const struct picture *p, const char *path, struct failure *failure);
-
-#endif

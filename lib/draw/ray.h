@@ -4,8 +4,7 @@
  *
  * All is in the shape's own axes and unit [shape/shape.h].
  */
-#ifndef NSD_SIGHT_H
-#define NSD_SIGHT_H
+#pragma once
 
 #include "shape/shape.h"
 
@@ -20,5 +19,3 @@ bool ray_meets(const struct shape *s, const struct ray *line, double *t, vec3 *n
 
 /* In the plane: how deep a point lies inside, < 0: outside */
 double ray_depth(const struct shape *s, vec3 x);
-
-#endif

@@ -6,8 +6,7 @@
  * with normal n, a ball of radius r whose centre lies d away along the unit vector e hides n.e
  * (r/d)^2.
  */
-#ifndef NSD_SHADE_H
-#define NSD_SHADE_H
+#pragma once
 
 #include "draw/paint.h"
 #include "draw/picture.h"
@@ -135,5 +134,3 @@ static inline size_t band_at(const struct band *b, int x, int y)
 void shade_normals(struct band *b, const struct raster *s);
 void shade_near(struct band *b, const struct raster *s);
 void shade_pixels(const struct band *b, const struct raster *s, struct picture *p);
-
-#endif

@@ -1,6 +1,5 @@
 /* draw/svg.h: a packing of discs as an SVG: circles and lines, for a paper's figure. */
-#ifndef NSD_SVG_H
-#define NSD_SVG_H
+#pragma once
 
 #include "draw/overlay.h"
 
@@ -11,5 +10,3 @@
  */
 int svg_draw(const struct overlay *o, const struct view *v, const struct packing *p,
              const struct contacts *contacts, const char *path, struct failure *failure);
-
-#endif

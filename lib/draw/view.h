@@ -7,8 +7,7 @@
  *
  *     view_extend() for each packing, view_fit(); view_follow(), view_draw() for each packing
  */
-#ifndef NSD_VIEW_H
-#define NSD_VIEW_H
+#pragma once
 
 #include "draw/camera.h"
 #include "draw/paint.h"
@@ -67,5 +66,3 @@ void view_fit(struct view *v, const struct packing *p);
 /* pic = the picture, which the caller frees. Returns 0, EX_DATAERR (dim) or EX_SOFTWARE. */
 int view_draw(const struct view *v, const struct packing *p, struct picture *pic,
               struct failure *failure);
-
-#endif

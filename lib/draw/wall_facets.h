@@ -2,8 +2,7 @@
  * draw/wall_facets.h: walls that are drawn solid and shaded: which of their faces, and in which colour: one for each name,
  * or by what bodies have done to each face, from the sums of nsd-step --sums [state/wall_load.h].
  */
-#ifndef NSD_WALL_FACETS_H
-#define NSD_WALL_FACETS_H
+#pragma once
 
 #include "draw/outline.h"
 #include "draw/paint.h"
@@ -83,5 +82,3 @@ static inline float glass_part(double z)
     double beside = 1 - fabs(z); // where it is seen edgewise, there is more of it in the way
     return (float)(0.10 + 0.35 * beside * beside * beside);
 }
-
-#endif

@@ -3,8 +3,7 @@
  * they meet, for other shapes their outlines [draw/outline.h]. Planes are infinite; they are cut off at
  * a region of space.
  */
-#ifndef NSD_WALLS_H
-#define NSD_WALLS_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -64,5 +63,3 @@ bool walls_floor(const struct packing *p, int i, vec3 toward);
 /* corner[] = the corners (m) of wall i inside the region and before all other walls, at most
    WALLS_CORNERS, two in the plane; returns how many. i < WALLS_PANELS. */
 int walls_polygon(const struct packing *p, int i, const struct extent *r, vec3 *corner);
-
-#endif

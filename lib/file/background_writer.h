@@ -2,8 +2,7 @@
  * file/background_writer.h: frames that a thread of its own writes, while the next step is made. The same frames in the same
  * order; that one could not be written is told when the next is handed over, or at the end.
  */
-#ifndef NSD_BACKGROUND_WRITER_H
-#define NSD_BACKGROUND_WRITER_H
+#pragma once
 
 #include "file/writer.h"
 
@@ -19,5 +18,3 @@ int background_frame(struct background_writer *b, const struct frame *frame,
                      struct failure *failure);
 /* Waits for the last one, and frees; NULL: nothing. */
 int background_close(struct background_writer *b, struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * file/cell_tables.h: the cell in a document [nsd-format(5)]: H5MD's box with its edges over time, what
  * drives them, and the bodies' images.
  */
-#ifndef NSD_CELL_TABLES_H
-#define NSD_CELL_TABLES_H
+#pragma once
 
 #include "file/source.h"
 #include "file/tables.h"
@@ -18,5 +17,3 @@ int cell_tables_read(struct source *source, int64_t k, const bool repeats[3], st
 int cell_tables_write_box(hid_t file, const struct cell *c, struct failure *failure);
 /* A frame's part: nothing where nothing repeats */
 int cell_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
-
-#endif

@@ -3,8 +3,7 @@
  * on, and says which document it was (EX_DATAERR); and none outlives its tool, or is left to be buried by
  * others.
  */
-#ifndef NSD_CHILD_H
-#define NSD_CHILD_H
+#pragma once
 
 #include "file/h5.h"
 #include "file/object.h"
@@ -50,5 +49,3 @@ const struct listed *list_attribute(const struct list *list, const char *path, c
  */
 bool listed_numbers(const struct listed *listed, uint64_t first, uint64_t n, enum column_type type,
                     void *out);
-
-#endif

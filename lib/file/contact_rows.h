@@ -2,8 +2,7 @@
  * file/contact_rows.h: the contacts in a document, /contacts [nsd-format(5)]: a block of rows for each
  * frame that keeps its contacts.
  */
-#ifndef NSD_CONTACT_ROWS_H
-#define NSD_CONTACT_ROWS_H
+#pragma once
 
 #include "file/tables.h"
 
@@ -43,5 +42,3 @@ void memory_rows_close(struct memory_rows *rows);
 int memory_rows_read(struct memory_rows *rows, struct packing *p, struct failure *failure);
 /* The packing's, as the next block; nothing where solves do not start from it */
 int memory_rows_write(struct table_write *tables, const struct packing *p, struct failure *failure);
-
-#endif

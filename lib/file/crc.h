@@ -2,8 +2,7 @@
  * file/crc.h: the checksum of documents [nsd-format(5)], zlib's CRC-32, by libdeflate: a filter takes it of every byte
  * twice, as it comes and as it goes; zlib 1.2 does a GB a second, libdeflate four.
  */
-#ifndef NSD_CRC_H
-#define NSD_CRC_H
+#pragma once
 
 #include <libdeflate.h>
 #include <stddef.h>
@@ -14,5 +13,3 @@ static inline uint32_t document_crc(uint32_t crc, const void *bytes, size_t size
 {
     return size ? libdeflate_crc32(crc, bytes, size) : crc;
 }
-
-#endif

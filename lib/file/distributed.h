@@ -3,8 +3,7 @@
  * a document hands their rows over, block after block, and who writes one has them written. The frame's
  * packing has everything else, and no body.
  */
-#ifndef NSD_DISTRIBUTED_H
-#define NSD_DISTRIBUTED_H
+#pragma once
 
 #include "file/layout.h"
 
@@ -31,5 +30,3 @@ struct distributed {
     int (*give)(struct distributed *e, hid_t file, const char *path, const struct unfilled *place,
                 int places, struct failure *failure);
 };
-
-#endif

@@ -2,8 +2,7 @@
  * file/element.h: what datasets and attributes consist of: which types on disk are taken, whether numbers
  * keep their value in the type wanted, and texts of either kind.
  */
-#ifndef NSD_ELEMENT_H
-#define NSD_ELEMENT_H
+#pragma once
 
 #include "file/h5.h"
 #include "file/object.h"
@@ -22,5 +21,3 @@ hid_t element_type(const struct object *object);
 char *element_text(hid_t set, hid_t attr, size_t *length, bool *no_memory);
 /* A list of strings as one, each ended by a newline; NULL also where they are too many. */
 char *element_lines(hid_t set, size_t *length, bool *no_memory);
-
-#endif

@@ -3,8 +3,7 @@
  * of walls of frames in which they may differ, the forces of a step whose contacts are kept, those that last, and
  * what was answered. Frames in which nothing has acted have no row.
  */
-#ifndef NSD_EXTERNAL_FORCE_TABLES_H
-#define NSD_EXTERNAL_FORCE_TABLES_H
+#pragma once
 
 #include "file/frame.h"
 #include "file/source.h"
@@ -22,5 +21,3 @@ int external_force_tables_write(struct table_write *tables, const struct frame *
    write, EX_IOERR. */
 int pull_tables_read(struct source *source, struct packing *p, struct failure *failure);
 int pull_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
-
-#endif

@@ -5,8 +5,7 @@
  * link both. Problems are read from a source (file/source.h) and written to a `file`, an hid_t of
  * libhdf5.
  */
-#ifndef NSD_FCLIB_H
-#define NSD_FCLIB_H
+#pragma once
 
 #include "solve/condense.h"
 #include "solve/delassus.h"
@@ -43,5 +42,3 @@ int fclib_remove(int64_t file, const char *path, struct failure *failure);
 /* Writes a packing's contact problem with its info. Replaces any problem and solution there. */
 int fclib_write_problem(const struct problem *problem, bool global, int64_t file,
                         struct failure *failure);
-
-#endif

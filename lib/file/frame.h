@@ -3,8 +3,7 @@
  * solution, and the report of the solve; or else a contact problem from elsewhere (FCLIB) and its
  * solution. Tools are functions from frames to frames.
  */
-#ifndef NSD_FRAME_H
-#define NSD_FRAME_H
+#pragma once
 
 #include "file/fclib.h"
 #include "file/unknown.h"
@@ -44,5 +43,3 @@ struct frame {
 void frame_free(struct frame *frame);
 /* Adds a command's line to the history. */
 int frame_note(struct frame *frame, const char *line, struct failure *failure);
-
-#endif

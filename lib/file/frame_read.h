@@ -2,8 +2,7 @@
  * file/frame_read.h: frames out of the datasets of a document [nsd-format(5), state/fields.h]. The
  * inverse of file/frame_write.h.
  */
-#ifndef NSD_FRAME_READ_H
-#define NSD_FRAME_READ_H
+#pragma once
 
 #include "file/contact_rows.h"
 #include "file/frame.h"
@@ -28,5 +27,3 @@ int frame_read_open(struct frame_read *document, struct source *source, struct f
 int frame_read_moment(struct frame_read *document, int64_t k, struct frame *frame,
                       struct failure *failure);
 void frame_read_close(struct frame_read *document);
-
-#endif

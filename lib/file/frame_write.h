@@ -2,8 +2,7 @@
  * file/frame_write.h: a frame as the datasets of a document [nsd-format(5), state/fields.h], in three
  * parts: what all frames share, what belongs to this one, and the step that makes it count.
  */
-#ifndef NSD_FRAME_WRITE_H
-#define NSD_FRAME_WRITE_H
+#pragma once
 
 #include "file/tables.h"
 
@@ -14,5 +13,3 @@ int frame_write_moment(struct table_write *tables, const struct frame *frame,
 /* /particles/all/position/step, to be written last: with its step a frame counts as there. */
 int frame_write_step(struct table_write *tables, const struct frame *frame,
                      struct failure *failure);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * `place` is an open file or group and `path` a name in it.
  */
-#ifndef NSD_H5_H
-#define NSD_H5_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/field.h"
@@ -75,5 +74,3 @@ int h5_attr_text(hid_t place, const char *path, const char *name, const char *te
 hid_t h5_dataset_plist(void);
 /* Datasets with this list get all of their place on the disk as they are made, or grow, and nothing into it. */
 void h5_fill_later(hid_t plist);
-
-#endif

@@ -2,8 +2,7 @@
  * file/layout.h: paths of datasets that several files of this folder need. Which dataset holds which member of which struct
  * is in state/fields.h, and in words in nsd-format(5).
  */
-#ifndef NSD_LAYOUT_H
-#define NSD_LAYOUT_H
+#pragma once
 
 #include "file/frame.h"
 #include "file/h5.h"
@@ -36,5 +35,3 @@ static inline void layout_body_path(const struct field *b, char path[80])
 
 #define LAYOUT_REPORT     "/nsd/solver"
 #define LAYOUT_REPORT_0_1 "/observables/solver"
-
-#endif

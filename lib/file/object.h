@@ -2,8 +2,7 @@
  * file/object.h: an object of a document, told in plain numbers and names: what two processes know of it,
  * one of which asks libhdf5 (file/serve.h) and one does not (file/source.h); and sequences of them.
  */
-#ifndef NSD_OBJECT_H
-#define NSD_OBJECT_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -52,5 +51,3 @@ int objects_add(struct objects *objects, const struct object *object, const void
 /* The object at bytes[*at] of such a sequence; *at moves behind it. False at the end, and where the bytes are no such
    object. */
 bool object_unpack(const unsigned char *bytes, uint64_t size, uint64_t *at, struct listed *to);
-
-#endif

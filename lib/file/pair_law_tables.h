@@ -2,8 +2,7 @@
  * file/pair_law_tables.h: the laws beyond friction and restitution in a document, /nsd/law, and what lasts
  * of pairs by them, /nsd/bonds [nsd-format(5)].
  */
-#ifndef NSD_PAIR_LAW_TABLES_H
-#define NSD_PAIR_LAW_TABLES_H
+#pragma once
 
 #include "file/source.h"
 #include "file/tables.h"
@@ -17,5 +16,3 @@ int pair_law_tables_write_static(hid_t file, const struct packing *p, struct fai
 /* A frame's bonds; nothing where there are no laws */
 int pair_law_tables_write(struct table_write *tables, const struct packing *p,
                           struct failure *failure);
-
-#endif

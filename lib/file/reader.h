@@ -2,8 +2,7 @@
  * file/reader.h: documents in [nsd-format(5)]: streams and trajectories, one frame at a time. A
  * trajectory is a packed stream, so that reading either gives the same frames.
  */
-#ifndef NSD_READER_H
-#define NSD_READER_H
+#pragma once
 
 #include "base/option.h"
 #include "file/frame.h"
@@ -69,5 +68,3 @@ const char *reader_where(const struct reader *reader);
 /* Is the file at `path` one of these inputs? */
 bool reader_reads(int files, char *const *file, const char *path);
 void reader_close(struct reader *reader);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * file/report_json.h: errors and reports as JSON, under the same keys wherever they appear.
  */
-#ifndef NSD_REPORT_JSON_H
-#define NSD_REPORT_JSON_H
+#pragma once
 
 #include "base/json.h"
 #include "state/account.h"
@@ -19,5 +18,3 @@ json_t *json_account(const struct account *account, const struct names *names);
 
 /* Prints one compact line on stdout and frees the value. */
 void json_line(json_t *value);
-
-#endif

@@ -2,8 +2,7 @@
  * file/report_rows.h: the solver's reports in a document, /nsd/solver [nsd-format(5)]: a row for each
  * step that was solved.
  */
-#ifndef NSD_REPORT_ROWS_H
-#define NSD_REPORT_ROWS_H
+#pragma once
 
 #include "file/tables.h"
 #include "state/account.h"
@@ -52,5 +51,3 @@ int account_rows_read(struct source *source, int64_t start, int64_t n, struct ac
 /* The next row, after that of the report */
 int account_rows_write(struct table_write *tables, const struct account *account,
                        struct failure *failure);
-
-#endif

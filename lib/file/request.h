@@ -2,8 +2,7 @@
  * file/request.h: what is asked of a document, and the answers: the words between the process that
  * reads (file/server.h) and the tool (file/source.h).
  */
-#ifndef NSD_REQUEST_H
-#define NSD_REQUEST_H
+#pragma once
 
 #include "file/h5.h"
 #include "file/object.h"
@@ -84,5 +83,3 @@ ssize_t line_receive(int line, void *message, size_t size);
 
 /* A request for this path, all else 0. */
 struct request request_of(int op, const char *path);
-
-#endif

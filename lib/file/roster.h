@@ -4,8 +4,7 @@
  * NaN. Datasets of [frames][rows] grow in both directions, along the rows by whole chunks, so that
  * what is on disk of earlier frames stays as it is.
  */
-#ifndef NSD_ROSTER_H
-#define NSD_ROSTER_H
+#pragma once
 
 #include "file/source.h"
 #include "file/tables.h"
@@ -55,5 +54,3 @@ int flow_link(struct table_write *tables, const struct packing *p, struct failur
 int flow_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
 /* The number of the next body that is poured, where bodies were added besides; p has its step. */
 int flow_tables_read_numbers(struct source *source, struct packing *p, struct failure *failure);
-
-#endif

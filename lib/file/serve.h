@@ -2,8 +2,7 @@
  * file/serve.h: the answers: the one place where nsd has libhdf5 read what it did not write. It runs in a
  * process of its own (file/server.h). What it hands out is plain: numbers, texts, names, shapes.
  */
-#ifndef NSD_SERVE_H
-#define NSD_SERVE_H
+#pragma once
 
 #include "file/request.h"
 #include "file/served.h"
@@ -23,5 +22,3 @@ int serve_answer(struct served *served, const struct request *request, struct si
 /* REQUEST_ATTRIBUTES (serve_objects.c) */
 int serve_attributes(struct served *served, const struct request *request, struct sink *sink,
                      struct failure *failure);
-
-#endif

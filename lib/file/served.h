@@ -6,8 +6,7 @@
  * A document is one file: links into others, data kept in others and filters from plugins are
  * refused. What a document does not store is not believed.
  */
-#ifndef NSD_SERVED_H
-#define NSD_SERVED_H
+#pragma once
 
 #include "base/failure.h"
 #include "file/h5.h"
@@ -89,5 +88,3 @@ hid_t served_set(const struct served *served, const struct served_entry *entry,
                  struct failure *failure);
 /* Is as much stored as is wanted of the dataset's first bytes? 0, or EX_DATAERR. */
 int served_stored(const struct served_entry *entry, uint64_t bytes, struct failure *failure);
-
-#endif

@@ -3,8 +3,7 @@
  * (file/serve.h), with bounds on its memory and time. Requests come over a socket, answers go back over it,
  * and their data through shared memory.
  */
-#ifndef NSD_SERVER_H
-#define NSD_SERVER_H
+#pragma once
 
 #include "file/request.h"
 
@@ -19,5 +18,3 @@ struct server_memory {
 /* The child's life: answers until the line is closed, and ends. limit: as of served_open. */
 void server_run(int line, struct server_memory *shared, int files, char *const *file,
                 uint64_t limit, pid_t parent) __attribute__((noreturn));
-
-#endif

@@ -8,8 +8,7 @@
  *
  * Paths are absolute; "" is the root.
  */
-#ifndef NSD_SOURCE_H
-#define NSD_SOURCE_H
+#pragma once
 
 #include "file/h5.h"
 #include "file/object.h"
@@ -112,5 +111,3 @@ void *source_raw(struct source *source, const char *path, uint64_t *size, struct
 /* All attributes of an object, as a sequence of struct object; to be freed. */
 void *source_attributes(struct source *source, const char *path, uint64_t *size,
                         struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * file/stream.h: documents as bytes [nsd-format(5)]: the 64-byte header in front of each, and the
  * stream that they form when they follow one another. This module knows nothing of HDF5.
  */
-#ifndef NSD_STREAM_H
-#define NSD_STREAM_H
+#pragma once
 
 #include "base/failure.h"
 #include "file/crc.h"
@@ -56,5 +55,3 @@ bool stream_changed(const struct stream *stream);
 void stream_unload(const struct stream *stream);
 /* The current document is no longer needed: the memory of a large one from a pipe is freed. */
 void stream_release(struct stream *stream);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * file/tables.h: tables of fields [base/field.h] out of the datasets of a document, and into them.
  */
-#ifndef NSD_TABLES_H
-#define NSD_TABLES_H
+#pragma once
 
 #include "file/distributed.h"
 #include "file/layout.h"
@@ -141,5 +140,3 @@ int table_write_clocks(struct table_write *tables, const char *where, const stru
 
 /* Closes the datasets; the file stays open. Returns -1 where something could not be written. */
 int table_write_close(struct table_write *tables);
-
-#endif

@@ -3,8 +3,7 @@
  * documents that come of it: objects of the root and of the groups of particles, walls, observables
  * and /nsd whose names nsd does not use. FCLIB problems are among them.
  */
-#ifndef NSD_UNKNOWN_H
-#define NSD_UNKNOWN_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -28,5 +27,3 @@ struct unknown *unknown_share(struct unknown *unknown);
 void unknown_free(struct unknown *unknown);
 /* Into the HDF5 file (an hid_t), where a name is not taken yet; `stale`: without FCLIB problems. */
 int unknown_write(const struct unknown *unknown, int64_t file, bool stale, struct failure *failure);
-
-#endif

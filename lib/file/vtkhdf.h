@@ -8,8 +8,7 @@
  *
  * With parts besides the grains, /VTKHDF is a PartitionedDataSetCollection with a PolyData for each part.
  */
-#ifndef NSD_VTKHDF_H
-#define NSD_VTKHDF_H
+#pragma once
 
 #include "file/h5.h"
 #include "state/packing.h"
@@ -49,5 +48,3 @@ int vtkhdf_frame(struct vtkhdf *vtk, hid_t file, const struct packing *p, struct
 /* The document has all its frames: links, offsets and types. The next frame is another document's. */
 int vtkhdf_end(struct vtkhdf *vtk, hid_t file, struct failure *failure);
 void vtkhdf_free(struct vtkhdf *vtk);
-
-#endif

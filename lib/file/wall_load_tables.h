@@ -2,8 +2,7 @@
  * file/wall_load_tables.h: sums over steps of what bodies do to the faces of walls [state/wall_load.h] in a document; nothing
  * where none are kept.
  */
-#ifndef NSD_SUM_TABLES_H
-#define NSD_SUM_TABLES_H
+#pragma once
 
 #include "file/source.h"
 #include "file/tables.h"
@@ -14,5 +13,3 @@ int sum_tables_read(struct source *source, int64_t k, struct packing *p, struct 
 int sum_tables_write_static(struct table_write *tables, const struct packing *p,
                             struct failure *failure);
 int sum_tables_write(struct table_write *tables, const struct packing *p, struct failure *failure);
-
-#endif

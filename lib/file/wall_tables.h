@@ -2,8 +2,7 @@
  * file/wall_tables.h: walls in a document [nsd-format(5)]: their shapes, meshes, loads and
  * drives, and where they are over time.
  */
-#ifndef NSD_WALL_TABLES_H
-#define NSD_WALL_TABLES_H
+#pragma once
 
 #include "file/source.h"
 #include "file/tables.h"
@@ -34,5 +33,3 @@ int signal_tables_read(struct source *source, const char *group, const struct fi
                        struct drives *drives, struct failure *failure);
 int signal_tables_write(struct table_write *tables, const char *group, const struct field *fields,
                         const struct drives *drives, const char *units, struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * file/writer.h: documents out [nsd-format(5)]: a stream of one document for each frame, or a
  * trajectory that grows frame by frame in a regular file.
  */
-#ifndef NSD_WRITER_H
-#define NSD_WRITER_H
+#pragma once
 
 #include "file/frame.h"
 #include "file/reader.h"
@@ -67,5 +66,3 @@ void writer_forget_all(void);
 
 /* Frees a writer that has failed, or NULL: whole frames that have their place stay, as those of a killed writer do. */
 void writer_drop(struct writer *writer);
-
-#endif

@@ -10,8 +10,7 @@
  * A the areas of its plane faces and S that of its piece of the sphere, which by Gauss and Bonnet is
  * 2 pi - (sum of the exterior angles) - (sum of the geodesic curvatures of the arcs).
  */
-#ifndef NSD_BALL_PART_H
-#define NSD_BALL_PART_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -39,5 +38,3 @@ double ball_in_box(int dim, vec3 x, double radius, const double lo[3], const dou
  * centre. Discs: exactly. Balls: slices by Gauss's quadrature with 32 points, to 1e-4 of the ball.
  */
 double ball_in_cylinder(int dim, double d, double radius, double R);
-
-#endif

@@ -5,8 +5,7 @@
  * repeats are those to the image, and the frame's own positions, half a step before or after, do
  * not matter. Those of bodies of other shapes than balls are from the frame's positions.
  */
-#ifndef NSD_BRANCH_H
-#define NSD_BRANCH_H
+#pragma once
 
 #include "contact/contact_law.h"
 #include "measure/snapshot.h"
@@ -83,5 +82,3 @@ int32_t *counts_of(const struct snapshot *s);
 int counts_without_rattlers(int32_t *count, const struct snapshot *s, int least);
 /* A body that moves, to which measures keep, and whose centre is in the region? */
 bool counts_body(const struct snapshot *s, int64_t i);
-
-#endif

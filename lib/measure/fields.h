@@ -10,8 +10,7 @@
  * The velocity gradient is that of the affine flow which fits the velocities best by least squares with weights m phi:
  * exact where the flow is affine, however the bodies lie. The granular temperature is about that flow.
  */
-#ifndef NSD_FIELDS_H
-#define NSD_FIELDS_H
+#pragma once
 
 #include "measure/snapshot.h"
 #include "measure/table.h"
@@ -58,5 +57,3 @@ static inline int64_t fields_points(const struct fields *f)
 {
     return f->n[0] * f->n[1] * f->n[2];
 }
-
-#endif

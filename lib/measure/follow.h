@@ -2,8 +2,7 @@
  * measure/follow.h: since when bodies are in the region, and pairs touch, carried from frame to frame. Times are
  * those of frames, but those of bodies that were poured or removed, which are known.
  */
-#ifndef NSD_FOLLOW_H
-#define NSD_FOLLOW_H
+#pragma once
 
 #include "measure/snapshot.h"
 
@@ -19,5 +18,3 @@ static inline bool follow_in(const struct frame_memory_body *b)
 }
 /* s: when the body of that id was removed since the frame before; the frame's time where that is not known */
 double follow_removed(const struct snapshot *s, int32_t id);
-
-#endif

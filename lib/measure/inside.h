@@ -2,8 +2,7 @@
  * measure/inside.h: the inside of a bed, away from its surface and its walls, where its solid fraction is that of the
  * bulk.
  */
-#ifndef NSD_INSIDE_H
-#define NSD_INSIDE_H
+#pragma once
 
 #include "measure/region.h"
 
@@ -11,5 +10,3 @@
    diameter farther in; where a plane bounds the axis, two mean diameters from it. Returns 0; 1 where planes bound all
    axes, the cell is periodic or the bed is too small for an inside: r is then as it was; or EX_SOFTWARE. */
 int region_inside(struct region *r, const struct packing *p, struct failure *failure);
-
-#endif

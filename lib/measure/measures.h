@@ -3,8 +3,7 @@
  * the table: what it is called, what it needs, the numbers that it gives, and a function from a
  * snapshot to a table of them. Its formulas and their sources are in nsd-stat(1).
  */
-#ifndef NSD_MEASURES_H
-#define NSD_MEASURES_H
+#pragma once
 
 #include "measure/snapshot.h"
 #include "measure/table.h"
@@ -104,5 +103,3 @@ void measured_json(FILE *out, const struct snapshot *s, const struct measure *co
 /* Of "measure.quantity", perhaps with ".more" behind it; in the plane, dim 2, per metre of depth. "": it has none, or there is
    no such number. */
 const char *measure_unit(const char *name, int dim);
-
-#endif

@@ -1,6 +1,5 @@
 /* measure/near.h: points sorted into cells, so that those near a point are found at once. */
-#ifndef NSD_NEAR_H
-#define NSD_NEAR_H
+#pragma once
 
 #include "base/vec.h"
 #include "shape/cell.h"
@@ -72,5 +71,3 @@ bool scatter_add(struct scatter *a, vec3 x, int64_t of);
    short. */
 bool scatter_images(struct scatter *a, const struct period *m, double reach);
 void scatter_free(struct scatter *a);
-
-#endif

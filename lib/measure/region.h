@@ -6,8 +6,7 @@
  *
  * Where the cell repeats, a region sees images.
  */
-#ifndef NSD_REGION_H
-#define NSD_REGION_H
+#pragma once
 
 #include "base/failure.h"
 #include "measure/near.h"
@@ -66,5 +65,3 @@ vec3 region_velocities(const struct region *r, vec3 x, vec3 v);
 double region_ball(const struct region *r, vec3 x, double radius);
 /* The part in the region of the way from x to x + l, 0 to 1; 1 where it holds all */
 double region_way(const struct region *r, vec3 x, vec3 l);
-
-#endif

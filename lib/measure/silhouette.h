@@ -6,8 +6,7 @@
  * background), and what is above BODIES_CUT is covered. Of a photograph, dark on a bright ground and perhaps a mean of
  * several, the same is made with 255 minus its grey and PHOTO_CUT. Only pixels in the disc that is asked for count.
  */
-#ifndef NSD_SILHOUETTE_H
-#define NSD_SILHOUETTE_H
+#pragma once
 
 #include "measure/snapshot.h"
 
@@ -15,5 +14,3 @@
    Returns 0, EX_SOFTWARE or EX_IOERR. */
 int silhouette_write(const char *file, const struct frame_memory *kept, const struct asked *asked,
                      struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * measure/snapshot.h: what measures look at: a frame's packing and its contacts, what was asked, and
  * what is remembered of frames before.
  */
-#ifndef NSD_SNAPSHOT_H
-#define NSD_SNAPSHOT_H
+#pragma once
 
 #include "measure/region.h"
 #include "measure/table.h"
@@ -139,5 +138,3 @@ int snapshot_layers(const struct snapshot *s, struct table *t, layer_function *a
                     const void *with, struct failure *failure);
 /* The axis of layers: the asked one, or the one nearest to up */
 int snapshot_axis(const struct snapshot *s);
-
-#endif

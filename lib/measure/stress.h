@@ -1,6 +1,5 @@
 /* measure/stress.h: the stress in a region, by contacts and by the bodies' motion. */
-#ifndef NSD_STRESS_H
-#define NSD_STRESS_H
+#pragma once
 
 #include "measure/snapshot.h"
 #include "measure/tensor.h"
@@ -17,5 +16,3 @@ void moving_of(struct moving *m, const struct snapshot *s, const struct region *
 
 /* N m, of a region with solved contacts: sum f l^T of the forces' parts in it */
 struct tensor stress_contacts(const struct snapshot *s, const struct region *r);
-
-#endif

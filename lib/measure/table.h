@@ -2,8 +2,7 @@
  * measure/table.h: the numbers of a measure: one row, or a row for each layer, bin, wall, grain.
  * A number that there is not is NaN here, and null or nan where it is printed.
  */
-#ifndef NSD_TABLE_H
-#define NSD_TABLE_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -63,5 +62,3 @@ void table_json(FILE *out, const struct table *t, int list);
    the numbers of a row */
 void table_names(FILE *out, const struct quantity *quantity, const char *prefix);
 void table_numbers(FILE *out, const struct table *t, int64_t row);
-
-#endif

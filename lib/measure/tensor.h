@@ -1,6 +1,5 @@
 /* measure/tensor.h: tensors of space, their invariants and principal values. */
-#ifndef NSD_TENSOR_H
-#define NSD_TENSOR_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -42,5 +41,3 @@ void tensor_principal(const struct tensor *T, int dim, double value[3]);
 /* The logarithm of the symmetric part, whose principal values are positive; in the plane that of the first two rows
    and columns, the rest 0. */
 struct tensor tensor_log(const struct tensor *T, int dim);
-
-#endif

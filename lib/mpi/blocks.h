@@ -10,8 +10,7 @@
  * A body that k ranks push at once would be pushed too far: its contacts are solved by steps that are k times
  * shorter [solve/mass_splitting.h].
  */
-#ifndef NSD_BLOCKS_H
-#define NSD_BLOCKS_H
+#pragma once
 
 #include "mpi/halo.h"
 #include "mpi/subdomain.h"
@@ -44,5 +43,3 @@ void blocks_balance(struct blocks *b, const struct contacts *s, const struct imp
    needs it; did, or NULL: what that has done, in all ranks */
 void blocks_move_apart(struct blocks *b, const struct contacts *s, struct projected *did);
 void blocks_free(struct blocks *b);
-
-#endif

@@ -11,8 +11,7 @@
  *     3 g + 1  copies: contacts that another rank counts. Then messages are sent,
  *     3 g + 2  and fly while the others are solved
  */
-#ifndef NSD_COLOURS_H
-#define NSD_COLOURS_H
+#pragma once
 
 #include "mpi/contact_list.h"
 #include "mpi/halo.h"
@@ -33,5 +32,3 @@ struct colours {
 void colours_begin(struct colours *c, struct subdomain *y, const struct contacts *s,
                    const struct verdict *verdict, int64_t groups, int64_t bundles);
 void colours_free(struct colours *c);
-
-#endif

@@ -5,8 +5,7 @@
  * All functions are collective, unless they say otherwise: every rank calls them in the same order. Where
  * memory is short, or a message is not what was expected, the whole run ends (comm_fail).
  */
-#ifndef NSD_COMM_H
-#define NSD_COMM_H
+#pragma once
 
 #include <mpi.h>
 #include <stddef.h>
@@ -58,5 +57,3 @@ int64_t comm_sum(struct comm *t, int64_t n);
 void comm_fail(const struct comm *t, int status, const char *text) __attribute__((noreturn));
 /* malloc and calloc of n + 1 elements that end the run where memory is short */
 void *comm_new(const struct comm *t, int64_t n, size_t size);
-
-#endif

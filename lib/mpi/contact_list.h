@@ -2,8 +2,7 @@
  * mpi/contact_list.h: the contacts of all ranks in one list at the first, in the order in which one process would
  * have found them; and what the first says of each, on its way back to all who have it.
  */
-#ifndef NSD_CONTACT_LIST_H
-#define NSD_CONTACT_LIST_H
+#pragma once
 
 #include "mpi/comm.h"
 #include "mpi/subdomain.h"
@@ -63,5 +62,3 @@ void tally_sum(const struct tally_order *o, struct comm *t, int64_t bundles,
                const struct summands *of, double *out);
 double tally_along(const struct tally_order *o, struct comm *t, int64_t bundles,
                    const double *term);
-
-#endif

@@ -2,8 +2,7 @@
  * mpi/decomposition.h: which rank has which part of space. Any point has one owner; a box is met by the ranks whose
  * parts it reaches into. Zoltan cuts space into boxes, by recursive bisection.
  */
-#ifndef NSD_DECOMPOSITION_H
-#define NSD_DECOMPOSITION_H
+#pragma once
 
 #include "base/vec.h"
 #include "mpi/comm.h"
@@ -17,5 +16,3 @@ void decomposition_cut(struct decomposition *y, int64_t n, const vec3 *x, const 
 /* The owner of a point; the ranks that meet the box lo .. hi, into rank[t->n]: returns how many. */
 int decomposition_owner(const struct decomposition *y, vec3 x);
 int decomposition_meets(const struct decomposition *y, vec3 lo, vec3 hi, int *rank);
-
-#endif

@@ -2,8 +2,7 @@
  * mpi/halo.h: bodies' velocities on their way between ranks while contacts are solved. A wire leads to one
  * rank and carries, after each group of contacts, those that the other needs: nothing, mostly.
  */
-#ifndef NSD_HALO_H
-#define NSD_HALO_H
+#pragma once
 
 #include "mpi/comm.h"
 #include "mpi/subdomain.h"
@@ -48,5 +47,3 @@ void halo_refresh(const struct subdomain *y, struct problem *p);
 
 /* Sets s->with, most, count, agree and fail. */
 void answers_alike(struct exchange *s, struct comm *t);
-
-#endif

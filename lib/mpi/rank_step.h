@@ -12,8 +12,7 @@
  * With the order `block`, no rank has the whole packing, and each moves its own bodies and sums its own balances. That
  * needs a packing without inlets, outlets and laws of pairs beyond friction and restitution.
  */
-#ifndef NSD_RANK_STEP_H
-#define NSD_RANK_STEP_H
+#pragma once
 
 #include "contact/neighbours.h"
 #include "mpi/rows.h"
@@ -58,5 +57,3 @@ void rank_step_act(struct rank_step *y, const struct packing *whole);
 int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *s,
                    const struct step_opt *o, struct report *rep, struct failure *failure);
 void rank_step_free(struct rank_step *y);
-
-#endif

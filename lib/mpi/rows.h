@@ -2,8 +2,7 @@
  * mpi/rows.h: the bodies as files have them: in rows, of which each rank has a block, one rank after the
  * other. So they come from a document, before they are dealt (mpi/subdomain.h), and so they go into one.
  */
-#ifndef NSD_ROWS_H
-#define NSD_ROWS_H
+#pragma once
 
 #include "file/distributed.h"
 #include "file/layout.h"
@@ -66,5 +65,3 @@ int files_fill(const struct rows *r, const struct subdomain *y, const struct fil
                struct failure *failure);
 /* Is libhdf5 the one that knows MPI? */
 bool files_parallel(void);
-
-#endif

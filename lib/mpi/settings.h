@@ -2,8 +2,7 @@
  * mpi/settings.h: all that a packing has besides its bodies, what they are made of and bounded by, on its
  * way from the first rank to the others: whole, and what of it changes from step to step.
  */
-#ifndef NSD_SETTINGS_H
-#define NSD_SETTINGS_H
+#pragma once
 
 #include "mpi/comm.h"
 #include "state/packing.h"
@@ -18,5 +17,3 @@ void settings_follow(struct comm *t, struct packing *p);
 void settings_act(struct comm *t, struct packing *p, const struct packing *whole);
 /* The same of two packings of one rank */
 void settings_copy_motion(struct packing *to, const struct packing *from);
-
-#endif

@@ -3,8 +3,7 @@
  * of others that may meet them. Bodies lie in the order of their rows in the whole packing, so that contacts
  * are found in the order in which one process would find them.
  */
-#ifndef NSD_SUBDOMAIN_H
-#define NSD_SUBDOMAIN_H
+#pragma once
 
 #include "mpi/decomposition.h"
 #include "state/contact.h"
@@ -87,5 +86,3 @@ static inline bool subdomain_has(const struct subdomain *y, const struct contact
 {
     return subdomain_counts(y, c) || (c->a >= 0 && y->owner[c->a] == y->comm->me);
 }
-
-#endif

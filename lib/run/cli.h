@@ -4,8 +4,7 @@
  *
  * A tool defines `tool` and tool_main(); the only main() is in main.c.
  */
-#ifndef NSD_CLI_H
-#define NSD_CLI_H
+#pragma once
 
 #include "base/option.h"
 
@@ -54,5 +53,3 @@ void progress_end(void);
 
 /* Flushes and closes stdout, where it is text; ends with EX_IOERR if any of it was not written. */
 void finish_stdout(void);
-
-#endif

@@ -5,8 +5,7 @@
  *
  * All that fail return EX_DATAERR, EX_USAGE or EX_SOFTWARE, and leave everything as it was.
  */
-#ifndef NSD_ACTS_H
-#define NSD_ACTS_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -63,5 +62,3 @@ int control_gravity(struct packing *p, vec3 g, struct failure *failure);
 /* Between two materials, by their names */
 int control_friction(struct packing *p, const char *a, const char *b, double mu,
                      struct failure *failure);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * run/document.h: documents in memory [nsd-format(5)].
  */
-#ifndef NSD_API_DOCUMENT_H
-#define NSD_API_DOCUMENT_H
+#pragma once
 
 #include "file/frame.h"
 
@@ -15,5 +14,3 @@ int document_read(struct frame *frame, const void *bytes, size_t size, struct fa
 char *document_write(const struct frame *frame, size_t *size, struct failure *failure);
 /* The last frame of a file; the same */
 int document_read_file(struct frame *frame, const char *path, struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * run/driver.h: a run of steps: what it keeps from step to step beside its frame, and how each of its steps begins. Then the step
  * is made: by step_advance(), by one process or by ranks [run/processes.h], who differ in no more than that.
  */
-#ifndef NSD_DRIVER_H
-#define NSD_DRIVER_H
+#pragma once
 
 #include "run/control.h"
 #include "scene/inlet.h"
@@ -36,5 +35,3 @@ int driver_set_dt(struct packing *p, double dt, struct failure *failure);
 /* s: what a time that is given in seconds may differ from that of its step: a part of dt, and the roundings of dt, of its
    product with the step, and of the time given */
 double driver_slack(const struct packing *p, double t);
-
-#endif

@@ -2,8 +2,7 @@
  * run/loop.h: a program in the loop of nsd-step: before steps it is told what there is, and answers what shall act. Its answers
  * go into the packing's words [state/external_force.h], and with its frames into documents, from which --replay has them again.
  */
-#ifndef NSD_LOOP_H
-#define NSD_LOOP_H
+#pragma once
 
 #include "file/frame.h"
 #include "run/cli.h"
@@ -31,5 +30,3 @@ bool loop_before_step(struct frame *f, struct control *acts, bool first, struct 
 /* The run has ended. A program that has written more than was read has a status in why: its answers may have acted in other
    steps. */
 void loop_close(struct failure *failure);
-
-#endif

@@ -2,8 +2,7 @@
  * run/options.h: the options of the solver and of the contacts, the same in every tool that has
  * them; what they are when they are not given; and what is said of a solve.
  */
-#ifndef NSD_OPTIONS_H
-#define NSD_OPTIONS_H
+#pragma once
 
 #include "file/frame.h"
 #include "run/cli.h"
@@ -63,5 +62,3 @@ void options_leave_device(void);
 
 /* Says on stderr how a solve went: "1135 contacts, exact: 812 sweeps, eps_glob 9.9e-11, 0.04 s" */
 void options_summary(const char *where, const struct report *report);
-
-#endif

@@ -2,8 +2,7 @@
  * run/partner.h: a program that is started once, and answers in lines what is written to it, with a bound on the time that it
  * takes and on the size of its answers. It does not outlive this process, however that ends.
  */
-#ifndef NSD_PARTNER_H
-#define NSD_PARTNER_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -29,5 +28,3 @@ int partner_check_silent(struct partner *partner, struct failure *failure);
 /* It reads an end of file, and is waited for so long, then killed; NULL: nothing. Fails if it has written what was not
    read. */
 int partner_end(struct partner *partner, double seconds, struct failure *failure);
-
-#endif

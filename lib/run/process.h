@@ -5,8 +5,7 @@
  * copies are refused (NSD_USAGE), and its descriptors of those files lead elsewhere: whatever libhdf5 does with them as
  * the child ends does not reach the file.
  */
-#ifndef NSD_API_PROCESS_H
-#define NSD_API_PROCESS_H
+#pragma once
 
 #include <stdbool.h>
 #include <sys/types.h>
@@ -19,5 +18,3 @@ bool process_owns(pid_t maker);
 /* libhdf5 is used by one thread at a time, and prints nothing meanwhile. */
 void process_lock(void);
 void process_unlock(void);
-
-#endif

@@ -3,8 +3,7 @@
  * the others make the steps with it. There are two texts of this: run/processes.c for a process alone, and
  * run/mpi_processes.c, with MPI, in nsd-step-mpi.
  */
-#ifndef NSD_PROCESSES_H
-#define NSD_PROCESSES_H
+#pragma once
 
 #include "file/distributed.h"
 #include "step/step.h"
@@ -34,5 +33,3 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
                    const struct step_opt *o, struct failure *failure);
 /* The leader, in the end: the others are done. A word of what they have told each other, or NULL */
 const char *processes_leave(void);
-
-#endif

@@ -9,8 +9,7 @@
  *
  * or the word stop. Forces act until the next answer, all else until it is changed.
  */
-#ifndef NSD_REPLY_H
-#define NSD_REPLY_H
+#pragma once
 
 #include "run/control.h"
 
@@ -25,5 +24,3 @@ int reply_check(const json_t *answer, struct failure *failure);
    Returns 0, EX_DATAERR or EX_SOFTWARE, where nothing has changed. */
 int reply_apply(const json_t *answer, struct control *acts, struct packing *p, bool *stop,
                 struct failure *failure);
-
-#endif

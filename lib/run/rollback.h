@@ -2,8 +2,7 @@
  * run/rollback.h: what a packing was before a step, should the step fail. Its arrays of bodies stay where they are, unless
  * bodies come and go.
  */
-#ifndef NSD_UNDO_H
-#define NSD_UNDO_H
+#pragma once
 
 #include "run/control.h"
 
@@ -25,5 +24,3 @@ int rollback_take(struct rollback *undo, const struct packing *p, const struct c
                   struct failure *failure);
 /* p and acts are what they were. */
 void rollback_back(struct rollback *undo, struct packing *p, struct control *acts);
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * run/run.h: a run as the functions of nsd.h have it, and what they share.
  */
-#ifndef NSD_RUN_H
-#define NSD_RUN_H
+#pragma once
 
 #include "file/writer.h"
 #include "measure/measures.h"
@@ -59,5 +58,3 @@ int run_choose(struct nsd_run *r, struct failure *failure);
 int run_add(struct nsd_run *r, const struct nsd_bodies *b, int32_t *id, struct failure *failure);
 /* Where the packing gets other bodies: a new one in place of it */
 void run_replace(struct nsd_run *r, struct packing *p, struct contacts *s);
-
-#endif

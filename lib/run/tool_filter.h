@@ -2,8 +2,7 @@
  * run/tool_filter.h: what the tools share that read frames and write each of them, changed:
  * nsd-detect, nsd-solve, nsd-move.
  */
-#ifndef NSD_TOOL_FILTER_H
-#define NSD_TOOL_FILTER_H
+#pragma once
 
 #include "file/frame.h"
 
@@ -20,5 +19,3 @@ void tool_wants_packing(const struct frame *f, const char *where);
 void tool_wants_contacts(const struct frame *f, const char *where);
 /* and these solved. */
 void tool_wants_solution(const struct frame *f, const char *where);
-
-#endif

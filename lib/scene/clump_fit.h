@@ -7,8 +7,7 @@
  * so that few have to be counted again]. Then all radii grow by the same length, so that the balls together have the
  * volume of the surface. The same surface gives the same balls.
  */
-#ifndef NSD_CLUMP_FIT_H
-#define NSD_CLUMP_FIT_H
+#pragma once
 
 #include "shape/mesh.h"
 #include "shape/shape.h"
@@ -39,5 +38,3 @@ struct clump_limits {
 int clump_fit(struct shape *s, struct solid *of, const struct mesh *m,
               const struct clump_limits *limits, struct clump_errors *errors,
               struct failure *failure);
-
-#endif

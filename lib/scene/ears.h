@@ -6,8 +6,7 @@
  * decimals, and what is bent further has several triangulations that are different surfaces. It must not
  * cross itself. Corners on a straight line are no ears: no triangle is without an area that need not be.
  */
-#ifndef NSD_EARS_H
-#define NSD_EARS_H
+#pragma once
 
 #include "base/vec.h"
 
@@ -20,5 +19,3 @@ enum { POLYGON_CORNERS_MOST = 4096 };
    which polygons that are not convex take n^2. Returns NULL, or what is wrong with the polygon. */
 const char *ears_cut(const vec3 *x, int32_t n, int32_t (*triangle)[3], int32_t *triangles,
                      int64_t *work);
-
-#endif

@@ -2,8 +2,7 @@
  * scene/grains.h: the bodies of a group before they are a packing: what a table, a document or a
  * random start says of each. What it does not say is the group's.
  */
-#ifndef NSD_GRAINS_H
-#define NSD_GRAINS_H
+#pragma once
 
 #include "scene/scene.h"
 #include "state/packing.h"
@@ -50,5 +49,3 @@ int32_t grains_material(const struct scene *s, const struct scene_bodies *b, int
 /* scene/grains.c: those of a document's frame: EX_DATAERR where a material is none of the scene's. */
 int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
                        struct failure *failure);
-
-#endif

@@ -7,8 +7,7 @@
  * within HULL_FLAT of a plane, that of the largest, are one face; and corners of two faces only, and faces of two
  * corners, are none. So faces close, whatever rounding and noise say of each single one.
  */
-#ifndef NSD_HULL_H
-#define NSD_HULL_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -33,5 +32,3 @@ static const double HULL_FLAT = 2e-7, HULL_APART = 1e-6;
    points, faces in that of their corners. Returns 0, EX_DATAERR where the points have no volume, or
    EX_SOFTWARE. */
 int hull_of_points(struct shape *s, int dim, int64_t n, const vec3 *point, struct failure *failure);
-
-#endif

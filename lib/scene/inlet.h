@@ -12,8 +12,7 @@
  * So nothing depends on threads, nor on where runs begin and end: all that is remembered is how many
  * grains a pour has brought, and their mass, which documents hold. Doing it twice is doing it once.
  */
-#ifndef NSD_FLOW_H
-#define NSD_FLOW_H
+#pragma once
 
 #include "scene/scene.h"
 #include "state/contact.h"
@@ -42,5 +41,3 @@ int flow_step(const struct flow *flow, struct packing *p, struct contacts *last,
    EX_SOFTWARE. */
 int flow_drop(struct packing *p, struct contacts *last, const int32_t *row,
               struct failure *failure);
-
-#endif

@@ -7,8 +7,7 @@
  * Lines and columns count from 1, columns in characters. Reading a node that is not there (its json
  * is NULL) is no fault and leaves *out, which holds the default, as it is.
  */
-#ifndef NSD_JSON_NODE_H
-#define NSD_JSON_NODE_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -55,5 +54,3 @@ int json_node_text(jnode node, const char **out); /* borrowed from the parsed te
 int json_node_word(jnode node, const char *const *words, int *out);
 int json_node_array(jnode node, size_t *length); /* 0 when it is not there */
 int json_node_vector(jnode node, int dim, vec3 *out);
-
-#endif

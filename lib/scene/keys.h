@@ -3,8 +3,7 @@
  * its value, the member that gets it, its range, unit and default, when it may and when it must be given, and a line of
  * help. The reading, its messages, the JSON Schema [scene/schema.h] and the tables of nsd-scene(5) come of the same rows.
  */
-#ifndef NSD_KEYS_H
-#define NSD_KEYS_H
+#pragma once
 
 #include "scene/json_node.h"
 #include "scene/scene.h"
@@ -96,5 +95,3 @@ extern const struct key_type key_vector, key_direction /* of length 1 */, key_sp
 extern const struct key_type key_lengths, key_two_positive, key_min_max;            /* double[] */
 extern const struct key_type key_matrix;                    /* double[3][3] or vec3[3] */
 extern const struct key_type key_object, key_list, key_map; /* a list or a map has its own read */
-
-#endif

@@ -2,8 +2,7 @@
  * scene/line_crossings.h: where lines along an axis go through the triangles of a surface, and what the winding number along
  * them says of it: of the surface of a body it is 1 inside and 0 outside.
  */
-#ifndef NSD_LINE_CROSSINGS_H
-#define NSD_LINE_CROSSINGS_H
+#pragma once
 
 #include "shape/mesh.h"
 
@@ -39,5 +38,3 @@ int crossing_of(const vec3 v[3], double y, double z, double *x);
 /* Is a closed surface that of a body: nowhere twice around a place, and nowhere inside out? Lines along each axis, 128
    along the longest side, look for parts of 1e-3 of the volume. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int crossings_judge(const struct mesh *m, struct failure *failure);
-
-#endif

@@ -3,8 +3,7 @@
  * bytes are says which format it is, and the name only where they do not. Readers are nsd's own: they read one
  * file and no other, keep double precision, and refuse what is not as its format says.
  */
-#ifndef NSD_MESH_FILE_H
-#define NSD_MESH_FILE_H
+#pragma once
 
 #include "scene/scene.h"
 #include "scene/soup.h"
@@ -131,5 +130,3 @@ struct mesh_bytes {
 /* The same of bytes */
 int mesh_bytes_read(struct mesh *to, struct scene_files *files, const struct mesh_bytes *b,
                     int32_t *left_out, struct failure *failure);
-
-#endif

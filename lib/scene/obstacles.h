@@ -6,8 +6,7 @@
  * where its box contains the box of the group, grains are inside it (a vessel), else outside (an obstacle). A wall whose free
  * side the box does not reach, such as that of another vessel, is met only at its surface.
  */
-#ifndef NSD_OBSTACLES_H
-#define NSD_OBSTACLES_H
+#pragma once
 
 #include "scene/scene.h"
 #include "shape/mesh.h"
@@ -43,5 +42,3 @@ void obstacles_free(struct obstacles *all);
 bool obstacles_meet(const struct obstacles *all, vec3 x, double r);
 /* Moves x out of the walls that a ball of radius r touches; returns the deepest overlap before that, m. */
 double obstacles_push(const struct obstacles *all, vec3 *x, double r);
-
-#endif

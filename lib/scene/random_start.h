@@ -10,8 +10,7 @@
  * by more, and out of the walls. Equal balls reach 0.6 of a large box, discs 0.8; then none overlaps at all, for pairs are
  * pushed a little further than needed.
  */
-#ifndef NSD_RANDOM_START_H
-#define NSD_RANDOM_START_H
+#pragma once
 
 #include "scene/grains.h"
 
@@ -34,5 +33,3 @@ int shelves_fill(struct grains *out, const struct scene_bodies *group, int dim, 
 int random_start(struct grains *out, const struct scene_bodies *group, int dim,
                  const struct cell *cell, const struct packing *walls, gsl_rng *rng,
                  struct failure *failure);
-
-#endif

@@ -12,8 +12,7 @@
  *              with which every solve converges, as the paper says (with 1 some steps jam);
  *   example 3  a box of 6.3 mm, no lid, cells of 1.05 mm, 6 x 6 a layer, full jitter.
  */
-#ifndef NSD_SCENE_H
-#define NSD_SCENE_H
+#pragma once
 
 #include "base/failure.h"
 #include "scene/scene_size.h"
@@ -247,5 +246,3 @@ char *scene_path(const char *dir, const char *name);
  * proportions. n = 0 is an empty box. Parsed from its JSON text like any other scene.
  */
 int scene_paper(struct scene *s, int dim, int64_t n, struct failure *failure);
-
-#endif

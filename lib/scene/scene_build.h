@@ -1,6 +1,5 @@
 /* scene/scene_build.h: builds a packing from a scene. The same scene gives the same bytes. */
-#ifndef NSD_SCENE_BUILD_H
-#define NSD_SCENE_BUILD_H
+#pragma once
 
 #include "scene/scene.h"
 #include "state/packing.h"
@@ -11,5 +10,3 @@
  * that overlap), EX_NOINPUT (a table cannot be read) or EX_SOFTWARE; p needs freeing only after 0.
  */
 int scene_build(struct packing *p, const struct scene *s, const char *dir, struct failure *failure);
-
-#endif

@@ -4,8 +4,7 @@
  * the scene has the same wall. A scene at the time of its document continues the run: it takes the remembered
  * reactions, forces that last, edges gone, and what the run does about overlaps, too.
  */
-#ifndef NSD_SCENE_CARRY_H
-#define NSD_SCENE_CARRY_H
+#pragma once
 
 #include "scene/scene.h"
 #include "state/packing.h"
@@ -35,5 +34,3 @@ struct scene_lost {
     double dt;     /* s: of the run, where the scene's is chosen again; 0: it is not */
 };
 struct scene_lost scene_lost(const struct packing *p, const struct scene *s);
-
-#endif

@@ -1,6 +1,5 @@
 /* scene/scene_fill.h: bodies of groups, from their places and sizes to rows of a packing. */
-#ifndef NSD_SCENE_FILL_H
-#define NSD_SCENE_FILL_H
+#pragma once
 
 #include "scene/grains.h"
 #include "scene/scene.h"
@@ -12,5 +11,3 @@
    EX_DATAERR or EX_SOFTWARE. */
 int scene_fill(struct packing *p, const struct scene *s, const struct grains *list, gsl_rng *rng,
                struct failure *failure);
-
-#endif

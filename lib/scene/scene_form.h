@@ -1,6 +1,5 @@
 /* scene/scene_form.h: a shape of grains while it is read. */
-#ifndef NSD_SCENE_FORM_H
-#define NSD_SCENE_FORM_H
+#pragma once
 
 #include "scene/scene_read.h"
 #include "shape/solid.h"
@@ -14,5 +13,3 @@ struct form {
 /* "solid", "clump", "mesh" */
 extern const struct keys solid_keys, clump_keys, grain_mesh_keys;
 int scene_read_grain_mesh(jnode mesh, struct scene *scene, void *form);
-
-#endif

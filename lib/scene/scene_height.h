@@ -3,8 +3,7 @@
  * its cells, a random start of so many grains by the solid fraction that it reaches in a wide box, 0.6, in the
  * plane 0.82.
  */
-#ifndef NSD_SCENE_HEIGHT_H
-#define NSD_SCENE_HEIGHT_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -14,5 +13,3 @@ double scene_lattice_height(const struct scene_bodies *b, int dim);
 double scene_random_height(int dim, double volume, double area);
 /* m: of group g; NAN: of one that has none. *has: that of its box, may be infinite */
 double scene_height(const struct scene *s, int64_t g, double *has);
-
-#endif

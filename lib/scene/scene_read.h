@@ -2,8 +2,7 @@
  * scene/scene_read.h: the tables of keys of a scene's objects [scene/keys.h], a file for each part of it, and what reads
  * the values that need more than a table. Each returns 0, or not 0 after a fault has been reported.
  */
-#ifndef NSD_SCENE_READ_H
-#define NSD_SCENE_READ_H
+#pragma once
 
 #include "scene/keys.h"
 
@@ -98,5 +97,3 @@ int scene_read_bodies(jnode n, struct scene *s, void *out);
 
 /* Of a type whose values are read when the other keys of the object are known */
 int scene_read_later(jnode n, const struct key *k, struct scene *s, void *member);
-
-#endif

@@ -7,8 +7,7 @@
  * is then dF/dd / d^dim: on a segment it is proportional to d^(-1-dim), whose distribution is
  * inverted in closed form.
  */
-#ifndef NSD_SCENE_SIZE_H
-#define NSD_SCENE_SIZE_H
+#pragma once
 
 #include <gsl/gsl_rng.h>
 #include <stdint.h>
@@ -43,5 +42,3 @@ void scene_size_scale(struct scene_size *size, double factor);
 /* A normal deviate with standard deviation sd, the same on every machine */
 double scene_draw_normal(gsl_rng *rng, double sd);
 void scene_size_free(struct scene_size *size);
-
-#endif

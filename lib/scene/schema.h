@@ -5,8 +5,7 @@
  * The schema accepts what the tables accept: keys, types, ranges, keys that are needed, and which go together. What follows
  * from several values, as that a box is wide enough for its bodies, only scene_parse() sees.
  */
-#ifndef NSD_SCHEMA_H
-#define NSD_SCHEMA_H
+#pragma once
 
 #include "base/failure.h"
 
@@ -16,5 +15,3 @@
 json_t *schema_of_scenes(struct failure *failure);
 /* Calls line() for each key, with the fields: table, key, type, unit, default, example, help. */
 void schema_lines(void (*line)(const char *const field[7]));
-
-#endif

@@ -3,8 +3,7 @@
  * drawn. Sizes are diameters, of shaped grains those of the balls around them; shares are of the number, and of the mass at
  * one density.
  */
-#ifndef NSD_SIZE_TABLE_H
-#define NSD_SIZE_TABLE_H
+#pragma once
 
 #include "base/failure.h"
 #include "scene/scene_size.h"
@@ -33,5 +32,3 @@ void size_table_free(struct size_table *t);
 /* m: the diameter below which there is a share; the share below a diameter */
 double size_table_quantile(const struct size_table *t, enum size_share of, double share);
 double size_table_below(const struct size_table *t, enum size_share of, double d);
-
-#endif

@@ -5,8 +5,7 @@
  * Left out are triangles without any area, which cover nothing, and all but the first of those that have the
  * same three corners.
  */
-#ifndef NSD_SOUP_H
-#define NSD_SOUP_H
+#pragma once
 
 #include "shape/mesh.h"
 
@@ -52,5 +51,3 @@ int soup_label(struct soup *s, int which, const char *name, int n);
    are numbers too coarse for what they describe: far from the origin those of 32 bits are. */
 int soup_mesh(struct mesh *to, struct soup *s, double scale, int32_t *left_out);
 void soup_free(struct soup *s);
-
-#endif

@@ -12,8 +12,7 @@
  * wall and of what falls or is driven by a load, as the time step has it [scene/time_step.h], m the heaviest body. Bodies
  * that inlets bring count.
  */
-#ifndef NSD_STIFFNESS_H
-#define NSD_STIFFNESS_H
+#pragma once
 
 #include "scene/scene.h"
 #include "state/packing.h"
@@ -41,5 +40,3 @@ int stiffness_set(struct packing *p, double k, struct failure *failure);
 double stiffness_softness(const struct packing *p);
 /* N/m: the smallest and the largest k_n of all pairs; both 0: rigid */
 void stiffness_range(const struct packing *p, double k[2]);
-
-#endif

@@ -5,8 +5,7 @@
  * of them, once either way, corners within 1e-6 of the extent being one; outward; nowhere around a place twice; with the volume of their convex hull to 1e-5. What is taken is then the hull, whose faces are as large as they can be,
  * not triangles. Or the hull of the corners is wanted, and of the triangles nothing is asked.
  */
-#ifndef NSD_SURFACE_PARTS_H
-#define NSD_SURFACE_PARTS_H
+#pragma once
 
 #include "scene/scene.h"
 #include "shape/mesh.h"
@@ -27,5 +26,3 @@ int mesh_closed(const struct mesh *m, struct failure *failure);
 
 /* When meshes have been read. Returns 0, EX_SOFTWARE, or EX_DATAERR where faces do not exist or are named twice. */
 int scene_parts_split(struct scene *s, struct failure *failure);
-
-#endif

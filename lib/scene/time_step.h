@@ -27,8 +27,7 @@
  * What falls ends on the planes, rectangles, discs and meshes below it that there are at the start. Drives of a
  * wall count together where they act at the same time.
  */
-#ifndef NSD_TIME_STEP_H
-#define NSD_TIME_STEP_H
+#pragma once
 
 #include "scene/scene.h"
 
@@ -75,5 +74,3 @@ void time_step_of(struct time_step *t, const struct scene *s, const struct packi
    all grains [Parrinello & Rahman 1981], with which it swings no faster than a wave crosses the cell. */
 double time_step_wall_mass(const struct packing *p, const struct wall *w);
 double time_step_edge_mass(const struct packing *p);
-
-#endif

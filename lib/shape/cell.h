@@ -18,8 +18,7 @@
  * Which of a body's images is the body is arbitrary, and so is which edges span the lattice:
  * state/placement.h chooses both again at the beginning of a step.
  */
-#ifndef NSD_CELL_H
-#define NSD_CELL_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -152,5 +151,3 @@ void cell_wraps(const struct cell *c, const vec3 inverse[3], vec3 x, int32_t wra
  * Returns n; 0: it is not too oblique, or the new edge would not move as it must.
  */
 int32_t cell_recut(struct cell *c, int *to, int *from);
-
-#endif

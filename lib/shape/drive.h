@@ -8,8 +8,7 @@
  * The same signals say what the force of a load is in time [shape/drive.h]; then the way is a force, N
  * along the axis or N m about it.
  */
-#ifndef NSD_DRIVE_H
-#define NSD_DRIVE_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -118,5 +117,3 @@ vec3 drives_velocity(const struct drives *d, int32_t first, int32_t n, struct dr
                      vec3 x);
 /* rad/s: its mean angular velocity */
 vec3 drives_spin(const struct drives *d, int32_t first, int32_t n, struct drive_step step);
-
-#endif

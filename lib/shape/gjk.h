@@ -3,8 +3,7 @@
  * of both that are nearest. What points, segments and hulls that do not overlap need; libccd, which
  * is at hand, says only whether they overlap.
  */
-#ifndef NSD_GJK_H
-#define NSD_GJK_H
+#pragma once
 
 #include "shape/shape.h"
 
@@ -14,5 +13,3 @@ struct nearest {
 };
 
 struct nearest gjk_nearest(const struct core *a, const struct core *b);
-
-#endif

@@ -14,8 +14,7 @@
  * The gap between sharp hulls that do not overlap is that along the best axis: where a corner is next
  * to a corner it is less than their distance, never more.
  */
-#ifndef NSD_MEET_H
-#define NSD_MEET_H
+#pragma once
 
 #include "shape/shape.h"
 
@@ -35,5 +34,3 @@ int meet_cores(int dim, const struct core *a, const struct core *b, double reach
 int meet_end(const struct place *place);
 /* Leaves four of n places: the deepest, and those that span most. Returns how many are left. */
 int meet_few(struct place *place, int n);
-
-#endif

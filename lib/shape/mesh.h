@@ -11,8 +11,7 @@
  * that are none: an STL file has each corner once a triangle, in single precision. At a distance below the
  * tolerance the way from the surface to a point is rounding, and the normal is that of the triangle.
  */
-#ifndef NSD_MESH_H
-#define NSD_MESH_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -139,5 +138,3 @@ bool surface_is_at(const struct surface *s, vec3 c, const vec3 *n, double near);
 /* Of an element: its unit normal, in the plane across the segment; its place next to c */
 vec3 surface_normal(const struct surface *s, int32_t e);
 vec3 surface_nearest(const struct surface *s, int32_t e, vec3 c);
-
-#endif

@@ -7,8 +7,7 @@
  * radius of the ball around it: a grain of `radius` r reaches r from its centre, whatever its shape,
  * and is the shape r times as large.
  */
-#ifndef NSD_SHAPE_H
-#define NSD_SHAPE_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -159,5 +158,3 @@ void shape_free(struct shape *s);
  * what is wrong, or EX_SOFTWARE.
  */
 int shape_finish(struct shape *s, int dim, struct failure *failure);
-
-#endif

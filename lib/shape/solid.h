@@ -8,8 +8,7 @@
  * closed form. Of clumps whose balls do not overlap as sums; of other clumps, and of rounded hulls, the
  * lines of a grid are integrated: chords are exact, and the error is that of the grid, 1e-4 relative.
  */
-#ifndef NSD_SOLID_H
-#define NSD_SOLID_H
+#pragma once
 
 #include "shape/shape.h"
 
@@ -41,5 +40,3 @@ int solid_settle(struct shape *s, int dim, struct solid_frame *was, struct failu
    fill. */
 int solid_settle_as(struct shape *s, int dim, const struct solid *of, struct solid_frame *was,
                     struct failure *failure);
-
-#endif

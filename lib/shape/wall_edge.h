@@ -6,8 +6,7 @@
  * surfaces that meet there turn away from it: the way from the rim into none of them leads nearer. Where
  * two surfaces are in one plane there is none.
  */
-#ifndef NSD_WALL_EDGE_H
-#define NSD_WALL_EDGE_H
+#pragma once
 
 #include "shape/mesh.h"
 
@@ -55,5 +54,3 @@ void surface_groove(struct grooves *out, const struct surface *s, int dim, const
 /* Does the way from a to b (m, from the wall's point of reference, before any motion) cross the
    wall? Of rectangles, discs and meshes (surface); of others that is not looked at: true. */
 bool wall_between(const struct wall *w, int dim, const struct surface *surface, vec3 a, vec3 b);
-
-#endif

@@ -1,6 +1,5 @@
 /* shape/wall_in_cell.h: walls in a periodic cell: along an edge, or between its faces. */
-#ifndef NSD_WALL_IN_CELL_H
-#define NSD_WALL_IN_CELL_H
+#pragma once
 
 #include "shape/cell.h"
 #include "shape/mesh.h"
@@ -21,5 +20,3 @@ struct wall_parts {
  */
 bool wall_fits_edge(const struct wall *w, const struct wall_parts *of, const struct cell *c, int k,
                     double thick);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * What is said of its shape is said of where it is before any drive has moved it, at t = 0.
  */
-#ifndef NSD_WALL_H
-#define NSD_WALL_H
+#pragma once
 
 #include "base/vec.h"
 #include "shape/drive.h"
@@ -83,5 +82,3 @@ struct touch {
 /* Of all shapes but the mesh: the nearest place to the point c (m, from x, before any motion). False:
    none, for a ball of radius r (m) that has left it. */
 bool wall_nearest(const struct wall *w, int dim, vec3 c, double r, struct touch *t);
-
-#endif

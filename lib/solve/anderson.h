@@ -3,8 +3,7 @@
  * and for auto, which interrupts it to look at the iterate; the sweeps then go on as if
  * uninterrupted.
  */
-#ifndef NSD_ANDERSON_H
-#define NSD_ANDERSON_H
+#pragma once
 
 #include "solve/solver.h"
 
@@ -23,5 +22,3 @@ double anderson_best_value(const struct anderson *a);
 void anderson_restore_best(struct anderson *a);
 /* To be called when something else has changed the iterate: everything begins again from it. */
 void anderson_restart(struct anderson *a);
-
-#endif

@@ -2,8 +2,7 @@
  * solve/apply.h: the velocities that reactions make, for all contacts at once: W r, which
  * needs no assembled W, and the bodies' velocities computed again.
  */
-#ifndef NSD_APPLY_H
-#define NSD_APPLY_H
+#pragma once
 
 #include "solve/problem.h"
 
@@ -28,5 +27,3 @@ void problem_renew(struct problem *p, int threads);
 
 /* r[slots][3] (N s) become the reactions, and the bodies' velocities are computed from them. */
 void problem_react(struct problem *p, const double *r, int threads);
-
-#endif

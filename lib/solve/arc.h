@@ -12,8 +12,7 @@
  * 0, 0) follow exactly, so that the border of K stops no step. Their length is chosen so that the
  * next correction is small, measured by F.
  */
-#ifndef NSD_ARC_H
-#define NSD_ARC_H
+#pragma once
 
 #include "solve/central_path.h"
 
@@ -23,5 +22,3 @@
  * best point found becomes the iterate.
  */
 bool arc_follow(struct central *m, double natural, int steps);
-
-#endif

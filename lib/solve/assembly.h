@@ -15,8 +15,7 @@
  * contact [solve/coupling.h], whose row of H are its J, and whose v_free is s + dt f/m. Where
  * contacts have levers, y = I^1/2 w stands in the place of w, with the inertia 1 [solve/bundle.h].
  */
-#ifndef NSD_ASSEMBLY_H
-#define NSD_ASSEMBLY_H
+#pragma once
 
 #include "base/matrix.h"
 #include "solve/problem.h"
@@ -44,5 +43,3 @@ int assembly_blocks(const struct assembly *A, struct delassus *W, struct failure
 int assembly_MH(const struct assembly *A, struct stored *M, struct stored *H, double **f,
                 struct failure *);
 void assembly_free(struct assembly *A);
-
-#endif

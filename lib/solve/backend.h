@@ -5,8 +5,7 @@
  * Another backend is a row of the table in backend.c, and the three structs of kernels that the row names. One that
  * has a memory of its own is a row of the table of devices [solve/device.h].
  */
-#ifndef NSD_BACKEND_H
-#define NSD_BACKEND_H
+#pragma once
 
 #include "solve/judge.h"
 #include "solve/mixing.h"
@@ -25,5 +24,3 @@ struct backend {
 const struct backend *backend_widest(void);
 /* From now on at most this many lanes, or the next smaller number that there is; for the tests */
 void backend_narrow(int lanes);
-
-#endif

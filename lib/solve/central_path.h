@@ -15,8 +15,7 @@
  * is the solution of a system (W + t E W + D T D) dr = ..., E the derivative of mu |u_t|. t = 1 is
  * Newton's method; t = 0, De Saxce's fixed point, holds mu |u_t| fixed and leaves a convex problem.
  */
-#ifndef NSD_CENTRAL_PATH_H
-#define NSD_CENTRAL_PATH_H
+#pragma once
 
 #include "base/jordan.h"
 #include "solve/newton.h"
@@ -91,5 +90,3 @@ bool central_finish(struct central *m, double map);
 
 /* The best reactions, projected onto their cones, become the iterate, and are no longer kept. */
 void central_restore_best(struct central *m);
-
-#endif

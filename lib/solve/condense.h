@@ -10,8 +10,7 @@
  *
  * K may be unsymmetric but not singular; KLU factorises it.
  */
-#ifndef NSD_CONDENSE_H
-#define NSD_CONDENSE_H
+#pragma once
 
 #include "base/matrix.h"
 
@@ -40,5 +39,3 @@ int condense(const struct global *P, struct motion *U, struct sparse *W, double 
 /* v[nv + nl] = v0 + V r */
 void motion_of(const struct motion *U, const double *r, double *v);
 void motion_free(struct motion *U);
-
-#endif

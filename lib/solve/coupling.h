@@ -7,8 +7,7 @@
  * bodies does not do for them: there the speeds are prescribed, those before the step, and
  * solve/assembly.h makes a W of it in which they are unknowns.
  */
-#ifndef NSD_COUPLING_H
-#define NSD_COUPLING_H
+#pragma once
 
 #include "state/freedom.h"
 
@@ -34,5 +33,3 @@ void couplings_free(struct couplings *c);
 /* How many pairs of contacts share a wall's freedom, each contact with itself too; a pair counts for each
    freedom that it shares. */
 double couplings_pairs(const struct couplings *c);
-
-#endif

@@ -16,8 +16,7 @@
  * of the k contacts counts its own part k times, W^_cc = W_cc + (k - 1) J_c J_c^T, since
  * (sum of k numbers)^2 <= k times the sum of their squares.
  */
-#ifndef NSD_DELASSUS_H
-#define NSD_DELASSUS_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/matrix.h"
@@ -156,5 +155,3 @@ static inline void delassus_gather(const struct delassus *W, int64_t c, const do
         }
     *(column *)b = sum;
 }
-
-#endif

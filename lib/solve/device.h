@@ -10,8 +10,7 @@
  *
  * Another kind of device is a file with its struct device_kind, and a row of device_kinds[] in device.c.
  */
-#ifndef NSD_DEVICE_H
-#define NSD_DEVICE_H
+#pragma once
 
 #include "base/failure.h"
 #include "solve/judge.h"
@@ -121,5 +120,3 @@ void device_react(struct problem *p, const struct mixing *m, double leap,
 /* EX_UNAVAILABLE where they differ, for problems of this kind and this method; once for each */
 int device_check(struct device *d, const struct problem_kind *kind, enum method_id method,
                  struct failure *failure);
-
-#endif

@@ -12,8 +12,7 @@
  * (SBP, SAL) is judged by the motion's u~, and eps_motion is 0. Where the law sees gaps u~_n is what
  * it sees, with the gap in it [state/offset.h]; all measures here are of that u~.
  */
-#ifndef NSD_ERR_H
-#define NSD_ERR_H
+#pragma once
 
 #include "solve/judge.h"
 #include "solve/problem.h"
@@ -54,5 +53,3 @@ int self_stress(const struct problem *p, double *ratio);
 /* work = r . W r / sum of lambda_a r_a^2: reactions without end have only their rounding, others the inverse of a mass
    ratio, or more. most: N s, of |r_a|. The same returns. */
 int self_stress_work(const struct problem *p, double *work, double *most);
-
-#endif

@@ -6,8 +6,7 @@
  * A process has bodies of its own and copies of others'. A contact that several have is counted by
  * one of them; in the others it lies in bundles of copies.
  */
-#ifndef NSD_EXCHANGE_H
-#define NSD_EXCHANGE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -75,5 +74,3 @@ static inline bool exchange_is_copy(const struct exchange *s, int64_t bundle)
     }
     return lo > 0 && bundle < s->copies[2 * lo - 1];
 }
-
-#endif

@@ -15,8 +15,7 @@
  * to u_t by k = l_b/I_b - l_a/I_a [solve/rolling.h]. With a stiffness the law has omega + law + soft m in place of
  * omega [contact/spring.h].
  */
-#ifndef NSD_EXTRA_H
-#define NSD_EXTRA_H
+#pragma once
 
 #include "solve/bundle.h"
 #include "solve/rolling.h"
@@ -133,5 +132,3 @@ void extra_levers_roll(const struct extra_lane *at, enum method_id method,
 void extra_levers_push(const struct extra_lane *at, const double dm[3]);
 void extra_levers_rolling(const struct extra_lane *at, const double u[3], struct rolling *q,
                           double v[ROLLING]);
-
-#endif

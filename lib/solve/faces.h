@@ -10,8 +10,7 @@
  * The contacts of a face are recognised by their having the same neighbours in W. A contact that
  * repeats no other is a face of its own, with T = 1.
  */
-#ifndef NSD_FACES_H
-#define NSD_FACES_H
+#pragma once
 
 #include "solve/delassus.h"
 
@@ -44,5 +43,3 @@ struct faces {
 /* W's blocks must be of order 1 (solve/scaled.h). False when memory is short: nothing to free. */
 bool faces_init(struct faces *f, const struct delassus *W);
 void faces_free(struct faces *f);
-
-#endif

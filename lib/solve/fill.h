@@ -2,8 +2,7 @@
  * solve/fill.h: the slots of a packing's problem, all but their reactions: local bases, arms,
  * W~_cc and rho, and what the law sees besides u. fill.c fills them, for problem.c.
  */
-#ifndef NSD_FILL_H
-#define NSD_FILL_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -40,5 +39,3 @@ struct filling {
 void fill_slot(const struct filling *f, int64_t slot, double slower);
 /* Bundles first .. end-1 of a struct filling, as a part of a team's work */
 void fill_bundles(void *filling, int64_t first, int64_t end);
-
-#endif

@@ -7,8 +7,7 @@
  * become very short there: then it is followed by its arc length [solve/arc.h]. At the start, and
  * from r = 0, smaller t are tried first.
  */
-#ifndef NSD_IPM_H
-#define NSD_IPM_H
+#pragma once
 
 #include "solve/newton.h"
 
@@ -21,5 +20,3 @@ void ipm_solve(struct newton *w, struct solve *s);
 /* The first attempt of ipm_solve() only: from the iterate's reactions, moved into the cones to
    where x o z = gap (1, 0, 0). */
 void ipm_from(struct newton *w, struct solve *s, double gap);
-
-#endif

@@ -2,8 +2,7 @@
  * solve/judge.h: the inner loops over bundles that ask how well reactions satisfy the law: velocities,
  * and the terms of the errors. Compiled for each vector width, as solve/sweep.c is.
  */
-#ifndef NSD_JUDGE_H
-#define NSD_JUDGE_H
+#pragma once
 
 #include "solve/problem.h"
 
@@ -38,5 +37,3 @@ struct judge {
     /* Bundles first .. end-1: u of the slots becomes the motion's. */
     void (*velocities)(struct problem *p, int64_t first, int64_t end);
 };
-
-#endif

@@ -8,8 +8,7 @@
  * Another kind is a row of EACH_KIND, a function in solve/fill.c that sets a slot's numbers, and a kernel in
  * solve/sweep.c; an array that only it has is a line in EACH_ARRAY and a member of struct problem.
  */
-#ifndef NSD_KIND_H
-#define NSD_KIND_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -92,5 +91,3 @@ static inline const struct problem_kind *kind_of_bodies(bool levers, bool bonds,
     enum problem_kind_id rolling = levers ? KIND_LEVERS_MOMENTS : KIND_MOMENTS;
     return problem_kinds[rolls ? rolling : bonds ? bonded : plain];
 }
-
-#endif

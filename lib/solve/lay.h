@@ -1,8 +1,7 @@
 /*
  * solve/lay.h: the memory of a packing's problem, as its plan says. lay.c lays it, for problem.c.
  */
-#ifndef NSD_LAY_H
-#define NSD_LAY_H
+#pragma once
 
 #include "solve/plan.h"
 #include "state/contact.h"
@@ -22,5 +21,3 @@ bool lay_bundles(struct problem *p);
 /* Tells the slots their bodies, and makes the copies of those that do not move. p->seat and the packing's in
    p->body are set. */
 void lay_seats(struct problem *p, const struct plan *l, const struct contacts *s);
-
-#endif

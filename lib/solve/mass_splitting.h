@@ -4,8 +4,7 @@
  * splitting, Tonge et al. 2012]. W~_cc and all that follows from it are those of the lighter bodies in
  * the sweeps, and the true ones where errors are computed; the bodies themselves stay as they are.
  */
-#ifndef NSD_BRAKE_H
-#define NSD_BRAKE_H
+#pragma once
 
 #include "solve/fill.h"
 
@@ -28,5 +27,3 @@ struct mass_splitting {
 int mass_splitting_make(struct problem *p, const struct filling *f, const double *slower);
 /* Whether the sweeps' numbers are to be in the slots, or the true ones; p->brake may be NULL. */
 void mass_splitting_hold(struct problem *p, bool hold);
-
-#endif

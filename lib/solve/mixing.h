@@ -11,8 +11,7 @@
  * mixing to the next. While the sweeps run, the oldest change is no longer needed, since the next
  * one will replace it: until then its memory holds the g of the last mixing (in dg) and x (in df).
  */
-#ifndef NSD_MIXING_H
-#define NSD_MIXING_H
+#pragma once
 
 #include "solve/problem.h"
 
@@ -56,5 +55,3 @@ struct mixing_loops {
     void (*react)(struct problem *p, int me, int threads, const struct mixing *m, double leap,
                   const double gamma[MIXING_DEPTH]);
 };
-
-#endif

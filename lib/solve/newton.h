@@ -11,8 +11,7 @@
  * a > 0 regularises a singular W (more contacts stick than the bodies have degrees of freedom for).
  * rho is large, 50 in units in which the diagonal of W is 1, except in newton_finish().
  */
-#ifndef NSD_NEWTON_H
-#define NSD_NEWTON_H
+#pragma once
 
 #include "solve/system.h"
 
@@ -57,5 +56,3 @@ bool newton_finish(struct newton *w, struct solve *s, const double *x, double rh
  * Ends with the best iterate restored.
  */
 void newton_polish(struct newton *w, struct solve *s, double alpha, int patience);
-
-#endif

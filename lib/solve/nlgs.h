@@ -2,8 +2,7 @@
  * solve/nlgs.h: the non-linear Gauss-Seidel method [paper, 3.1], sweeps over the contacts: as a
  * solver and for the solvers that are built on sweeps.
  */
-#ifndef NSD_NLGS_H
-#define NSD_NLGS_H
+#pragma once
 
 #include "solve/solver.h"
 
@@ -22,5 +21,3 @@ int nlgs_sweep(struct solve *s, double omega, struct watch *w);
 /* `sweeps` sweeps with this omega, or fewer when the solve is over before; the last one is judged.
    Returns 0, or -1 when memory is short. */
 int nlgs_sweeps(struct solve *s, int32_t sweeps, double omega);
-
-#endif

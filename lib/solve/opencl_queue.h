@@ -2,8 +2,7 @@
  * solve/opencl_queue.h: what the sweeps of solve/opencl.c are made of: a device's arrays and kernels, and their launches. A
  * failure stays in the struct device: all that follows does nothing.
  */
-#ifndef NSD_OPENCL_QUEUE_H
-#define NSD_OPENCL_QUEUE_H
+#pragma once
 
 #include "solve/device.h"
 #include "solve/opencl_api.h"
@@ -164,5 +163,3 @@ void opencl_take(struct opencl *o, enum opencl_role role, size_t offset, void *t
 void opencl_copy(struct opencl *o, enum opencl_role from, enum opencl_role to, size_t size);
 /* A buffer with these bytes; none, where there are none */
 void opencl_give(struct opencl *o, enum opencl_role role, const void *from, size_t size);
-
-#endif

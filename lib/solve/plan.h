@@ -5,8 +5,7 @@
  * It follows from which bodies touch, and where there are many contacts from where these are. While a pile
  * rests nothing of that changes, and the plan of the last step is that of this one.
  */
-#ifndef NSD_PLAN_H
-#define NSD_PLAN_H
+#pragma once
 
 #include "solve/schedule.h"
 
@@ -40,5 +39,3 @@ bool plan_holds(const struct plan *l, enum order order, const struct contacts *s
                 const struct packing *p);
 
 void plan_free(struct plan *l); /* may be NULL */
-
-#endif

@@ -11,8 +11,7 @@
  * the errors are those of D u~; e = 0 makes no difference. Any other packing has the form of its
  * bodies.
  */
-#ifndef NSD_PREPARE_H
-#define NSD_PREPARE_H
+#pragma once
 
 #include "solve/assembly.h"
 #include "solve/condense.h"
@@ -45,5 +44,3 @@ int bonded_global(const struct assembly *A, struct global *P, struct failure *fa
    the machine. */
 int prepare_packing(struct problem *p, const struct packing *pack, const struct contacts *s,
                     const struct prepare_opt *o, struct failure *failure);
-
-#endif

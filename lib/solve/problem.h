@@ -16,8 +16,7 @@
  * Slot i is lane i % 8 of bundle i / 8. Each contact has a copy of its own of a body that does not
  * move: the contacts of a group then share no body at all, and all bodies are written back alike.
  */
-#ifndef NSD_PROBLEM_H
-#define NSD_PROBLEM_H
+#pragma once
 
 #include "solve/bundle.h"
 #include "solve/coupling.h"
@@ -285,5 +284,3 @@ ALWAYS_INLINE void problem_push(const struct problem *p, struct body *body, int6
     bundle_basis(c, bundle_beside(p, c), k, n, t1, t2);
     levers_push(c, &p->lever[i], k, t1, t2, dr, body, &a, &b);
 }
-
-#endif

@@ -20,8 +20,7 @@
  * Moments are divided, and angular velocities multiplied, by a length that makes w_r about w_t, so
  * that all parts of x are impulses (N s), all of u velocities (m/s), and one step rho suits them.
  */
-#ifndef NSD_ROLLING_H
-#define NSD_ROLLING_H
+#pragma once
 
 #include "solve/rolling_parts.h"
 
@@ -42,5 +41,3 @@ double rolling_bipotential(const struct rolling *q, const double x[ROLLING],
                            const double u[ROLLING]);
 /* kg^-1: of W, the largest eigenvalue */
 double rolling_lambda(const struct rolling *q);
-
-#endif

@@ -1,6 +1,5 @@
 /* solve/rolling_parts.h: x of a rolling contact by its parts, and their limits; for law/rolling*.c alone. */
-#ifndef NSD_ROLLING_PARTS_H
-#define NSD_ROLLING_PARTS_H
+#pragma once
 
 #include "solve/method.h"
 
@@ -94,5 +93,3 @@ static inline void predict(const struct rolling *q, double rho, const double x[R
 bool rolling_newton(struct rolling *q, bool hat, const struct local_opt *opt);
 /* q->x of two balls, in closed form */
 void rolling_closed(struct rolling *q);
-
-#endif

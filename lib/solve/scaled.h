@@ -7,8 +7,7 @@
  * so that every W_cc is of order 1 whatever the masses, and x and v have the same unit, sqrt(J).
  * (v, x) satisfies the law where (u, r) does. A packing's W is assembled [solve/assembly.h].
  */
-#ifndef NSD_SCALED_H
-#define NSD_SCALED_H
+#pragma once
 
 #include "solve/solver.h"
 
@@ -54,5 +53,3 @@ static inline void scaled_store(int d, const double in[3], double *x)
     x[0] = in[0], x[1] = in[1];
     if (d == 3) x[2] = in[2];
 }
-
-#endif

@@ -12,8 +12,7 @@
  * itself. block: colours, and where several processes share the contacts each sweeps its own by itself
  * [mpi/blocks.h]; as colour in one.
  */
-#ifndef NSD_SCHEDULE_H
-#define NSD_SCHEDULE_H
+#pragma once
 
 #include "solve/delassus.h"
 #include "state/contact.h"
@@ -74,5 +73,3 @@ void schedule_free(struct schedule *s);
    would give s again. False also when memory is short. */
 bool schedule_holds(const struct schedule *s, const struct contacts *contacts,
                     const struct packing *packing);
-
-#endif

@@ -29,8 +29,7 @@
  *
  * Groups of bundles share no body, so that any number of threads gives the same bits.
  */
-#ifndef NSD_SMALL_H
-#define NSD_SMALL_H
+#pragma once
 
 #include "solve/bundle.h"
 
@@ -201,5 +200,3 @@ struct small_kernels {
     small_sweep *sweep;
     small_push *push;
 };
-
-#endif

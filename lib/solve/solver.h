@@ -7,8 +7,7 @@
  * the velocities that they make (of the bodies, or by W), u as a local method believes it to be,
  * and the value of the criterion.
  */
-#ifndef NSD_SOLVER_H
-#define NSD_SOLVER_H
+#pragma once
 
 #include "solve/err.h"
 #include "solve/method.h"
@@ -150,5 +149,3 @@ void solve_count_newton(struct solve *s, double price, double since);
 
 /* contacts: with more, memory matters: no u is kept with the best iterate, and less for mixing */
 enum { MANY_CONTACTS = 100000 };
-
-#endif

@@ -11,8 +11,7 @@
  * is a problem given by its W. Its factorisation costs about a hundredth of that of all contacts;
  * some sweeps then adapt the others.
  */
-#ifndef NSD_SUBSET_H
-#define NSD_SUBSET_H
+#pragma once
 
 #include "solve/scaled.h"
 
@@ -31,5 +30,3 @@ int64_t subset_solve(struct scaled *a, struct solve *s, int64_t contacts, bool a
 /* Whether subset_solve() would get as far as analysing factors: 1, 0; -1 when memory is short */
 int subset_fits(const struct scaled *a, const struct solve *s, int64_t contacts, bool anyhow,
                 double budget);
-
-#endif

@@ -3,8 +3,7 @@
  * widths; the width changes no bit of a result. The one used is the widest that the machine has and
  * the environment's NSD_LANES allows.
  */
-#ifndef NSD_SWEEP_H
-#define NSD_SWEEP_H
+#pragma once
 
 #include "solve/method.h"
 #include "solve/problem.h"
@@ -35,5 +34,3 @@ struct sweep {
        is. */
     void (*push)(struct problem *p, int me, int threads);
 };
-
-#endif

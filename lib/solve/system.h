@@ -18,8 +18,7 @@
  *
  *     x = A^-1 b - Z (1 + J^T Z)^-1 J^T A^-1 b.
  */
-#ifndef NSD_SYSTEM_H
-#define NSD_SYSTEM_H
+#pragma once
 
 #include "solve/scaled.h"
 
@@ -48,5 +47,3 @@ bool system_solve_again(struct system *s, double *x);
 /* +1 or -1: the sign of det(L W + D) in the last system_solve(), but for a factor that is always
    the same for this system: of use only to see that the sign changes. */
 int system_sign(const struct system *s);
-
-#endif

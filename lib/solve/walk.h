@@ -3,8 +3,7 @@
  * share of every group, or, where there are two halves, a half each [solve/schedule.h].
  * For the files that are compiled once for each vector width.
  */
-#ifndef NSD_WALK_H
-#define NSD_WALK_H
+#pragma once
 
 #include "base/team.h"
 #include "solve/exchange.h"
@@ -151,5 +150,3 @@ ALWAYS_INLINE void walk(struct problem *p, int me, int threads, walk_text *each,
         end_leg(&leg[k]);
     }
 }
-
-#endif

@@ -4,8 +4,7 @@
  * What is watched is a table, account_watched[]. A new row is one number of a step's report; logs,
  * documents and what nsd-step says in the end follow.
  */
-#ifndef NSD_ACCOUNT_H
-#define NSD_ACCOUNT_H
+#pragma once
 
 #include "state/names.h"
 #include "state/report.h"
@@ -56,5 +55,3 @@ bool account_step_fails(const struct report *report);
 /* Writes "overlap 0.012 of a radius (step 217, wall 0 and body 3)" into text of that room. */
 void account_says(const struct account *account, enum account_row row, const struct names *names,
                   char *text, size_t room);
-
-#endif

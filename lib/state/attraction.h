@@ -8,8 +8,7 @@
  * detection has left four of more corners [shape/meet.h], of the two faces' common part. Among the shares that have
  * it there they are the most even.
  */
-#ifndef NSD_ATTRACTION_H
-#define NSD_ATTRACTION_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -24,5 +23,3 @@ struct attraction {
 /* Sets of[i].among and .bonds, 1 at least, of all contacts. Returns 0 or EX_SOFTWARE. */
 int attraction_share(struct attraction *of, const struct contacts *s, const struct packing *p,
                      struct failure *failure);
-
-#endif

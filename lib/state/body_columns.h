@@ -3,8 +3,7 @@
  * packing, an array of n, and all that is done to bodies as a whole: allocate, resize, copy, check, exchange
  * between ranks, read, write. So a new number is a row here, and the place that uses it.
  */
-#ifndef NSD_BODY_COLUMNS_H
-#define NSD_BODY_COLUMNS_H
+#pragma once
 
 #include "base/field.h"
 #include "base/vec.h"
@@ -51,5 +50,3 @@ enum { EACH_BODY_COLUMN(BODY_NUMBER) BODY_COLUMNS };
 _Static_assert(BODY_COLUMNS < 32, "sets of columns are bits");
 /* [BODY_COLUMNS], and one without a name */
 extern const struct field body_columns[];
-
-#endif

@@ -2,8 +2,7 @@
  * state/bond.h: what lasts of a pair from one step to the next: a liquid bridge, the intensity of
  * adhesion. Found again by the key of the pair's contact.
  */
-#ifndef NSD_BOND_H
-#define NSD_BOND_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -62,5 +61,3 @@ bool bonds_broken(const struct bonds *bonds, int32_t a, int32_t b, int64_t from)
    Returns 0, or EX_DATAERR with the first bond that fails. */
 int bonds_check(const struct bonds *bonds, int dim, int64_t bodies, int32_t walls,
                 struct failure *failure);
-
-#endif

@@ -1,6 +1,5 @@
 /* state/contact.h: contacts as they are detected, stored in documents and shown. */
-#ifndef NSD_CONTACT_H
-#define NSD_CONTACT_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -153,5 +152,3 @@ double contacts_max_overlap(const struct contacts *contacts);
 /* The lever arms la, lb (m) of a contact between bodies whose centres are at xa and, that of the image
    that a meets, xb (m), along its normal; a wall has none: la = 0, whatever xa. */
 void contact_arms(const struct contact *c, vec3 xa, vec3 xb, double *la, double *lb);
-
-#endif

@@ -3,8 +3,7 @@
  * and about an axis, each of the body whose id is its `wall`, in the order of these ids. A step sees them at its
  * middle, beside gravity.
  */
-#ifndef NSD_EXTERNAL_FORCE_H
-#define NSD_EXTERNAL_FORCE_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -70,5 +69,3 @@ int external_force_say(struct external_force *outside, const char *words, int64_
 /* Is every number finite, and in the plane where dim is 2? Returns 0 or EX_DATAERR. */
 int external_force_check(const struct external_force *outside, int dim, int64_t n, int32_t walls,
                          struct failure *failure);
-
-#endif

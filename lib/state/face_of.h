@@ -2,8 +2,7 @@
  * state/face_of.h: on which face of a wall [state/wall_faces.h] a contact lies. One on an edge or at a corner is on
  * the first face that it belongs to, by the order of the mesh.
  */
-#ifndef NSD_FACE_OF_H
-#define NSD_FACE_OF_H
+#pragma once
 
 #include "state/packing.h"
 #include "state/wall_faces.h"
@@ -17,5 +16,3 @@ int32_t face_of_contact(const struct wall_faces *f, const struct packing *p,
                         const struct contact *c, double ahead);
 /* m^2, in the plane m: of a face; INFINITY: it has no end */
 double face_of_area(const struct packing *p, int32_t wall, int32_t face);
-
-#endif

@@ -3,8 +3,7 @@
  * contacts and its report. nsd-format(5) says the same in words. Rows stand in the order in which their datasets are made.
  * A new member of a struct is a row in state/field_tables.c, and the place that uses it.
  */
-#ifndef NSD_FIELDS_OF_STATE_H
-#define NSD_FIELDS_OF_STATE_H
+#pragma once
 
 #include "base/field.h"
 
@@ -45,5 +44,3 @@ static inline bool *balance_part_flag(const struct balance_part *part, void *rep
 {
     return (bool *)((char *)report + part->flag);
 }
-
-#endif

@@ -30,8 +30,7 @@
  * J_c = d, sum of J_c^T r_c = sum of r_c . d_c, which is dim V times the contacts' mean stress, and the force
  * is - dim V P.
  */
-#ifndef NSD_FREEDOM_H
-#define NSD_FREEDOM_H
+#pragma once
 
 #include "base/vec.h"
 #include "state/contact.h"
@@ -109,5 +108,3 @@ void freedoms_move_rates(const struct freedoms *list, struct packing *p, bool ba
 /* What they move is displaced by way[n] (m; of a room in levers) along their axes, without a velocity: walls, edges, and the
    bodies that follow these. */
 void freedoms_displace(const struct freedoms *list, struct packing *p, const double *way);
-
-#endif

@@ -6,8 +6,7 @@
  * shorter by that. Against a wall the true arm is the radius. Between two bodies half the overlap
  * is taken off each: only la + lb = the distance of the centres keeps the angular momentum.
  */
-#ifndef NSD_KINEMATICS_H
-#define NSD_KINEMATICS_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -89,5 +88,3 @@ static inline double sliding_of(const struct packing *p, const struct contact *c
     const vec3 u = velocity_of(p, c, &o);
     return v3_norm(v3_axpy(u, -v3_dot(u, c->n), c->n));
 }
-
-#endif

@@ -7,8 +7,7 @@
  * repeated in the step after the impact. What is kept of it is at most twice what was kept before, or
  * an eighth of it, so that a load that lasts is known after four steps.
  */
-#ifndef NSD_MEMORY_H
-#define NSD_MEMORY_H
+#pragma once
 
 #include "state/contact.h"
 
@@ -51,5 +50,3 @@ void memory_sort(struct memory *m);
 void memory_follow(struct memory *m, const int32_t *row);
 /* Do bodies and walls exist, are keys in order and numbers finite? Returns 0 or EX_DATAERR. */
 int memory_check(const struct memory *m, int64_t bodies, int32_t walls, struct failure *failure);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * A face is a triangle of a mesh, in the plane a segment; any other wall is one face.
  */
-#ifndef NSD_NAMES_H
-#define NSD_NAMES_H
+#pragma once
 
 #include "base/failure.h"
 #include "shape/wall_shape.h"
@@ -62,5 +61,3 @@ const char *names_of_wall(const struct names *names, int32_t wall);
 /* The name of a face, counted from the wall's first one: the last of the parts that it is in, else that of its
    wall; NULL: it has none */
 const char *names_of_face(const struct names *names, int32_t wall, int32_t face);
-
-#endif

@@ -6,8 +6,7 @@
  *
  * It enters the contact problem as a constant, in struct rebound.
  */
-#ifndef NSD_OFFSET_H
-#define NSD_OFFSET_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -17,5 +16,3 @@ bool offset_in(const struct packing *pack, const struct contact *c, const struct
 /* m/s; un: u_n before the step, m/s */
 double offset_of(const struct packing *pack, const struct contact *c, const struct contact_law *t,
                  double un);
-
-#endif

@@ -4,8 +4,7 @@
  *
  * In the plane (dim 2) the bodies are discs in z = 0 that turn about z.
  */
-#ifndef NSD_PACKING_H
-#define NSD_PACKING_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -415,5 +414,3 @@ bool packing_set_body(struct packing *p, int64_t i, const struct new_body *body)
 /* Mass (kg) and inertia (kg m^2) of a solid ball or disc: radius in m, density in kg m^-3, of a
    disc in kg m^-2. */
 void packing_solid(int dim, double radius, double density, double *mass, double *inertia);
-
-#endif

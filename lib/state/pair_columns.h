@@ -2,8 +2,7 @@
  * state/pair_columns.h: the table of the contact law's parameters, numbers that each pair of materials has. A row makes a symmetric matrix of struct packing, [materials * materials], a key of scenes and a dataset; and
  * of the first table the number of struct contact that is taken from it, and its dataset.
  */
-#ifndef NSD_PAIR_COLUMNS_H
-#define NSD_PAIR_COLUMNS_H
+#pragma once
 
 /*
  * X(member, name in documents, unit, key in scenes, upper limit, its range in words); the lower limit is 0
@@ -36,5 +35,3 @@
 #define PAIR_POINTER(member, ...)              double *member;
 #define PAIR_NUMBER(member, ...)               double member;
 #define PAIR_KEY(member, name, unit, key, ...) " " key
-
-#endif

@@ -15,8 +15,7 @@
  *
  * Adhesion with damage [Raous, Cangemi & Cocou 1999]: contact/contact_law.h.
  */
-#ifndef NSD_PAIR_LAW_H
-#define NSD_PAIR_LAW_H
+#pragma once
 
 #include <stdbool.h>
 
@@ -92,5 +91,3 @@ double bridge_reach(const struct pair_law *law);
 /* N, and J (0 where it ruptures), at gap g (m); R as above */
 double bridge_force(const struct pair_law *law, double R, double g);
 double bridge_energy(const struct pair_law *law, double R, double g);
-
-#endif

@@ -3,8 +3,7 @@
  * ranks are loops over packing_parts[], and over the fields of a part where members count. What a packing has without an
  * array is in packing_fields[] and cell_fields[]; shapes, which own arrays themselves, are copied and compared apart.
  */
-#ifndef NSD_PART_H
-#define NSD_PART_H
+#pragma once
 
 #include "base/field.h"
 #include "state/packing.h"
@@ -43,5 +42,3 @@ int packing_same_settings(const struct packing *first, const struct packing *p,
 void packing_disown(struct packing *p);
 /* p without its bodies, and what belongs to them and to single frames; all is borrowed. */
 struct packing packing_settings(const struct packing *p);
-
-#endif

@@ -1,6 +1,5 @@
 /* state/placement.h: where bodies, the cell's edges and walls are when contacts are sought. */
-#ifndef NSD_PLACEMENT_H
-#define NSD_PLACEMENT_H
+#pragma once
 
 #include "shape/shape.h"
 #include "state/contact.h"
@@ -54,5 +53,3 @@ struct core placed_core(const struct placed *s, int64_t i, int32_t k);
  * points do not. s: NULL, there are none. Does nothing where nothing repeats.
  */
 void packing_wrap(struct packing *p, struct contacts *s);
-
-#endif

@@ -2,8 +2,7 @@
  * state/report.h: what a solve reports. Only seconds, elapsed and detection come from a clock,
  * and no document gets these.
  */
-#ifndef NSD_REPORT_H
-#define NSD_REPORT_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -145,5 +144,3 @@ void report_free(struct report *r);
 bool report_made(const struct report *r);
 /* Writes "step 12: the velocity of body 3 would not be finite" into text of that room, where it was not made. */
 void report_says_end(const struct report *r, char *text, size_t room);
-
-#endif

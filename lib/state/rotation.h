@@ -16,8 +16,7 @@
  * 2 and the same backwards. Bodies whose moments are equal, balls and cubes, and all in the plane take
  * the way that balls always took: w is constant.
  */
-#ifndef NSD_ROTATION_H
-#define NSD_ROTATION_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -80,5 +79,3 @@ struct energy energy_of(const struct packing *p);
 double energy_peculiar(const struct packing *p, const bool *own);
 /* Is it another than that of the velocities, or may it be at some time? */
 bool energy_has_peculiar(const struct packing *p);
-
-#endif

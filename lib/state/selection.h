@@ -2,8 +2,7 @@
  * state/selection.h: which walls, faces and bodies a list of names means: "floor,blade,3". A word is the number of
  * a wall, or a name: of walls, of parts of them, of a group of bodies, or of a material, which walls and bodies have.
  */
-#ifndef NSD_CHOSEN_H
-#define NSD_CHOSEN_H
+#pragma once
 
 #include "state/packing.h"
 #include "state/wall_faces.h"
@@ -30,5 +29,3 @@ bool selection_body(const struct selection *c, const struct packing *p, int64_t 
 /* The contact of such a body, or with such a face; faces: of face_of_init() */
 bool selection_contact(const struct selection *c, const struct packing *p,
                        const struct wall_faces *faces, const struct contact *contact);
-
-#endif

@@ -23,8 +23,7 @@
  * there: implicit in time from the beginning as from the end of the step, so that a step is undone to rounding, and
  * rates with the sum 0 keep the volume to the third order of dt.
  */
-#ifndef NSD_ROOM_H
-#define NSD_ROOM_H
+#pragma once
 
 #include "state/packing.h"
 
@@ -52,5 +51,3 @@ void servo_box_displace(struct packing *p, const double *lever, double part);
 /* After a step: does the size change by so little in a step that the next one can be made? Returns 0 or
    EX_DATAERR. */
 int servo_box_check_growth(const struct packing *p, struct failure *failure);
-
-#endif

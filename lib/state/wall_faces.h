@@ -2,8 +2,7 @@
  * state/wall_faces.h: the faces of walls. A face is a triangle of a mesh, in the plane a segment; any other wall
  * is one face. Which face a contact is on is in state/face_of.h.
  */
-#ifndef NSD_WALL_FACES_H
-#define NSD_WALL_FACES_H
+#pragma once
 
 #include "shape/mesh.h"
 #include "shape/wall_shape.h"
@@ -20,5 +19,3 @@ struct wall_faces {
 int wall_faces_init(struct wall_faces *f, int32_t walls, const struct wall *wall,
                     const struct mesh *mesh, struct failure *failure);
 void wall_faces_free(struct wall_faces *f);
-
-#endif

@@ -5,8 +5,7 @@
  * A step counts by its reactions r and, for works, by the mean of the velocities before and after it, by which the
  * balance of energy is exact [step/balance.h].
  */
-#ifndef NSD_SUMS_H
-#define NSD_SUMS_H
+#pragma once
 
 #include "base/failure.h"
 #include "base/vec.h"
@@ -44,5 +43,3 @@ int sums_copy(struct wall_sums *to, const struct wall_sums *from, struct failure
 /* Are they of these walls' faces, and finite? Returns 0 or EX_DATAERR. */
 int sums_check(const struct wall_sums *s, int32_t walls, const struct wall *wall,
                struct failure *failure);
-
-#endif

@@ -19,8 +19,7 @@
  * What a body gets from others within the step it does not know: where a heavy body strikes a row of light
  * ones, more may come.
  */
-#ifndef NSD_ADAPT_H
-#define NSD_ADAPT_H
+#pragma once
 
 #include "contact/neighbours.h"
 #include "state/packing.h"
@@ -32,5 +31,3 @@ enum { ADAPT_MOST = 16 };
 /* dt of the step to come, tol a share of a radius; near: neighbours that are kept from one call to the next.
    Returns 0, or EX_SOFTWARE. */
 int adapt_step(struct packing *p, double tol, struct neighbours *near, struct failure *failure);
-
-#endif

@@ -38,8 +38,7 @@
  * Without restitution a contact that holds has u+ = 0 and dissipates -r . u-/2, which is negative
  * where the step has begun with separating bodies; over an impact it is what the law takes.
  */
-#ifndef NSD_BALANCE_H
-#define NSD_BALANCE_H
+#pragma once
 
 #include "state/report.h"
 #include "step/impulse.h"
@@ -82,5 +81,3 @@ struct rebound_search;
 int rebound_reduce(struct rebound_search **search, const struct packing *p, struct contacts *s,
                    bool *again, struct failure *failure);
 void rebound_free(struct rebound_search *search); /* may be NULL */
-
-#endif

@@ -4,8 +4,7 @@
  * velocity is that of the material that the contact touches: of a wall its drives, load and belt; of an image across
  * the border of the cell what the motion of the edges adds.
  */
-#ifndef NSD_CONTACT_MOTION_H
-#define NSD_CONTACT_MOTION_H
+#pragma once
 
 #include "step/impulse.h"
 
@@ -27,5 +26,3 @@ struct contact_loss contact_loss(const struct contact_motion *m, const struct co
 /* J: what they do on the wall */
 double contact_wall_work(const struct contact_motion *m, const struct contact *c, const double r[3],
                          const double *moment);
-
-#endif

@@ -7,8 +7,7 @@
  * e = 0 for such pairs, and again with so much of their e that none pushes more than HIT_MOST times what it needs with
  * e = 0, if impulses are linear in e.
  */
-#ifndef NSD_HIT_BOUND_H
-#define NSD_HIT_BOUND_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -22,5 +21,3 @@ struct hit_search;
 int hit_reduce(struct hit_search **search, const struct packing *p, struct contacts *s, bool *again,
                struct failure *failure);
 void hit_free(struct hit_search *search); /* may be NULL */
-
-#endif

@@ -2,8 +2,7 @@
  * step/impulse.h: what the reactions of a step give to the bodies and to the freedoms beyond
  * theirs, P r and J^T r, summed in the contacts' order, and forces from outside [state/external_force.h].
  */
-#ifndef NSD_IMPULSE_H
-#define NSD_IMPULSE_H
+#pragma once
 
 #include "state/freedom.h"
 #include "state/kinematics.h"
@@ -65,5 +64,3 @@ static inline double impulses_change(const struct impulses *sum, const struct pa
     const struct freedom *f = &sum->freedoms.f[k];
     return (p->dt * f->force + sum->yield[k]) / f->mass;
 }
-
-#endif

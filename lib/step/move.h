@@ -7,8 +7,7 @@
  *
  * [uzawa3 and the line after it]; q_{k+1/2} is the predicted position, in which the contacts act.
  */
-#ifndef NSD_MOVE_H
-#define NSD_MOVE_H
+#pragma once
 
 #include "state/report.h"
 #include "step/impulse.h"
@@ -30,5 +29,3 @@ struct endless endless_after(const struct packing *p, const struct impulses *sum
    projection is not undone: the errors depend on velocities, and where there is a projection the
    lever arms on radii. */
 int move_back(struct packing *p, const struct contacts *s, struct failure *failure);
-
-#endif

@@ -16,8 +16,7 @@
  * Gauss-Seidel sweeps, the same on every machine; what they leave is left to the next step. An
  * impact that rebounds out of its overlap in time is not touched.
  */
-#ifndef NSD_PROJECT_H
-#define NSD_PROJECT_H
+#pragma once
 
 #include "state/contact.h"
 #include "state/packing.h"
@@ -72,5 +71,3 @@ int project_shared(struct packing *p, const struct contacts *s, const struct pro
 /* The bodies after their step by these contacts; did, or NULL: what that has done. Returns 0 or EX_SOFTWARE. */
 int project_apart(struct packing *p, const struct contacts *s, struct projected *did,
                   struct failure *failure);
-
-#endif

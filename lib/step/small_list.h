@@ -2,8 +2,7 @@
  * step/small_list.h: what small steps work on: pairs and touches of walls, found with a margin, which serve until something
  * has moved through half of it; and their reactions, which the packing remembers from step to step.
  */
-#ifndef NSD_SMALL_LIST_H
-#define NSD_SMALL_LIST_H
+#pragma once
 
 #include "contact/seek.h"
 #include "solve/small.h"
@@ -69,5 +68,3 @@ static inline bool small_is_zero(const double x[3])
 {
     return x[0] == 0 && x[1] == 0 && x[2] == 0;
 }
-
-#endif

@@ -1,8 +1,7 @@
 /*
  * step/small_loop.h: the loop over the small steps of an interval, by a team of threads [solve/small.h has the passes].
  */
-#ifndef NSD_SMALL_LOOP_H
-#define NSD_SMALL_LOOP_H
+#pragma once
 
 #include "step/small_list.h"
 
@@ -41,5 +40,3 @@ void small_loop(void *run, int me, int threads);
 double small_wall_speed(const struct packing *p);
 /* Where the body of t is against its wall: n, v, arm. False: it is farther than `reach` (m). */
 bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach);
-
-#endif

@@ -6,8 +6,7 @@
  * carry the reactions too slowly, as where a heavy body strikes light ones, is not made: the step is then made at once,
  * by today's solvers.
  */
-#ifndef NSD_SMALL_STEP_H
-#define NSD_SMALL_STEP_H
+#pragma once
 
 #include "state/report.h"
 #include "step/small_list.h"
@@ -28,5 +27,3 @@ int64_t small_count(const struct packing *p, double overlap);
 int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
                   const struct small_opt *o, struct report *rep, bool *made,
                   struct failure *failure);
-
-#endif

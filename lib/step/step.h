@@ -2,8 +2,7 @@
  * step/step.h: one time step: detect, solve, move. The pipeline nsd-detect | nsd-solve | nsd-move
  * makes the same three calls.
  */
-#ifndef NSD_STEP_H
-#define NSD_STEP_H
+#pragma once
 
 #include "contact/neighbours.h"
 #include "contact/tunnelling.h"
@@ -142,5 +141,3 @@ int step_substep_whole(struct substep_choice *c, const struct substeps *s, struc
                        const struct surface *surface, struct failure *failure);
 /* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */
 void step_substep_fit(struct substep_choice *c, const struct substeps *s);
-
-#endif

@@ -2,8 +2,7 @@
  * step/step_options.h: the options of a step: of the solver and of the contacts, one table for command lines and for
  * programs that call the library; and what they are when they are not given.
  */
-#ifndef NSD_STEP_OPTIONS_H
-#define NSD_STEP_OPTIONS_H
+#pragma once
 
 #include "base/option.h"
 #include "step/step.h"
@@ -50,5 +49,3 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
 char *options_json_of(const struct options *asked, const struct step_opt *step);
 /* What is to be done about overlap: --overlap, keep with --paper, else what the document says, else nsd's choice */
 enum overlap options_overlap_of(const struct options *o, const struct packing *p, bool detected);
-
-#endif

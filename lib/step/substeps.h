@@ -6,8 +6,7 @@
  * contact are added up over the substeps, so that r/dt is its mean force over the step; so are balances and counts.
  * Depths and errors are the worst of the substeps.
  */
-#ifndef NSD_SUBSTEPS_H
-#define NSD_SUBSTEPS_H
+#pragma once
 
 #include "state/packing.h"
 #include "state/report.h"
@@ -68,5 +67,3 @@ void substeps_count(struct substeps *s);
    Returns 0 or EX_SOFTWARE. */
 int substeps_add(struct substeps *s, const struct packing *p, struct contacts *contacts,
                  struct report *report, struct failure *failure);
-
-#endif

@@ -1,6 +1,5 @@
 /* step/sum_step.h: adds what bodies do to walls in a step to the packing's sums [state/wall_load.h]. */
-#ifndef NSD_SUM_STEP_H
-#define NSD_SUM_STEP_H
+#pragma once
 
 #include "step/impulse.h"
 
@@ -8,5 +7,3 @@
    where no sums are kept. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
              struct failure *failure);
-
-#endif
