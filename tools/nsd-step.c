@@ -43,7 +43,7 @@ static const struct cli_option own[] = {
       .max = 1e300 },
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
-    { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 1,
+    { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help =
           "make each step in small ones of one sweep, which move no body by more than R radii" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
@@ -198,9 +198,10 @@ static void summary(int64_t made)
         warn("%lld steps were made in %lld small ones", (long long)total.small,
              (long long)total.small_steps);
     if (total.small && total.small < made)
-        warn("%lld steps were made at once, because sweeps of small steps carry reactions too "
-             "slowly there",
-             (long long)(made - total.small));
+        warn(
+            "%lld steps were made at once: sweeps of small steps carry reactions too slowly there, "
+            "or bodies are too fast for them",
+            (long long)(made - total.small));
     if (total.divided)
         warn("%lld steps were divided into %lld substeps, because fast bodies met in them",
              (long long)total.divided, (long long)total.substeps);

@@ -14,7 +14,7 @@
 #include <string.h>
 
 enum {
-    COUNT_MOST = 100000 /* small steps of a step */
+    COUNT_MOST = 100000 /* small steps of a step; one that needs more is made at once */
 };
 
 /* C over W of a pair */
@@ -257,7 +257,7 @@ int64_t small_count(const struct packing *p, double overlap)
     const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p));
     const double way = p->dt * (fastest + v3_norm(p->g) * p->dt);
     const double n = fmax(way / (overlap * packing_whole(p).small), p->dt / small_steady(p));
-    return (int64_t)fmin(COUNT_MOST, fmax(1, ceil(n)));
+    return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
 int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
@@ -266,11 +266,14 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
 {
     const double cpu = report_seconds(CLOCK_CPU), elapsed = report_seconds(CLOCK_WALL);
     const struct packing whole = *p;
+    const int64_t count = small_count(p, o->overlap);
+    *made = false;
+    if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
     const struct small_energy before = energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
-    r.n = small_count(p, o->overlap), r.kernel = backend_widest()->small;
+    r.n = count, r.kernel = backend_widest()->small;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);

@@ -20,7 +20,7 @@ struct small_opt {
 /* What of a packing small steps do not have, in words; NULL: they have all */
 const char *small_lacks(const struct packing *p);
 /* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
-   radii of the smallest: of its state alone */
+   radii of the smallest: of its state alone; 0: too many */
 int64_t small_count(const struct packing *p, double overlap);
 /* The step: rep but for its criterion, and s, as of step_advance(). *made: false where the packing is as it was, for the step is to
    be made at once. Returns 0, EX_SOFTWARE or EX_DATAERR. */
