@@ -98,7 +98,8 @@ static struct {
     int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
-    int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all */
+    int64_t small, small_steps,
+        limited; /* steps that were made in small ones, and in how many in all */
     double seconds;
     struct account account; /* of this run */
     int64_t ended;          /* the step that failed, with which the run has ended; 0: none */
@@ -173,7 +174,7 @@ static void count(const struct report *r)
     total.safeguarded += r->safeguarded, total.gave_up += r->gave_up;
     total.seconds += r->seconds;
     if (r->substeps > 1) total.divided++, total.substeps += r->substeps;
-    if (r->small) total.small++, total.small_steps += r->small;
+    if (r->small) total.small++, total.small_steps += r->small, total.limited += r->small_limited;
     if (r->converged) return;
     if (!total.missed++) total.first_missed = r->step;
     double error = err_of(&r->err, r->criterion);
@@ -197,6 +198,8 @@ static void summary(int64_t made)
     if (total.small)
         warn("%lld steps were made in %lld small ones", (long long)total.small,
              (long long)total.small_steps);
+    if (total.limited)
+        warn("%lld small steps have ended at the limit of their sweeps", (long long)total.limited);
     if (total.small && total.small < made)
         warn(
             "%lld steps were made at once: sweeps of small steps carry reactions too slowly there, "

@@ -19,13 +19,13 @@
  *
  *     u~ = u + q + C (f - f_0),   C = diag(c_n, c_t, c_t)
  *
- *     pairs that push    q = n g/h where g > 0, else n max(g/(h + tau), -v_push),   f_0 = (0, f_t^-)
+ *     pairs that push    q = n g/h where g > 0, else n max(g/(h + tau), -v_push - 2 c_n f_n^-),   f_0 = (0, f_t^-)
  *     impacts            q = E u^- (and n g/h where e_n = 0),                       f_0 = r^, of the pair alone
  *
  * C makes the reactions of a packing unique and bounds the number of sweeps. An impact is a pair that pushes little and
  * would meet in this step by u^-; it has Newton's law exactly where it is alone. Pairs that are apart, rebound and are not
  * met by their own motion wait: what others make of it is the impact of a later step. Overlaps are left slowly,
- * at v_push at most.
+ * at v_push at most and what C takes of a load.
  *
  * Groups of bundles share no body, so that any number of threads gives the same bits.
  */
@@ -116,9 +116,9 @@ ALWAYS_INLINE void small_cut(vd most, vd x[3])
 ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 {
     vd rn, t[3], turn[3], zero = splat(0);
-    vd left = larger(l->gap * o->relax, splat(-o->push));
-    vd qn = pick(lt(l->gap, zero), left, l->gap * o->per_h);
     small_split(l->n, l->f, &rn, t);
+    vd most = o->push + 2 * l->cn * larger(rn, zero);
+    vd qn = pick(lt(l->gap, zero), larger(l->gap * o->relax, -most), l->gap * o->per_h);
     for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) turn[i] = l->n[j] * t[k] - l->n[k] * t[j];
     for (int i = 0; i < 3; i++) l->q[i] = qn * l->n[i] - l->ct * (t[i] + l->spin * turn[i]);
 }

@@ -340,6 +340,7 @@ static void finish_step(struct small_run *r)
 {
     struct small *s = &r->l->s;
     if (r->far && r->uneven) r->failed = r->stop = true;
+    r->unsolved += r->far;
     if (r->swept > 1) memset(s->change, 0, (size_t)s->bodies * sizeof *s->change);
     settle_pairs(s);
     r->sweeps += r->swept, r->swept = 0;

@@ -24,6 +24,7 @@ struct small_run {
     vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
     double h, ahead;         /* s */
     int64_t n, made, sweeps; /* small steps, and those made; sweeps of all */
+    int64_t unsolved;        /* small steps that have ended with the limit of sweeps */
     int32_t swept;           /* of the step in hand */
     bool begins, stop;       /* the first step; the list serves no longer, or the step fails */
     bool uneven;             /* bodies have masses so different that sweeps are slow */

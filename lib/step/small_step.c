@@ -23,7 +23,9 @@ enum {
 #define UNEVEN 30
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 8
-/* Of the fastest speed: a change of a velocity that is not followed up, in the first sweep of a step and in others */
+/* Of the fastest speed, or of what moves a body by UNSEEN of the smallest radius in h: a change of a velocity that is not
+   followed up, in the first sweep of a step and in others */
+#define UNSEEN 1e-3
 static const double ALLOWED[2] = { 1, 0.3 };
 
 const char *small_lacks(const struct packing *p)
@@ -57,14 +59,14 @@ static void small_set_rates(struct small_run *r)
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest =
         fmax(packing_whole(p).speed, small_wall_speed(p)) + g * r->h * (double)r->n;
-    r->l->s.rate =
-        (struct small_rates){ .h = r->h,
-                              .per_h = 1 / r->h,
-                              .relax = 1 / ((1 + RELAXES) * r->h),
-                              .push = 2 * g * r->h * (double)r->n + 0.02 * fastest,
-                              .soft = COMPLIANCE,
-                              .calm = 2 * g * r->h,
-                              .allowed = { ALLOWED[0] * fastest, ALLOWED[1] * fastest } };
+    const double change = fmax(fastest, UNSEEN * packing_whole(p).small / r->h);
+    r->l->s.rate = (struct small_rates){ .h = r->h,
+                                         .per_h = 1 / r->h,
+                                         .relax = 1 / ((1 + RELAXES) * r->h),
+                                         .push = 2 * g * r->h * (double)r->n + 0.02 * fastest,
+                                         .soft = COMPLIANCE,
+                                         .calm = 2 * g * r->h,
+                                         .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
 }
 
 static void take_bodies(struct small_run *r)
@@ -228,7 +230,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
     rep->err = (struct err){ .contacts = s->n, .max_overlap = contacts_max_overlap(s) };
     rep->balanced = true;
     rep->tied = rep->may_gain = rep->projected = rep->sheared = rep->soft = false;
-    rep->converged = true, rep->sweeps = (int32_t)r->sweeps;
+    rep->converged = true, rep->small_limited = r->unsolved, rep->sweeps = (int32_t)r->sweeps;
     rep->newton = rep->safeguarded = rep->gave_up = 0;
     rep->given_up = rep->on_cpu = NULL, rep->history = NULL;
     rep->watched = false, rep->passed = 0, rep->endless = (struct endless){ 0 };

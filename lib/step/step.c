@@ -404,13 +404,15 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
                          .watch = watch_alone,
                          .substeps = &steps },
                        kept };
-    rep->small = 0;
+    bool impulsive = false; // its reactions are no loads, from which small steps could begin
+    rep->small = rep->small_limited = 0;
     if (o->small > 0 && kept && !small_lacks(p)) {
         const struct small_opt small = { o->small, o->solve.threads, o->warm };
         bool made;
         rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
         if (small_advance(p, s, &kept->small, &small, rep, &made, failure) || made)
             return failure->status;
+        impulsive = true;
     }
     substeps_begin(&steps, p);
     while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
@@ -423,5 +425,6 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
         if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
     }
     substeps_free(&steps);
+    if (impulsive) memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
     return failure->status;
 }
