@@ -44,8 +44,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
-      .help =
-          "make each step in small ones of one sweep, which move no body by more than R radii" },
+      .help = "make each step in small ones that move bodies by R radii at most" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
