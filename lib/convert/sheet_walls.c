@@ -26,7 +26,7 @@ struct owners {
 static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner of, int corners,
                                 const vec3 *corner, struct failure *failure)
 {
-    if (!array_grow(&o->of, &o->room, s->cells + 1, sizeof *o->of))
+    if (!array_grow(&o->of, &o->room, s->cells + 1, sizeof *o->of) || !o->of)
         return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
     o->of[s->cells] = of;
     return sheet_add(s, corners, corner, failure);
