@@ -13,11 +13,11 @@ step "$load" --until "${UNTIL:-0.3}" -o preshear.h5 filled.h5
 # the stresses on the head, Pa
 stresses() { nsd-stat -m sums_by_name "$1" | jq -r --argjson s "$size" '(.sums_by_name.name | index("head")) as $k | (2300e-6 * $s * $s) as $a |
     select(.sums_by_name.span[0]) | [.time, .sums_by_name.force[$k][2] / $a, (.sums_by_name.force[$k][0] | fabs) / $a] | @tsv'; }
-stresses preshear.h5 | tail -n 12 | awk '{ s += $2; t += $3 } END { printf "1\t%.0f\t%.0f\n", s / NR, t / NR }' >locus.tsv
+stresses preshear.h5 | tail -n 12 | awk '{ s += $2; t += $3 } END { printf "1\t%.0f\t%.0f\t%.0f\n", s / NR, t / NR, s / NR }' >locus.tsv
 for part in 0.3 0.5 0.75; do # of the load: the peak of the mean over three frames
     step "$(jq -n "$part * $load")" --until "$(jq -n "${UNTIL:-0.3} + ${SHEAR:-0.05}")" -o "shear-$part.h5" preshear.h5
     stresses "shear-$part.h5" | awk -v p=$part '{ a[NR] = $3; b[NR] = $2 } END {
-        for (i = 5; i <= NR; i++) { t = (a[i] + a[i - 1] + a[i - 2]) / 3; if (t > most) { most = t; at = (b[i] + b[i - 1] + b[i - 2]) / 3 } } printf "%s\t%.0f\t%.0f\n", p, at, most }'
+        for (i = 5; i <= NR; i++) { mean += b[i] / (NR - 4); t = (a[i] + a[i - 1] + a[i - 2]) / 3; if (t > most) { most = t; at = (b[i] + b[i - 1] + b[i - 2]) / 3 } } printf "%s\t%.0f\t%.0f\t%.0f\n", p, at, most, mean }'
 done >>locus.tsv
 nsd-view -c speed --boundaries lines preshear.h5 >linear-shear.png
 # the yield locus: a line through the three points; the effective angle: that of the preshear
