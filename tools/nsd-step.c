@@ -97,8 +97,9 @@ static struct {
     int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
-    int64_t small, small_steps,
-        limited; /* steps that were made in small ones, and in how many in all */
+    int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all; */
+    int64_t limited;              /* of those the ones that ended at the limit of their sweeps */
+    bool lacks;                   /* small steps do not have all of the packing */
     double seconds;
     struct account account; /* of this run */
     int64_t ended;          /* the step that failed, with which the run has ended; 0: none */
@@ -199,7 +200,7 @@ static void summary(int64_t made)
              (long long)total.small_steps);
     if (total.limited)
         warn("%lld small steps have ended at the limit of their sweeps", (long long)total.limited);
-    if (total.small && total.small < made)
+    if (options.small > 0 && !total.lacks && total.small < made)
         warn(
             "%lld steps were made at once: sweeps of small steps carry reactions too slowly there, "
             "or bodies are too fast for them",
@@ -415,11 +416,10 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 /* What small steps are asked for and cannot do */
 static void say_lacks(const struct packing *p)
 {
-    static bool said;
     const char *lacks = processes_size() > 1 ? "several processes" : small_lacks(p);
-    if (!(options.small > 0) || !lacks || said) return;
-    warn("--small-steps: no small steps with %s yet: each step is made at once", lacks);
-    said = true;
+    if (!(options.small > 0) || !lacks || total.lacks) return;
+    warn("--small-steps: no small steps with %s yet: such steps are made at once", lacks);
+    total.lacks = true;
 }
 
 /* The step to come begins, with the dt that it has. */

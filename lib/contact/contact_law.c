@@ -140,11 +140,13 @@ static bool is_wet(const struct packing *p, const struct contact *c, const struc
     return pair_law_wets(l) && (touches || (old && old->wet && c->gap < bridge_reach(l)));
 }
 
-/* m: r1 r2/(r1 + r2) of the balls around the bodies; r at a wall */
-static double effective_radius(const struct packing *p, const struct contact *c)
+void contact_laws_rolling(const struct packing *p, int32_t a, int32_t b, double *mu_r, double *mu_p)
 {
-    const double r = p->radius[c->b];
-    return c->a < 0 ? r : r * p->radius[c->a] / (r + p->radius[c->a]);
+    const double r = p->radius[b], R = a < 0 ? r : r * p->radius[a] / (r + p->radius[a]);
+    const struct pair_law *l = p->law ? &p->law[packing_pair(p, a, b)] : NULL;
+    *mu_r = l ? l->mu_r : 0, *mu_p = l ? l->mu_p : 0;
+    if (l && l->mu_r_ratio > 0) *mu_r += l->mu_r_ratio * R;
+    if (l && l->mu_p_ratio > 0) *mu_p += l->mu_p_ratio * R;
 }
 
 static void set_tie(struct contact_law *t, const struct packing *p, struct contact *c,
@@ -153,9 +155,7 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
     const struct pair_law *l = law_of(p, c);
     bool wet = is_wet(p, c, l, old);
     t->jump[0] = fmax(0, c->gap);
-    t->mu_r = l->mu_r, t->mu_p = l->mu_p;
-    if (l->mu_r_ratio > 0) t->mu_r += l->mu_r_ratio * effective_radius(p, c);
-    if (l->mu_p_ratio > 0) t->mu_p += l->mu_p_ratio * effective_radius(p, c);
+    contact_laws_rolling(p, c->a, c->b, &t->mu_r, &t->mu_p);
     if (wet)
         t->state |=
             old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;

@@ -100,6 +100,11 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
                                                const struct contact_law *t,
                                                const struct contact_law_end *end);
 
+/* m: rolling and pivoting friction of the pair of body a (< 0: wall -1-a) and body b; with the part over its effective radius,
+   r1 r2/(r1 + r2) of the balls around the bodies, r at a wall */
+void contact_laws_rolling(const struct packing *p, int32_t a, int32_t b, double *mu_r,
+                          double *mu_p);
+
 /* Leaves of a bond, of a pair that had another law, what lasts under this one; false: nothing does. */
 bool contact_law_carries(const struct pair_law *law, struct bond *bond);
 

@@ -3,7 +3,7 @@
  * step, in which a pair finds its gap, starts from the part of its reaction that persists and is solved in closed form.
  * The passes of a step, and the bytes that each moves:
  *
- *     bodies    v <- v + (v - v^-), the free motion and what persists of all reactions         200 per body
+ *     bodies    v <- v + h g + 0.98 (v - v^- - h g): free motion, and what persists of all r   200 per body
  *     walls     each body against the walls that are near it                                   600 per contact
  *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             500 per pair in reach,
  *                                                                                              140 per other pair
@@ -11,18 +11,18 @@
  *     settle    what of a new reaction does not persist is taken out of v^-                    500 per such pair
  *     move      x <- x + h v                                                                   150 per body
  *
- * Reactions are vectors in space, f on b. A step begins with the reactions of the one before, which the velocities then
- * contain: with v^- and v before and after the last step, of the same length, the free motion and the same impulses once
- * more make v + (v - v^-). Nobody has to apply them.
+ * Reactions are vectors in space, f on b. A step begins with a part of the reactions of the one before, SMALL_WARM. What these
+ * have made of a body's velocity is v - v^- - h g, with v^- and v before and after that step of the same length, so that
+ * no pass over the pairs has to apply them.
  *
- * The law is that of rigid contacts, with a compliance that is small beside W of the heaviest body:
+ * The law is that of rigid contacts, with a compliance C that is a small part of W_cc:
  *
  *     u~ = u + q + C (f - f_0),   C = diag(c_n, c_t, c_t)
  *
  *     pairs that push    q = n g/h where g > 0, else n max(g/(h + tau), -v_push - 2 c_n f_n^-),   f_0 = (0, f_t^-)
  *     impacts            q = E u^- (and n g/h where e_n = 0),                       f_0 = r^, of the pair alone
  *
- * C makes the reactions of a packing unique and bounds the number of sweeps. An impact is a pair that pushes little and
+ * C makes the reactions of a packing unique. An impact is a pair that pushes little and
  * would meet in this step by u^-; it has Newton's law exactly where it is alone. Pairs that are apart, rebound and are not
  * met by their own motion wait: what others make of it is the impact of a later step. Overlaps are left slowly,
  * at v_push at most and what C takes of a load.

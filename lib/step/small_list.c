@@ -1,7 +1,8 @@
 /* step/small_list.c: pairs with a margin, in groups without a common body [step/small_list.h]. */
 #include "step/small_list.h"
 
-#include "contact/touching.h"
+#include "base/array.h"
+#include "contact/contact_law.h"
 #include "solve/lay.h"
 
 #include <stdlib.h>
@@ -36,12 +37,6 @@ void small_list_free(struct small_list *l)
     free(l->s.place), free(l->s.body), free(l->s.before), free(l->s.hot), free(l->s.change);
     free(l->listed);
     *l = (struct small_list){ 0 };
-}
-
-static const struct pair_law *law_between(const struct packing *p, int32_t a, int32_t b)
-{
-    static const struct pair_law none;
-    return p->law ? &p->law[packing_pair(p, a, b)] : &none;
 }
 
 /* ---- bodies ---- */
@@ -166,11 +161,8 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
         to->d[0][k] = d.x, to->d[1][k] = d.y, to->d[2][k] = d.z;
     }
     if (!l->s.turn) return;
-    const double ra = p->radius[pair->a], rb = p->radius[pair->b], R = ra * rb / (ra + rb);
-    const struct pair_law *law = law_between(p, pair->a, pair->b);
     struct small_turn *t = &l->s.turn[l->slot[i] / BUNDLE];
-    t->most[0][k] = law->mu_p + law->mu_p_ratio * R,
-    t->most[1][k] = law->mu_r + law->mu_r_ratio * R;
+    contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
 }
 
 static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x)
@@ -234,25 +226,33 @@ vec3 small_branch(const struct small *s, int64_t slot)
     return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
 }
 
-static int pair_order(const struct pair *x, const struct pair *y)
+static struct contact_key pair_key(const struct pair *q)
 {
-    if (x->a != y->a) return x->a < y->a ? -1 : 1;
-    if (x->b != y->b) return x->b < y->b ? -1 : 1;
-    for (int k = 0; k < 3; k++)
-        if (x->shift[k] != y->shift[k]) return x->shift[k] < y->shift[k] ? -1 : 1;
-    return 0;
+    return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
+}
+
+/* From `from` on, the first pair that is not before this one; *found: it is this one */
+static int64_t find_pair(const struct small_list *l, int64_t from, struct contact_key key,
+                         bool *found)
+{
+    int order = -1;
+    while (from < l->pairs.n &&
+           (order = contact_key_order(pair_key(&l->pairs.pair[from]), key)) < 0)
+        from++;
+    *found = order == 0;
+    return from;
 }
 
 /* Pairs that were in the list before */
 static void carry_pairs(struct small_list *to, const struct small_list *from)
 {
     int64_t k = 0;
+    bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
         if (small_is_zero(x.f) && small_is_zero(x.sum)) continue;
-        while (k < to->pairs.n && pair_order(&to->pairs.pair[k], &from->pairs.pair[i]) < 0) k++;
-        if (k < to->pairs.n && pair_order(&to->pairs.pair[k], &from->pairs.pair[i]) == 0)
-            set_past(&to->s, to->slot[k], &x);
+        k = find_pair(to, k, pair_key(&from->pairs.pair[i]), &found);
+        if (found) set_past(&to->s, to->slot[k], &x);
     }
 }
 
@@ -275,22 +275,11 @@ double small_wall_distance(const struct packing *p, const struct pose *pose, int
 
 static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, int32_t i)
 {
-    const struct pair_law *law = law_between(p, -1 - w, i);
     const int32_t m = packing_pair(p, -1 - w, i);
-    if (l->touches == l->room) {
-        const int64_t room = l->room ? 2 * l->room : 1024;
-        struct small_touch *t = realloc(l->touch, (size_t)room * sizeof *t);
-        if (!t) return false;
-        l->touch = t, l->room = room;
-    }
-    l->touch[l->touches++] = (struct small_touch){
-        .wall = w,
-        .body = i,
-        .mu = p->mu[m],
-        .e = { p->en[m], p->et[m] },
-        .most = { law->mu_p + law->mu_p_ratio * p->radius[i],
-                  law->mu_r + law->mu_r_ratio * p->radius[i] },
-    };
+    if (!array_grow(&l->touch, &l->room, l->touches + 1, sizeof *l->touch)) return false;
+    struct small_touch *t = &l->touch[l->touches++];
+    *t = (struct small_touch){ .wall = w, .body = i, .mu = p->mu[m], .e = { p->en[m], p->et[m] } };
+    contact_laws_rolling(p, -1 - w, i, &t->most[1], &t->most[0]);
     return true;
 }
 
@@ -311,20 +300,34 @@ static bool find_touches(struct small_list *l, const struct packing *p, const ve
     return room;
 }
 
-static int touch_order(const struct small_touch *x, const struct small_touch *y)
+int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall)
 {
-    if (x->body != y->body) return x->body < y->body ? -1 : 1;
-    return x->wall < y->wall ? -1 : x->wall > y->wall;
+    int64_t lo = 0, hi = l->touches;
+    while (lo < hi) {
+        const int64_t mid = lo + (hi - lo) / 2;
+        const struct small_touch *t = &l->touch[mid];
+        if (t->body < body || (t->body == body && t->wall < wall))
+            lo = mid + 1;
+        else
+            hi = mid;
+    }
+    return lo;
+}
+
+static struct small_touch *find_touch(const struct small_list *l, int32_t body, int32_t wall)
+{
+    const int64_t k = small_list_touch(l, body, wall);
+    return k < l->touches && l->touch[k].body == body && l->touch[k].wall == wall ? &l->touch[k]
+                                                                                  : NULL;
 }
 
 static void carry_touches(struct small_list *to, const struct small_list *from)
 {
-    int64_t k = 0;
     for (int64_t i = 0; i < from->touches; i++) {
         const struct small_touch *t = &from->touch[i];
-        while (k < to->touches && touch_order(&to->touch[k], t) < 0) k++;
-        if (k < to->touches && touch_order(&to->touch[k], t) == 0) {
-            to->touch[k] = *t;
+        struct small_touch *same = find_touch(to, t->body, t->wall);
+        if (same) {
+            *same = *t;
         } else {
             const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
             to->gone_work += t->work, to->gone_impulse = v3_add(to->gone_impulse, sum);
@@ -358,45 +361,21 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
 
 /* ---- reactions, from what the packing remembers ---- */
 
-static int64_t find_pair(const struct small_list *l, int64_t from, const struct pair *key)
-{
-    while (from < l->pairs.n && pair_order(&l->pairs.pair[from], key) < 0) from++;
-    return from;
-}
-
-static struct small_touch *find_touch(const struct small_list *l, int32_t wall, int32_t body)
-{
-    int64_t lo = 0, hi = l->touches;
-    const struct small_touch key = { .wall = wall, .body = body };
-    while (lo < hi) {
-        const int64_t mid = lo + (hi - lo) / 2;
-        if (touch_order(&l->touch[mid], &key) < 0)
-            lo = mid + 1;
-        else
-            hi = mid;
-    }
-    return lo < l->touches && touch_order(&l->touch[lo], &key) == 0 ? &l->touch[lo] : NULL;
-}
-
-static void to_array(double to[3], vec3 x, double times)
-{
-    to[0] = times * x.x, to[1] = times * x.y, to[2] = times * x.z;
-}
-
 void small_list_recall(struct small_list *l, const struct packing *p, double part)
 {
     int64_t at = 0;
+    bool found;
     for (int64_t i = 0; i < p->memory.n; i++) {
         const struct recall *r = &p->memory.recall[i];
-        struct small_touch *t = r->a < 0 ? find_touch(l, -1 - r->a, r->b) : NULL;
-        if (t) to_array(t->f, r->r, part), to_array(t->m, r->m, part);
-        if (r->a < 0) continue;
-        const struct pair key = { r->a, r->b, { r->shift[0], r->shift[1], r->shift[2] } };
         struct small_past x = { 0 };
-        at = find_pair(l, at, &key);
-        if (at == l->pairs.n || pair_order(&l->pairs.pair[at], &key) != 0) continue;
-        to_array(x.f, r->r, part), to_array(x.m, r->m, part);
-        set_past(&l->s, l->slot[at], &x);
+        small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
+        if (r->a < 0) {
+            struct small_touch *t = find_touch(l, r->b, -1 - r->a);
+            if (t) memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
+            continue;
+        }
+        at = find_pair(l, at, recall_key(r), &found);
+        if (found) set_past(&l->s, l->slot[at], &x);
     }
 }
 
@@ -446,10 +425,8 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
         remember_one(&m, k, by[i]->f, by[i]->m, 1 / part);
     }
     for (int64_t i = 0; i < l->pairs.n; i++) {
-        const struct pair *q = &l->pairs.pair[i];
-        const struct contact_key k = { q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
         const struct small_past x = past_of(&l->s, l->slot[i]);
-        remember_one(&m, k, x.f, x.m, 1 / part);
+        remember_one(&m, pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
     }
     free(by);
     memory_free(&p->memory);

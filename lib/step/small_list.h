@@ -46,6 +46,8 @@ void small_list_recall(struct small_list *l, const struct packing *p, double par
 /* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
 int small_list_remember(const struct small_list *l, struct packing *p, double part,
                         struct failure *failure);
+/* The first touch that is not before that of this body and wall */
+int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall);
 /* [touches] in the order of contacts; NULL when memory is short. To be freed */
 struct small_touch **small_list_touches(const struct small_list *l);
 

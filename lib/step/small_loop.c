@@ -159,26 +159,12 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     r->far = true;
 }
 
-/* The first touch of body i, or of a later one */
-static int64_t first_touch(const struct small_list *l, int64_t i)
-{
-    int64_t lo = 0, hi = l->touches;
-    while (lo < hi) {
-        const int64_t mid = lo + (hi - lo) / 2;
-        if (l->touch[mid].body < i)
-            lo = mid + 1;
-        else
-            hi = mid;
-    }
-    return lo;
-}
-
 /* Of bodies first .. end-1 */
 static void sweep_touches(struct small_run *r, int64_t first, int64_t end, bool again)
 {
     struct small_list *l = r->l;
-    const int64_t last = first_touch(l, end);
-    for (int64_t i = first_touch(l, first); i < last; i++)
+    const int64_t last = small_list_touch(l, end, 0);
+    for (int64_t i = small_list_touch(l, first, 0); i < last; i++)
         if (!again || l->s.hot[l->touch[i].body] >= l->s.sweep - 1)
             solve_touch(r, &l->touch[i], again);
 }
@@ -187,8 +173,8 @@ static void sweep_touches(struct small_run *r, int64_t first, int64_t end, bool 
 static void end_touches(struct small_run *r, int64_t first, int64_t end)
 {
     struct small_list *l = r->l;
-    const int64_t last = first_touch(l, end);
-    for (int64_t i = first_touch(l, first); i < last; i++) {
+    const int64_t last = small_list_touch(l, end, 0);
+    for (int64_t i = small_list_touch(l, first, 0); i < last; i++) {
         struct small_touch *t = &l->touch[i];
         const vec3 f = small_vec(t->f), m = small_vec(t->m);
         if (small_is_zero(t->f)) continue;

@@ -9,7 +9,6 @@
 #include "step/small_loop.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -65,7 +64,7 @@ static void small_set_rates(struct small_run *r)
                                          .relax = 1 / ((1 + RELAXES) * r->h),
                                          .push = 2 * g * r->h * (double)r->n + 0.02 * fastest,
                                          .soft = COMPLIANCE,
-                                         .calm = 2 * g * r->h,
+                                         .calm = freedoms_calm(p),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
 }
 
@@ -114,7 +113,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
     return failure->status;
 }
 
-/* ---- what is told of it ---- */
+/* ---- its report ---- */
 
 struct small_energy {
     double kinetic, potential;
@@ -224,19 +223,23 @@ static int give_contacts(const struct small_run *r, struct contacts *out, struct
     return room ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
 }
 
+/* What the report has been given before the step, and nothing of another step */
 static void small_report(struct report *rep, const struct small_run *r, const struct contacts *s)
 {
-    rep->step = r->p->step, rep->t = r->p->t;
-    rep->err = (struct err){ .contacts = s->n, .max_overlap = contacts_max_overlap(s) };
-    rep->balanced = true;
-    rep->tied = rep->may_gain = rep->projected = rep->sheared = rep->soft = false;
-    rep->converged = true, rep->small_limited = r->unsolved, rep->sweeps = (int32_t)r->sweeps;
-    rep->newton = rep->safeguarded = rep->gave_up = 0;
-    rep->given_up = rep->on_cpu = NULL, rep->history = NULL;
-    rep->watched = false, rep->passed = 0, rep->endless = (struct endless){ 0 };
-    rep->substeps = 1, rep->small = r->n;
-    rep->bus_to = rep->bus_from = rep->work = 0, rep->kernels = 0;
-    snprintf(rep->method, sizeof rep->method, "small");
+    *rep = (struct report){ .options = rep->options,
+                            .criterion = rep->criterion,
+                            .eps = rep->eps,
+                            .detection = rep->detection,
+                            .method = "small",
+                            .step = r->p->step,
+                            .t = r->p->t,
+                            .err = { .contacts = s->n, .max_overlap = contacts_max_overlap(s) },
+                            .balanced = true,
+                            .converged = true,
+                            .sweeps = (int32_t)r->sweeps,
+                            .substeps = 1,
+                            .small = r->n,
+                            .small_limited = r->unsolved };
 }
 
 /* s: in which a column of grains as high as the packing falls by STEADY of the smallest radius */
