@@ -157,8 +157,8 @@ static void set_tie(struct contact_law *t, const struct packing *p, struct conta
     t->jump[0] = fmax(0, c->gap);
     contact_laws_rolling(p, c->a, c->b, &t->mu_r, &t->mu_p);
     if (wet)
-        t->state |=
-            old && old->wet == BOND_WET ? CONTACT_LAW_WET : CONTACT_LAW_WET | TIE_NEW_BRIDGE;
+        t->state |= old && old->wet == BOND_WET ? CONTACT_LAW_WET
+                                                : CONTACT_LAW_WET | CONTACT_LAW_NEW_BRIDGE;
     t->pull = whole_pull(p, c, l, wet) / of->among;
     if (pair_law_adheres(l)) contact_law_set_bond(t, p, c, old, of);
     const bool soft = pair_law_springs(l) && !(t->beta > 0);
@@ -289,7 +289,7 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
     double after = share * cohesion_energy(p, c, l, end->gap);
     if (t->state & CONTACT_LAW_WET) {
         double bridge = share * bridge_energy(l, R, c->gap);
-        if (t->state & TIE_NEW_BRIDGE)
+        if (t->state & CONTACT_LAW_NEW_BRIDGE)
             a.broken -= bridge;
         else
             before += bridge;

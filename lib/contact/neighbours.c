@@ -218,7 +218,10 @@ int neighbours_find(struct neighbours *s, const struct packing *p, const struct 
     if (images) {
         struct cell now = { .origin = p->cell.origin };
         for (int k = 0; k < 3; k++) now.edge[k] = edge[k], now.repeats[k] = p->cell.repeats[k];
-        if (cell_check(&now, p->dim, 2 * largest_radius(p) + gap, failure)) return failure->status;
+        const double thick = 2 * largest_radius(p);
+        if (cell_check(&now, p->dim, thick + gap, failure)) return failure->status;
+        if (thick > s->thick && packing_check_walls(p, thick, failure)) return failure->status;
+        s->thick = fmax(s->thick, thick);
     }
     if (s->list.bodies == p->n && list_serves(s, p, x, edge, gap)) return 0;
     vec3 *listed = keep ? realloc(s->listed, size + sizeof *x) : s->listed;

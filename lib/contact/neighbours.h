@@ -15,6 +15,7 @@ struct neighbours {
     /* Where the cell repeats: their images then, and the inverse of the edges */
     int32_t (*image)[3]; /* [list.bodies] */
     vec3 inverse[3];     /* 1/m */
+    double thick; /* m: of the largest body with which walls have been checked to fit there */
     /* Of the walls that are meshes; they move as a whole, so that one made once serves for ever. */
     int32_t surfaces;        /* 0: not made yet, else walls */
     struct surface *surface; /* [surfaces] */

@@ -1,6 +1,7 @@
 /* contact/seek.c: pairs sought in grids, also from images, by threads [contact/seek.h]. */
 #include "contact/seek.h"
 
+#include "base/array.h"
 #include "base/team.h"
 #include "contact/grid.h"
 
@@ -28,12 +29,7 @@ static int64_t crowd(const struct pairs *s)
 static bool pairs_add(struct pairs *s, int32_t a, int32_t b, const int8_t shift[3])
 {
     if (s->n >= crowd(s)) return false;
-    if (s->n == s->room) {
-        int64_t room = s->room ? 2 * s->room : 1024;
-        struct pair *p = realloc(s->pair, (size_t)room * sizeof *p);
-        if (!p) return false;
-        s->pair = p, s->room = room;
-    }
+    if (!array_grow(&s->pair, &s->room, s->n + 1, sizeof *s->pair)) return false;
     struct pair *new = &s->pair[s->n++];
     *new = a < b ? (struct pair){ .a = a, .b = b } : (struct pair){ .a = b, .b = a };
     for (int k = 0; k < 3; k++) new->shift[k] = (int8_t)(a < b ? -shift[k] : shift[k]);
@@ -242,12 +238,7 @@ static bool pairs_join(struct pairs *s, struct pairs *part)
         return true;
     }
     if (s->n + part->n > crowd(s)) return s->n = crowd(s), false;
-    if (s->n + part->n > s->room) {
-        int64_t room = s->room + s->room / 2 + part->n;
-        struct pair *p = realloc(s->pair, (size_t)room * sizeof *p);
-        if (!p) return false;
-        s->pair = p, s->room = room;
-    }
+    if (!array_grow(&s->pair, &s->room, s->n + part->n, sizeof *s->pair)) return false;
     if (part->n) memcpy(s->pair + s->n, part->pair, (size_t)part->n * sizeof *part->pair);
     s->n += part->n;
     return true;

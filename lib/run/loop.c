@@ -1,5 +1,6 @@
 #include "run/loop.h"
 
+#include "base/array.h"
 #include "base/text.h"
 #include "file/reader.h"
 #include "file/report_json.h"
@@ -119,11 +120,8 @@ static void keep_line(const char *line, size_t length)
     if (step <= before)
         die(EX_DATAERR, "--replay: %s: %s: line %lld is of step %lld, and the one before of %lld",
             replay, where, (long long)loop.n + 1, (long long)step, (long long)before);
-    if (loop.n == loop.room) {
-        loop.room = loop.room ? 2 * loop.room : 64;
-        loop.said = realloc(loop.said, (size_t)loop.room * sizeof *loop.said);
-        if (!loop.said) die(EX_SOFTWARE, "no memory for answers");
-    }
+    if (!array_grow(&loop.said, &loop.room, loop.n + 1, sizeof *loop.said))
+        die(EX_SOFTWARE, "no memory for answers");
     loop.said[loop.n] = (struct said){ step, strndup(line, length) };
     if (!loop.said[loop.n++].line) die(EX_SOFTWARE, "no memory for answers");
 }

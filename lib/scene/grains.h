@@ -49,3 +49,10 @@ int32_t grains_material(const struct scene *s, const struct scene_bodies *b, int
 /* scene/grains.c: those of a document's frame: EX_DATAERR where a material is none of the scene's. */
 int grains_of_document(struct grains *out, const struct scene *s, const struct scene_bodies *b,
                        struct failure *failure);
+
+/* ---- scene/scene_fill.c: from there to rows of a packing ---- */
+
+/* The bodies of all groups into a packing that has room for them; list[groups]: of those that are lists. Returns 0,
+   EX_DATAERR or EX_SOFTWARE. */
+int scene_fill(struct packing *p, const struct scene *s, const struct grains *list, gsl_rng *rng,
+               struct failure *failure);

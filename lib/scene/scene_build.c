@@ -7,7 +7,6 @@
 #include "scene/grains.h"
 #include "scene/random_start.h"
 #include "scene/scene_carry.h"
-#include "scene/scene_fill.h"
 #include "scene/stiffness.h"
 #include "scene/time_step.h"
 #include "state/placement.h"
@@ -154,6 +153,7 @@ static int set_parameters(struct packing *p, const struct scene *s, struct failu
     if (goes_beyond(s) && packing_alloc_laws(p, failure)) return failure->status;
     for (int32_t k = 0; p->law && k < s->materials * s->materials; k++)
         p->law[k] = s->law[k].pair_law;
+    stiffness_expect(p, s); // what a document remembers of springs is carried over before
     if ((p->scene = strdup(s->text))) return 0;
 fail:
     return failure_set(failure, EX_SOFTWARE, "no memory for the scene");

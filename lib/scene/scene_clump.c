@@ -1,6 +1,6 @@
 /* scene/scene_clump.c: grains from the surfaces of files: hulls, clumps that fill them, and what clumps stand for
-   [scene/scene_form.h]. */
-#include "scene/scene_form.h"
+   [scene/scene_read.h]. */
+#include "scene/scene_read.h"
 
 #include "scene/clump_fit.h"
 #include "scene/surface_parts.h"

@@ -1,5 +1,4 @@
-/* scene/scene_fill.c: the bodies of a scene's groups [scene/scene_fill.h]. */
-#include "scene/scene_fill.h"
+/* scene/scene_fill.c: the bodies of a scene's groups [scene/grains.h]. */
 
 #include "base/random.h"
 #include "scene/grains.h"

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "scene/keys.h"
+#include "shape/solid.h"
 
 static const char axis_name[3][2] = { "x", "y", "z" };
 
@@ -97,3 +98,14 @@ int scene_read_bodies(jnode n, struct scene *s, void *out);
 
 /* Of a type whose values are read when the other keys of the object are known */
 int scene_read_later(jnode n, const struct key *k, struct scene *s, void *member);
+
+/* scene/scene_solids.c, scene/scene_clump.c: shapes of grains. */
+/* A shape that is read, and what it stands for; without a volume: itself */
+struct form {
+    struct shape shape;
+    struct solid as;
+};
+
+/* "solid", "clump", "mesh" */
+extern const struct keys solid_keys, clump_keys, grain_mesh_keys;
+int scene_read_grain_mesh(jnode mesh, struct scene *scene, void *form);

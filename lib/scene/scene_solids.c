@@ -1,6 +1,6 @@
 /* scene/scene_solids.c: "shapes" of grains from their JSON, and the shape of a group. */
 #include "scene/hull.h"
-#include "scene/scene_form.h"
+#include "scene/scene_read.h"
 
 #include <stdlib.h>
 #include <string.h>

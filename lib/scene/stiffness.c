@@ -88,6 +88,12 @@ static double stiffness_of_bar(int dim, double young, double radius)
     return dim == 2 ? young : M_PI_4 * young * 2 * radius;
 }
 
+void stiffness_expect(struct packing *p, const struct scene *s)
+{
+    for (int32_t i = 0; p->law && i < p->materials * p->materials; i++)
+        if (stiffness_given(&s->law[i]) && !(p->law[i].kn > 0)) p->law[i].kn = p->law[i].kt = 1;
+}
+
 int stiffness_build(struct packing *p, const struct scene *s, struct failure *failure)
 {
     struct failure why = { 0 };
@@ -100,7 +106,7 @@ int stiffness_build(struct packing *p, const struct scene *s, struct failure *fa
         const struct scene_law *l = &s->law[i];
         if (l->softest && why.status)
             return failure_set(failure, why.status, "stiffness: auto: %s", why.text);
-        if (l->young > 0 && !isfinite(radius))
+        if (p->dim == 3 && l->young > 0 && !isfinite(radius))
             return failure_set(failure, EX_DATAERR,
                                "stiffness: young: no body has a diameter: give a stiffness in N/m");
         if (l->softest) p->law[i].kn = needed;

@@ -29,6 +29,8 @@ static inline bool stiffness_given(const struct scene_law *l)
 {
     return l->pair_law.kn > 0 || l->young > 0 || l->softest;
 }
+/* All pairs that will have a stiffness have some, by which what lasts of springs is known, until stiffness_build(). */
+void stiffness_expect(struct packing *p, const struct scene *s);
 /* k_n and k_t of all pairs of a packing whose bodies have been built, as its scene has them. Returns as the former. */
 int stiffness_build(struct packing *p, const struct scene *s, struct failure *failure);
 /* *k by a text, as --stiffness has it: a number above 0 (N/m), "rigid" (0) or "auto" (needed). The same returns, and EX_USAGE

@@ -13,10 +13,9 @@ struct wall_parts {
 };
 
 /*
- * Is the wall the same after a shift by edge k?
- *
- * Or does it stand between the faces of edge k, farther from them than a body is thick (m), and never moves along their normal? Bodies
- * are in the cell, so that it meets none of their images.
+ * Is the wall the same after a shift by edge k, or does it stand between the faces of that edge, farther from them than a
+ * body is thick (m), and never move along their normal? Bodies are in the cell, so that such a wall meets none of their
+ * images.
  */
 bool wall_fits_edge(const struct wall *w, const struct wall_parts *of, const struct cell *c, int k,
                     double thick);

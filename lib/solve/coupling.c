@@ -1,6 +1,8 @@
 /* solve/coupling.c: the Jacobians of the freedoms [solve/coupling.h]. */
 #include "solve/coupling.h"
 
+#include "base/array.h"
+
 #include <stdlib.h>
 
 void couplings_free(struct couplings *c)
@@ -12,12 +14,7 @@ void couplings_free(struct couplings *c)
 
 static bool coupling_add(struct couplings *c, int64_t *room, const struct coupling *one)
 {
-    if (c->n == *room) {
-        int64_t more = *room + *room / 2 + 64;
-        struct coupling *of = realloc(c->of, (size_t)more * sizeof *of);
-        if (!of) return false;
-        c->of = of, *room = more;
-    }
+    if (!array_grow(&c->of, room, c->n + 1, sizeof *c->of)) return false;
     c->of[c->n++] = *one;
     return true;
 }

@@ -325,8 +325,7 @@ static void opencl_keep(struct device *d, const struct problem *p, int place, bo
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    enum opencl_role r = (enum opencl_role)(FRAME_MEMORY_R + place),
-                     v = (enum opencl_role)(FRAME_MEMORY_U + place);
+    enum opencl_role r = (enum opencl_role)(KEPT_R + place), v = (enum opencl_role)(KEPT_U + place);
     if (opencl_need(o, r, size)) opencl_copy(o, R, r, size);
     if (u && opencl_need(o, v, size)) opencl_copy(o, U, v, size);
 }
@@ -335,8 +334,8 @@ static void opencl_restore(struct device *d, const struct problem *p, int place,
 {
     struct opencl *o = (struct opencl *)d;
     size_t size = (size_t)p->bundles * sizeof *p->u;
-    opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_R + place), R, size);
-    if (u) opencl_copy(o, (enum opencl_role)(FRAME_MEMORY_U + place), U, size);
+    opencl_copy(o, (enum opencl_role)(KEPT_R + place), R, size);
+    if (u) opencl_copy(o, (enum opencl_role)(KEPT_U + place), U, size);
     if (p->kind.given_by_W) {
         SET(SCATTER, 0, MEMORY(BUNDLES), MEMORY(R), MEMORY(ROW_R), opencl_integer(p->d),
             opencl_whole(p->slots));

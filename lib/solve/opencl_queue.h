@@ -39,9 +39,9 @@ enum opencl_role {
     ROOM,
     MIXED,
     MIXED_SUM,
-    FRAME_MEMORY_R,
-    FRAME_MEMORY_U = FRAME_MEMORY_R + DEVICE_KEPT,
-    ROLES = FRAME_MEMORY_U + DEVICE_KEPT
+    KEPT_R,
+    KEPT_U = KEPT_R + DEVICE_KEPT,
+    ROLES = KEPT_U + DEVICE_KEPT
 };
 
 enum kernel_id {

@@ -34,7 +34,7 @@ enum { STATUS_JAMMED = 3, STATUS_SUMMED = 4 };
 enum {
     CONTACT_LAW_WET = 1,
     CONTACT_LAW_BONDED = 2,
-    TIE_NEW_BRIDGE = 4,
+    CONTACT_LAW_NEW_BRIDGE = 4,
     CONTACT_LAW_MEETS = 8, /* an impact of bodies that push no spring yet [contact/spring.h] */
     CONTACT_LAW_STATES = 16
 };
@@ -52,7 +52,7 @@ struct contact_law {
     double hit[3];     /* N s: the impulse of the impact, were the pair alone */
     double roll;       /* N m: stiffness of the contact's moment; 0: rigid */
     double turn[3];    /* rad: how far its spring is turned, b against a, in the contact's basis */
-    int8_t state;      /* TIE_... */
+    int8_t state;      /* CONTACT_LAW_... */
 };
 
 /* What tells contacts apart, as in struct contact */

@@ -400,18 +400,11 @@ static int check_images(const struct packing *p, int64_t first, struct failure *
     return 0;
 }
 
-/* The cell, which the largest body must fit into, and the images. */
-static int check_cell(const struct packing *p, struct failure *failure)
+int packing_check_walls(const struct packing *p, double thick, struct failure *failure)
 {
-    double most = 0;
-    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
-    if (cell_check(&p->cell, p->dim, 2 * most, failure)) return failure->status;
-    if (cell_repeats(&p->cell) != (p->image != NULL))
-        return failure_set(failure, EX_DATAERR, "images without a periodic cell, or the reverse");
-    if (check_images(p, 0, failure)) return failure->status;
     for (int32_t i = 0; cell_repeats(&p->cell) && i < p->walls; i++)
         for (int k = 0; k < 3; k++) {
-            if (!packing_wall_fits_edge(p, &p->wall[i], k, 2 * most))
+            if (!packing_wall_fits_edge(p, &p->wall[i], k, thick))
                 return failure_set(
                     failure, EX_DATAERR,
                     "wall %d: crosses a periodic edge of the cell, is nearer to it than a "
@@ -424,6 +417,18 @@ static int check_cell(const struct packing *p, struct failure *failure)
                                    i);
         }
     return 0;
+}
+
+/* The cell, which the largest body must fit into, and the images. */
+static int check_cell(const struct packing *p, struct failure *failure)
+{
+    double most = 0;
+    for (int64_t i = 0; cell_repeats(&p->cell) && i < p->n; i++) most = fmax(most, p->radius[i]);
+    if (cell_check(&p->cell, p->dim, 2 * most, failure)) return failure->status;
+    if (cell_repeats(&p->cell) != (p->image != NULL))
+        return failure_set(failure, EX_DATAERR, "images without a periodic cell, or the reverse");
+    if (check_images(p, 0, failure)) return failure->status;
+    return packing_check_walls(p, 2 * most, failure);
 }
 
 static int packing_check_each_body(const struct packing *p, int64_t first, struct failure *failure)

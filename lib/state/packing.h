@@ -354,6 +354,8 @@ static inline vec3 packing_predict(const struct packing *p, int64_t i)
 
 /* Is the wall along the periodic edge k, or between its faces, farther from them than `thick` (m), for ever [shape/wall_in_cell.h]? */
 bool packing_wall_fits_edge(const struct packing *p, const struct wall *w, int k, double thick);
+/* Do all walls, and do edges along them stand still? thick (m): of the largest body. Returns 0 or EX_DATAERR. */
+int packing_check_walls(const struct packing *p, double thick, struct failure *failure);
 /* The acceleration of the flow that the cell's edges make, in the step to come */
 struct cell_flow packing_flow(const struct packing *p);
 

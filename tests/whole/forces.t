@@ -102,4 +102,11 @@ done
 unique "a cell under stress, mu = 0.3" 600 '{ dt: 0.02, density: 1.88, mu: 0.3, gravity: [0, 0, 0],
     cell: { lengths: [6.6, 6.6, 6.6], stress: { pressure: 1, mass: 10 } },
     bodies: [{ random: { count: 150 }, radius: { uniform: [0.4, 0.6] }, box: { x: [0, 6.6], y: [0, 6.6], z: [0, 6.6] } }] }'
+
+# ---- springs that a scene hands on ----
+
+jq -n '{ dt: 1e-4, gravity: [0, 0, -9.81], density: 2500, mu: 0.5, stiffness: { young: 1e7 }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+    bodies: [{ x: [0, 0, 0.01], radius: 0.01 }, { x: [1e-4, 0, 0.03], radius: 0.01 }] }' | nsd-gen - | nsd-step -n 30 --every 30 -o "$tmp/springs.h5" 2>/dev/null
+next() { nsd-step -n 1 --contacts 2>/dev/null | nsd-info -c | jq -c .r; }
+is "springs of a stiffness by Young's modulus go on in a scene made of a document" "$(nsd-info --scene "$tmp/springs.h5" | nsd-gen - | next)" "$(next <"$tmp/springs.h5")"
 done_testing
