@@ -1,7 +1,7 @@
 #!/bin/bash
 # forces.sh [BALLS]: the forces of a pile at rest, contact by contact, by nsd with a stiffness and by a code of soft
 # spheres with the same springs (reference/dem.c), from the same start, at two stiffnesses. Tables on standard output,
-# those of docs/forces. Some two minutes for the default of 500 balls.
+# those of docs/forces. Two to four minutes for the default of 500 balls.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source bench/common.sh

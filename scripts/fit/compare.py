@@ -14,7 +14,7 @@ from cmaes import CMA
 
 import nlopt
 
-folder, most = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 46
+folder, most = sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 38
 known = [line.split("\t") for line in open(os.path.join(folder, "known.tsv"), encoding="utf-8")]
 LOW, HIGH = np.array([0.1, 0.0]), np.array([0.9, 0.5])
 
@@ -57,7 +57,7 @@ def by_bobyqa(error):
     return search.optimize([0.5, 0.5])
 
 
-for row in known[: int(os.environ.get("PROBLEMS", "3"))]:
+for row in known[: int(os.environ.get("PROBLEMS", "4"))]:
     k, right = int(row[0]), (np.array([float(row[1]), float(row[5])]) - LOW) / (HIGH - LOW)
     found = (np.array([float(row[2]), float(row[6])]) - LOW) / (HIGH - LOW)
     print(k, "gaussian-process", row[9], *np.round(found - right, 3), sep="\t", flush=True)

@@ -15,7 +15,7 @@ first=${FIRST:-1} k=$((${FIRST:-1} - 1))
 while read -r mu r; do
     [ $((++k - first)) -lt "${2:-10}" ] || break
     [ -e "$folder/$k.json" ] || problem "$mu" "$r" $k '["slope", "fraction", "spin"]' >"$folder/$k.json"
-    nsd-fit --quiet -j "${JOBS:-1}" -n "${EVALUATIONS:-54}" "$folder/$k.json" >"$folder/$k.out" || true
+    nsd-fit --quiet -j "${JOBS:-1}" -n "${EVALUATIONS:-38}" "$folder/$k.json" >"$folder/$k.out" || true
     jq -r --argjson k $k --argjson mu "$mu" --argjson r "$r" '.parameters as $p | [$k, $mu, $p.mu.value, $p.mu.interval90[], $r, $p.mu_r.value, $p.mu_r.interval90[],
         .evaluations, .cpu_hours, (.remarks | join("; "))] | @tsv' "$folder/$k.fit/result.json"
 done <<'EOF' | tee "$folder/known.tsv"

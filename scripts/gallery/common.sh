@@ -23,7 +23,8 @@ scene()
     jq "$@" "$file"
 }
 
-# A run in which a step had no solution ends with 1. It is used: its log has the step, and what it lacks is missed later.
+# Status 1: a step had no solution, or the run ended early. The frames that there are are used; an experiment that needs a later
+# one fails in its measure.
 nsd-step() { command nsd-step "$@" || [ $? = 1 ]; }
 
 # step FILE.h5 [arguments of nsd-step]: what comes in makes steps, and the trajectory is in the folder. What

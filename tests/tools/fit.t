@@ -28,7 +28,7 @@ for k in 1 2 3 4; do
         map(select(.)) | length' known.fit/result.json)
     inside=$((inside + n)) of=$((of + 2))
 done
-ok "known parameters lie in 90 % intervals, $inside of $of" [ "$inside" -ge 6 ]
+ok "known parameters lie in 90 % intervals, $inside of $of" [ "$inside" -ge 7 ]
 ok "which are narrow" jq -e '.parameters | .a.interval90[1] - .a.interval90[0] < 0.08' known.fit/result.json
 is "and the run has finished without a remark" "$(jq -c '[.finished, .remarks]' known.fit/result.json)" '[true,[]]'
 is "the scene has the best values" "$(jq -c '[.mu, .pairs[0].mu]' known.fit/scene.json)" "$(jq -c '.parameters | [.a.value, .b.value]' known.fit/result.json)"

@@ -304,7 +304,6 @@ static void test_sign(int d, int each)
     free(a), free(x), free(L), free(D);
 }
 
-/* A wall, whose W has no inverse, by each solver that factorises */
 /* The interior point method of all contacts, after sweeps */
 static int in_the_interior(struct solve *s)
 {
@@ -317,6 +316,7 @@ static int in_the_interior(struct solve *s)
     return 0;
 }
 
+/* A wall, whose W has no inverse, by the interior point method and by auto */
 static void test_wall(int d, int each, const struct solver *global)
 {
     struct bricks w = lay(d, each);
