@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_pull.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,6 +24,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
     const vec3 g = r->p->g;
     const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
     double most = 0;
+    if (r->pull) return small_pull_bodies(r, first, end);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;

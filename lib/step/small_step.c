@@ -7,6 +7,7 @@
 #include "state/freedom.h"
 #include "state/placement.h"
 #include "step/small_loop.h"
+#include "step/small_pull.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -31,7 +32,6 @@ const char *small_lacks(const struct packing *p)
 {
     if (p->shape) return "grains other than balls";
     if (freedoms_in(p)) return "loads";
-    if (p->outside.force || p->outside.torque || p->pulls.n) return "forces on bodies";
     if (packing_sticks(p)) return "static friction";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     if (p->sums.n) return "sums of what bodies do to walls";
@@ -49,20 +49,19 @@ const char *small_lacks(const struct packing *p)
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
-    const double g = v3_norm(p->g);
+    const double fall = packing_most_fall(p) * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
     r->uneven = heaviest > UNEVEN * lightest;
-    const double fastest =
-        fmax(packing_whole(p).speed, small_wall_speed(p)) + g * r->h * (double)r->n;
+    const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p)) + fall;
     const double change = fmax(fastest, UNSEEN * packing_whole(p).small / r->h);
     r->l->s.rate = (struct small_rates){ .h = r->h,
                                          .per_h = 1 / r->h,
                                          .relax = 1 / ((1 + RELAXES) * r->h),
-                                         .push = 2 * g * r->h * (double)r->n + 0.02 * fastest,
+                                         .push = 2 * fall + 0.02 * fastest,
                                          .soft = COMPLIANCE,
                                          .calm = freedoms_calm(p),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
@@ -136,19 +135,20 @@ static struct small_energy energy_of(const struct packing *p)
 
 /* Dissipation is what the other terms leave. */
 static void small_balance(struct balance *b, const struct small_energy *before,
-                          const struct small_energy *after, const struct small_list *l)
+                          const struct small_energy *after, const struct small_run *r)
 {
+    const struct small_list *l = r->l;
     vec3 impulse = l->gone_impulse;
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = -l->gone_work;
+    b->drives = -l->gone_work, b->loads = small_pull_work(r);
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
         impulse = v3_add(impulse, v3_add(small_vec(t->sum), small_vec(t->f)));
     }
-    b->dissipation = b->gravity + b->drives - b->change;
+    b->dissipation = b->gravity + b->drives + b->loads - b->change;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
 
@@ -242,25 +242,25 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .small_limited = r->unsolved };
 }
 
-/* s: in which a column of grains as high as the packing falls by STEADY of the smallest radius */
+/* s: in which a body that a column of grains as high as the packing pushes, and forces on bodies, moves by STEADY of the
+   smallest radius */
 #define STEADY 1e-3
 static double small_steady(const struct packing *p)
 {
     const double g = v3_norm(p->g), least = packing_whole(p).small;
-    double lo = INFINITY, hi = -INFINITY;
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
     }
-    if (!(g > 0) || !(hi >= lo)) return INFINITY;
-    const double grains = 1 + (hi - lo) / g / (2 * packing_whole(p).large);
-    return sqrt(STEADY * least / (g * grains));
+    if (g > 0 && hi >= lo) pressed += g * (1 + (hi - lo) / g / (2 * packing_whole(p).large));
+    return pressed > 0 ? sqrt(STEADY * least / pressed) : INFINITY;
 }
 
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p));
-    const double way = p->dt * (fastest + v3_norm(p->g) * p->dt);
+    const double way = p->dt * (fastest + packing_most_fall(p));
     const double n = fmax(way / (overlap * packing_whole(p).small), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
@@ -285,7 +285,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     p->dt = r.h, p->t0 = p->t;
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else
+    else if (!small_pull_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0;
     *made = !failure->status && !r.failed;
@@ -296,13 +296,13 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = energy_of(p);
         small_report(rep, &r, s);
-        small_balance(&rep->balance, &before, &after, l);
+        small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {
         p->t = whole.t;
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    free(r.wall), free(r.x), free(r.turned);
+    free(r.wall), free(r.x), free(r.turned), free(r.pull);
     return failure->status;
 }
