@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "step/small_pull.h"
+#include "step/small_sums.h"
 
 #include <math.h>
 #include <string.h>
@@ -351,6 +352,8 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         small_sweeps(r, me, threads, first, end);
+        if (r->sums && !me) small_sums_step(r);
+        if (r->sums) team_meet();
         end_touches(r, first, end);
         team_meet();
         if (!me) finish_step(r);

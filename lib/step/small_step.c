@@ -8,6 +8,7 @@
 #include "state/placement.h"
 #include "step/small_loop.h"
 #include "step/small_pull.h"
+#include "step/small_sums.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -34,7 +35,7 @@ const char *small_lacks(const struct packing *p)
     if (freedoms_in(p)) return "loads";
     if (packing_sticks(p)) return "static friction";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->sums.n) return "sums of what bodies do to walls";
+    if (p->sums.n && p->sums.n != p->walls) return "sums of the faces of surfaces";
     for (int k = 0; k < 3; k++)
         if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
     for (int32_t w = 0; w < p->walls; w++)
@@ -285,13 +286,13 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     p->dt = r.h, p->t0 = p->t;
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else if (!small_pull_init(&r, failure))
+    else if (!small_pull_init(&r, failure) && !small_sums_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0;
     *made = !failure->status && !r.failed;
     if (*made && !give_contacts(&r, s, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
-        give_bodies(&r);
+        give_bodies(&r), small_sums_give(&r);
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = energy_of(p);
@@ -303,6 +304,6 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    free(r.wall), free(r.x), free(r.turned), free(r.pull);
+    free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }

@@ -71,4 +71,22 @@ jq -n '{ dim: 3, dt: 1e-3, density: 2500, mu: 0.3, gravity: [0, 0, -9.81], walls
         { bodies: [7], about: [1, 0, 0], torque: 1e-5 }] }' | nsd-gen - >"$tmp/in.h5"
 ok "balls with forces: the same bytes" same_bytes 30
 
+# ---- sums of walls ----
+
+sums() # JQ PROGRAM: of the sums of the last frame
+{
+    nsd-stat --last -m sums "$tmp/out.h5" 2>"$tmp/stat" | jq -c ".sums | $1"
+}
+scene "$floor, mu: 0.3, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500, v: [1, 0, 0] }]"
+ok "sums of walls are kept in small steps" small 300 --sums
+ok "a ball at rest: the floor carries m g" near "$(sums '.normal[0]')" "$mass * 9.81" 1e-9
+ok "a ball that slides until it rolls: friction takes 2/7 of its energy" near "$(sums '.friction[0]')" "$mass / 7" 1e-7
+ok "and has slid over that divided by mu m g" near "$(sums '.rub[0]')" "$mass / 7 / 0.3" 1e-6
+ok "and pushes the floor by 2/7 of its momentum" near "$(sums '.force[0][0]')" "$mass * 2 / 7 / 0.3" 1e-6
+scene "walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [0, 0, 0.2] }], gravity: [0, 0, 0], dt: 1e-3, e_n: 0.5,
+    bodies: [{ x: [0, 0, 0.02], radius: 0.01, density: 2500, v: [0, 0, -1] }]"
+small 50 --sums
+ok "a wall that a ball meets at 1.2 m/s with e 0.5 gets m 1.2 1.5, and works on it by that times 0.2 m/s" \
+    near "$(sums '.force[0][2]') * 0.05 + $(sums '.power[0]') * 0.05 / 0.2 + 2 * $mass * 1.8" 0 1e-9
+
 done_testing
