@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "step/small_loop.h"
+#include "step/small_run.h"
 
 /* Of a body in the small step in hand */
 struct small_pull {

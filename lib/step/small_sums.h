@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "step/small_loop.h"
+#include "step/small_run.h"
 
 /* r->sums, where the packing has sums. Returns 0 or EX_SOFTWARE. */
 int small_sums_init(struct small_run *r, struct failure *failure);
