@@ -3,9 +3,11 @@
 
 #include "base/team.h"
 #include "contact/depth.h"
+#include "contact/touching.h"
 #include "solve/backend.h"
 #include "state/freedom.h"
 #include "state/placement.h"
+#include "step/small_bonds.h"
 #include "step/small_loop.h"
 #include "step/small_pull.h"
 #include "step/small_sums.h"
@@ -33,7 +35,6 @@ const char *small_lacks(const struct packing *p)
 {
     if (p->shape) return "grains other than balls";
     if (freedoms_in(p)) return "loads";
-    if (packing_sticks(p)) return "static friction";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     if (p->sums.n && p->sums.n != p->walls) return "sums of the faces of surfaces";
     for (int k = 0; k < 3; k++)
@@ -41,7 +42,7 @@ const char *small_lacks(const struct packing *p)
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].shape == WALL_MESH) return "surfaces as walls";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
-        if (pair_law_attracts(&p->law[k])) return "cohesion";
+        if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
     return NULL;
 }
 
@@ -65,6 +66,8 @@ static void small_set_rates(struct small_run *r)
                                          .push = 2 * fall + 0.02 * fastest,
                                          .soft = COMPLIANCE,
                                          .calm = freedoms_calm(p),
+                                         .pulls = 2 * r->h * small_tie_most(p),
+                                         .holds = small_tie_range(p, r->h),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
 }
 
@@ -103,13 +106,17 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         if (small_list_make(r->l, r->p, r->x, r->p->t + r->ahead, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
-            small_set_rates(r), take_bodies(r);
+            small_set_rates(r), take_bodies(r), small_set_walls(r);
             if (o->warm) small_list_recall(r->l, r->p, 1 / (double)r->n);
+            small_bonds_recall(r, o->warm);
+            const struct small_bonds ties = small_bonds_account(r);
+            r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
+    small_set_walls(r);
     return failure->status;
 }
 
@@ -136,8 +143,9 @@ static struct small_energy energy_of(const struct packing *p)
 
 /* Dissipation is what the other terms leave. */
 static void small_balance(struct balance *b, const struct small_energy *before,
-                          const struct small_energy *after, const struct small_run *r)
+                          const struct small_energy *after, struct small_run *r)
 {
+    const struct small_bonds ties = small_bonds_account(r);
     const struct small_list *l = r->l;
     vec3 impulse = l->gone_impulse;
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
@@ -149,7 +157,9 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= t->work;
         impulse = v3_add(impulse, v3_add(small_vec(t->sum), small_vec(t->f)));
     }
-    b->dissipation = b->gravity + b->drives + b->loads - b->change;
+    b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
+    b->broken = -ties.joined;
+    b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
 
@@ -239,6 +249,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
+                            .tied = small_tie_holds(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };
 }
@@ -249,7 +260,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
 static double small_steady(const struct packing *p)
 {
     const double g = v3_norm(p->g), least = packing_whole(p).small;
-    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p);
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
@@ -261,7 +272,7 @@ static double small_steady(const struct packing *p)
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p));
-    const double way = p->dt * (fastest + packing_most_fall(p));
+    const double way = p->dt * (fastest + packing_most_fall(p) + small_tie_speed(p));
     const double n = fmax(way / (overlap * packing_whole(p).small), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
@@ -277,6 +288,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
+    if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
@@ -290,7 +302,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0;
     *made = !failure->status && !r.failed;
-    if (*made && !give_contacts(&r, s, failure) &&
+    if (*made && !give_contacts(&r, s, failure) && !small_bonds_keep(&r, failure) &&
+        !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
         memory_set(&p->memory, o->warm);
