@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_point.h"
 
 #include <math.h>
 #include <string.h>
@@ -33,6 +34,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
             was->v[k] = v, was->w[k] = w;
             v2 += v * v;
         }
+        if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
         most = v2 <= most ? most : v2; // not a number: it is the largest
     }
     return most;
@@ -46,6 +48,7 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
         for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
         r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
     }
+    if (r->meets) small_points_place(r, first, end);
 }
 
 /* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
@@ -74,6 +77,12 @@ static void set_walls(struct small_run *r)
     }
 }
 
+vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n)
+{
+    const vec3 v = v3_add(w->v, v3_cross(w->spin, v3_sub(x, w->at)));
+    return v3_add(v, v3_axpy(w->belt, -v3_dot(w->belt, n), n));
+}
+
 bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach)
 {
     const struct small_wall *w = &r->wall[t->wall];
@@ -82,8 +91,7 @@ bool small_look_at_touch(const struct small_run *r, struct small_touch *t, doubl
     if (!w->there) return false;
     t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
     if (!(t->arm - b->r <= reach)) return false;
-    t->v = v3_add(w->v, v3_cross(w->spin, v3_sub(v3_axpy(x, -t->arm, t->n), w->at)));
-    t->v = v3_add(t->v, v3_axpy(w->belt, -v3_dot(w->belt, t->n), t->n));
+    t->v = small_wall_velocity(w, v3_axpy(x, -t->arm, t->n), t->n);
     return true;
 }
 
@@ -315,6 +323,7 @@ static void small_sweeps(struct small_run *r, int me, int threads, int64_t first
         team_meet();
         sweep_touches(r, first, end, k > 0);
         team_meet();
+        if (r->meets) small_points_sweep(r, me, threads, k > 0);
         sweep_pairs(r, me, threads, k > 0);
         team_meet();
         far = r->far;
@@ -348,9 +357,11 @@ void small_loop(void *arg, int me, int threads)
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
+        if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
         end_touches(r, first, end);
         team_meet();
+        if (r->meets) small_points_end(r, me, threads);
         if (!me) finish_step(r);
         team_meet();
         move_bodies(r, first, end);
