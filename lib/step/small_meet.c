@@ -149,7 +149,6 @@ bool small_meeting_recall(struct small_meeting *m, const struct recall *r, doubl
     const vec3 f = v3_scale(part, r->r), moment = v3_scale(part, r->m);
     t->f[0] = f.x, t->f[1] = f.y, t->f[2] = f.z;
     t->m[0] = moment.x, t->m[1] = moment.y, t->m[2] = moment.z;
-    m->changes = true;
     return true;
 }
 

@@ -31,7 +31,6 @@ struct small_point {
 struct small_meeting {
     struct contact_key key; /* without a feature */
     double most[2];         /* m: mu_p, mu_r */
-    bool changes;           /* some point starts, or is to give its reaction back */
     int64_t points, room;
     struct small_point
         *point;  /* [points] by feature: those that are near, or have pushed in this interval */

@@ -17,6 +17,9 @@
 #define BESIDE 0.2
 #define ALONG  0.9
 
+/* Of h: tau, in which overlaps are left */
+#define RELAXES 30
+
 enum { ROUNDS_MOST = 20 };         /* of the points of a meeting in one sweep */
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
 
@@ -213,18 +216,16 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
             if (!same && !point_lasts(was)) continue;
             if (same && small_is_zero(to->f)) to->starts = true;
             if (same) set_point(r, m, to, is), j++;
-            m->changes |= !same;
         } else {
             *to = (struct small_point){ .starts = true };
             set_point(r, m, to, is), j++;
-            m->changes = true;
         }
         n++;
     }
     if (!array_grow(&m->point, &m->room, n, sizeof *m->point)) return false;
     if (n) memcpy(m->point, c->point, (size_t)n * sizeof *m->point);
     m->points = n;
-    if (m->changes) hand_over(r, m);
+    hand_over(r, m);
     return true;
 }
 
@@ -277,7 +278,7 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
         for (int64_t l = 0; l < m->points; l++) {
             struct small_point *t = &m->point[l];
             if (!t->near || !seams_drop_one(&c->found, &r->shapes.at, (int32_t)i, n++)) continue;
-            t->near = false, m->changes = true;
+            t->near = false;
         }
     }
     return true;
@@ -370,12 +371,14 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
                         struct small_point *t)
 {
     const struct small *s = &r->l->s;
-    const struct small_rates *o = &s->rate;
+    struct small_rates rate = s->rate;
+    const struct small_rates *o = &rate;
+    rate.relax = rate.per_h / (1 + RELAXES);
     struct small_law l = {
         .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu
     };
     double before[3];
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] *= SMALL_WARM, t->m[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
     t->kept = dot3(l.n, l.f), t->starts = false;
@@ -485,19 +488,17 @@ static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool aga
     mark_meeting(r, m, first, again);
 }
 
-/* Reactions that bodies do not have yet, and those of points that have gone. */
+/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
+   that have gone they are to have nothing. */
 static void start_meeting(struct small_run *r, struct small_meeting *m)
 {
     int64_t n = 0;
-    if (!m->changes) return;
-    m->changes = false;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i];
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        if (t.near == t.starts && !small_is_zero(t.f)) {
-            const double times = t.starts ? SMALL_WARM : -SMALL_WARM;
+        const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
+        if (times != 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
-        }
         for (int k = 0; k < 3; k++) {
             if (t.starts) t.sum[k] -= t.near ? t.f[k] : 0; // the step adds it
             if (!t.starts && !t.near) t.sum[k] += t.f[k];
