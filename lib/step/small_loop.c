@@ -3,6 +3,9 @@
 
 #include "base/team.h"
 #include "step/small_point.h"
+#include "step/small_pull.h"
+#include "step/small_sums.h"
+#include "step/small_wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +27,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
     const vec3 g = r->p->g;
     const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
     double most = 0;
+    if (r->pull) return small_pull_bodies(r, first, end);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
@@ -60,40 +64,6 @@ static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
 }
 
 /* ---- walls ---- */
-
-static void set_walls(struct small_run *r)
-{
-    const struct packing *p = r->p;
-    const double t = p->t + r->ahead;
-    for (int32_t w = 0; w < p->walls; w++) {
-        const struct wall *wall = &p->wall[w];
-        const vec3 at = wall_at(p, wall, t);
-        r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
-                                          .pose = wall_pose(p, wall, t),
-                                          .at = at,
-                                          .v = wall_held(p, wall, at),
-                                          .spin = wall_spin(p, wall) };
-        r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
-    }
-}
-
-vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n)
-{
-    const vec3 v = v3_add(w->v, v3_cross(w->spin, v3_sub(x, w->at)));
-    return v3_add(v, v3_axpy(w->belt, -v3_dot(w->belt, n), n));
-}
-
-bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach)
-{
-    const struct small_wall *w = &r->wall[t->wall];
-    const struct small_place *b = &r->l->s.place[t->body];
-    const vec3 x = small_vec(b->x);
-    if (!w->there) return false;
-    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
-    if (!(t->arm - b->r <= reach)) return false;
-    t->v = small_wall_velocity(w, v3_axpy(x, -t->arm, t->n), t->n);
-    return true;
-}
 
 /* m/s: of the body b against the wall at the contact */
 static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
@@ -293,14 +263,6 @@ static double farthest(const struct small_run *r)
     return sqrt(most);
 }
 
-double small_wall_speed(const struct packing *p)
-{
-    double most = 0;
-    for (int32_t w = 0; w < p->walls; w++)
-        most = fmax(most, wall_top_speed(p, &p->wall[w]) + v3_norm(p->wall[w].belt));
-    return most;
-}
-
 /* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
 static void prepare_step(struct small_run *r)
 {
@@ -353,12 +315,14 @@ void small_loop(void *arg, int me, int threads)
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
         pthread_mutex_unlock(&r->lock);
-        if (!me) set_walls(r);
+        if (!me) small_walls_set(r);
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
+        if (r->sums && !me) small_sums_step(r);
+        if (r->sums) team_meet();
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);

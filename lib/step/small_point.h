@@ -12,7 +12,7 @@
  */
 #pragma once
 
-#include "step/small_loop.h"
+#include "step/small_wall.h"
 
 /* Bodies where the small steps begin: orientations ahead, world inertia, corners. surface: of walls that are meshes; NULL:
    none. Returns 0 or EX_SOFTWARE. */

@@ -10,6 +10,9 @@
 #include "state/rotation.h"
 #include "step/small_loop.h"
 #include "step/small_point.h"
+#include "step/small_pull.h"
+#include "step/small_sums.h"
+#include "step/small_wall.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,10 +36,11 @@ static const double ALLOWED[2] = { 1, 0.3 };
 const char *small_lacks(const struct packing *p)
 {
     if (freedoms_in(p)) return "loads";
-    if (p->outside.force || p->outside.torque || p->pulls.n) return "forces on bodies";
     if (packing_sticks(p)) return "static friction";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->sums.n) return "sums of what bodies do to walls";
+    if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
+    if (p->sums.n && (p->shape || p->mesh.elements))
+        return "sums of what grains with a shape do to walls, or grains to surfaces";
     for (int k = 0; k < 3; k++)
         if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
@@ -64,19 +68,19 @@ static double small_thickness(const struct packing *p)
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
-    const double g = v3_norm(p->g);
+    const double fall = packing_most_fall(p) * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
     r->uneven = heaviest > UNEVEN * lightest;
-    const double fastest = small_fastest(p) + g * r->h * (double)r->n;
+    const double fastest = small_fastest(p) + fall;
     const double change = fmax(fastest, UNSEEN * r->thin / r->h);
     r->l->s.rate = (struct small_rates){ .h = r->h,
                                          .per_h = 1 / r->h,
                                          .relax = 1 / ((1 + RELAXES) * r->h),
-                                         .push = 2 * g * r->h * (double)r->n + 0.02 * fastest,
+                                         .push = 2 * fall + 0.02 * fastest,
                                          .soft = COMPLIANCE,
                                          .calm = freedoms_calm(p),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
@@ -158,13 +162,14 @@ static struct small_energy small_energy_of(const struct packing *p)
 
 /* Dissipation is what the other terms leave. */
 static void small_balance(struct balance *b, const struct small_energy *before,
-                          const struct small_energy *after, const struct small_list *l)
+                          const struct small_energy *after, const struct small_run *r)
 {
+    const struct small_list *l = r->l;
     vec3 impulse = l->gone_impulse;
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = -l->gone_work;
+    b->drives = -l->gone_work, b->loads = small_pull_work(r);
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
@@ -175,7 +180,7 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->dissipation = b->gravity + b->drives - b->change;
+    b->dissipation = b->gravity + b->drives + b->loads - b->change;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
 
@@ -311,24 +316,24 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .small_limited = r->unsolved };
 }
 
-/* s: in which a column of grains as high as the packing falls by STEADY of the smallest radius */
+/* s: in which a body that a column of grains as high as the packing pushes, and forces on bodies, moves by STEADY of the
+   smallest radius */
 #define STEADY 1e-3
 static double small_steady(const struct packing *p)
 {
     const double g = v3_norm(p->g), least = packing_whole(p).small;
-    double lo = INFINITY, hi = -INFINITY;
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
     }
-    if (!(g > 0) || !(hi >= lo)) return INFINITY;
-    const double grains = 1 + (hi - lo) / g / (2 * packing_whole(p).large);
-    return sqrt(STEADY * least / (g * grains));
+    if (g > 0 && hi >= lo) pressed += g * (1 + (hi - lo) / g / (2 * packing_whole(p).large));
+    return pressed > 0 ? sqrt(STEADY * least / pressed) : INFINITY;
 }
 
 int64_t small_count(const struct packing *p, double overlap)
 {
-    const double way = p->dt * (small_fastest(p) + v3_norm(p->g) * p->dt);
+    const double way = p->dt * (small_fastest(p) + packing_most_fall(p));
     const double n = fmax(way / (overlap * small_thickness(p)), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
@@ -354,19 +359,20 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else if (!neighbours_surfaces(o->near, p, failure))
+    else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
+             !small_sums_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0;
     *made = !failure->status && !r.failed;
     if (*made && r.meets) small_points_last(&r);
     if (*made && !give_contacts(&r, s, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
-        give_bodies(&r);
+        give_bodies(&r), small_sums_give(&r);
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = small_energy_of(p);
         small_report(rep, &r, s);
-        small_balance(&rep->balance, &before, &after, l);
+        small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {
         p->t = whole.t;
@@ -374,6 +380,6 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_points_free(&r);
-    free(r.wall), free(r.x), free(r.turned);
+    free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }
