@@ -146,9 +146,9 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01
 
-/* q of pairs that meet, and of those that wait; before: u^- */
-ALWAYS_INLINE void small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
-                              vd kept, vd en, vd et)
+/* q of pairs that meet, and of those that wait; before: u^-. Returns which ones meet. */
+ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
+                            vd kept, vd en, vd et)
 {
     vd un, ut[3], hit[3], zero = splat(0);
     small_split(l->n, before, &un, ut);
@@ -163,6 +163,7 @@ ALWAYS_INLINE void small_meet(struct small_law *l, const struct small_rates *o, 
         vd q = (en * un + open - l->cn * rn) * l->n[i] + et * ut[i] - l->ct * hit[i];
         l->q[i] = pick(meets, q, pick(waits, 1e30 * l->n[i], l->q[i]));
     }
+    return meets;
 }
 
 /* f in closed form, where f makes u; df: its change */

@@ -2,7 +2,7 @@
 #include "step/small_bonds.h"
 
 #include "contact/contact_law.h"
-#include "step/small_loop.h"
+#include "step/small_wall.h"
 
 #include <stdlib.h>
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "state/placement.h"
 #include "step/small_list.h"
 
 #include <pthread.h>
@@ -15,6 +16,26 @@ struct small_wall {
     vec3 belt;        /* m/s */
 };
 
+/* What a thread looks for points with */
+struct small_scratch {
+    struct contacts found;
+    struct small_point *point;
+    int64_t room;
+};
+
+/* Bodies as meetings have them, where there are any [step/small_point.h] */
+struct small_shapes {
+    quat *q;              /* [n] */
+    double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
+    double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
+    vec3 edge[3];         /* m */
+    struct placed placed;
+    struct situation at;
+    int threads;
+    struct small_scratch *scratch; /* [threads] */
+    _Atomic bool failed;           /* memory was short */
+};
+
 /* The small steps of an interval */
 struct small_run {
     struct packing *p; /* its dt and t are those of the small step in hand */
@@ -25,6 +46,9 @@ struct small_run {
     struct small_pull *pull; /* [n] NULL: no forces on bodies */
     double stored;           /* J: by attraction, where the interval begins */
     struct face_sums *sums;  /* [walls] NULL: none are kept */
+    bool meets;              /* there may be meetings: a body with a shape, or a mesh */
+    struct small_shapes shapes;
+    double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */
     int64_t n, made, sweeps; /* small steps, and those made; sweeps of all */
     int64_t unsolved;        /* small steps that have ended with the limit of sweeps */

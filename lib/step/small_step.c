@@ -4,13 +4,17 @@
 #include "base/team.h"
 #include "contact/depth.h"
 #include "contact/touching.h"
+#include "contact/tunnelling.h"
 #include "solve/backend.h"
 #include "state/freedom.h"
 #include "state/placement.h"
+#include "state/rotation.h"
 #include "step/small_bonds.h"
 #include "step/small_loop.h"
+#include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_sums.h"
+#include "step/small_wall.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,20 +37,36 @@ static const double ALLOWED[2] = { 1, 0.3 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (p->shape) return "grains other than balls";
     if (freedoms_in(p)) return "loads";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->sums.n && p->sums.n != p->walls) return "sums of the faces of surfaces";
+    if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
+    if (p->sums.n && (p->shape || p->mesh.elements))
+        return "sums of what grains with a shape do to walls, or grains to surfaces";
     for (int k = 0; k < 3; k++)
         if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
-    for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].shape == WALL_MESH) return "surfaces as walls";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
+    if ((p->shape || p->mesh.elements) && (small_tie_holds(p) || packing_sticks(p)))
+        return "attraction or static friction of grains with a shape, or on surfaces";
     return NULL;
 }
 
 /* ---- the interval ---- */
+
+/* m/s: of a point of a body, of balls the centre; of walls */
+static double small_fastest(const struct packing *p)
+{
+    const struct whole all = packing_whole(p);
+    return fmax(p->shape ? all.rotation_speed : all.speed, small_wall_speed(p));
+}
+
+/* m: half the least thickness of a body; the smallest radius of balls */
+static double small_thickness(const struct packing *p)
+{
+    double least = packing_whole(p).small;
+    for (int64_t i = 0; p->shape && i < p->n; i++) least = fmin(least, tunnelling_thickness(p, i));
+    return least;
+}
 
 static void small_set_rates(struct small_run *r)
 {
@@ -58,8 +78,8 @@ static void small_set_rates(struct small_run *r)
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
     r->uneven = heaviest > UNEVEN * lightest;
-    const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p)) + fall;
-    const double change = fmax(fastest, UNSEEN * packing_whole(p).small / r->h);
+    const double fastest = small_fastest(p) + fall;
+    const double change = fmax(fastest, UNSEEN * r->thin / r->h);
     r->l->s.rate = (struct small_rates){ .h = r->h,
                                          .per_h = 1 / r->h,
                                          .relax = 1 / ((1 + RELAXES) * r->h),
@@ -90,7 +110,10 @@ static void give_bodies(const struct small_run *r)
     for (int64_t i = 0; i < p->n; i++) {
         p->v[i] = small_vec(s->body[i].v), p->w[i] = small_vec(s->body[i].w);
         p->x[i] = v3_axpy(small_vec(s->place[i].x), -r->ahead, p->v[i]);
-        p->q[i] = quat_mul(quat_rotation(r->turned[i]), p->q[i]);
+        if (r->meets)
+            p->q[i] = small_points_q(r, i, &p->w[i]);
+        else
+            p->q[i] = quat_mul(quat_rotation(r->turned[i]), p->q[i]);
     }
 }
 
@@ -100,14 +123,19 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
 {
     for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
     small_list_free(r->l);
+    r->l->surface = o->near->surface;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
         if (small_list_make(r->l, r->p, r->x, r->p->t + r->ahead, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
-            small_set_rates(r), take_bodies(r), small_set_walls(r);
-            if (o->warm) small_list_recall(r->l, r->p, 1 / (double)r->n);
+            small_set_rates(r), take_bodies(r), small_walls_set(r);
+            if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
+            if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
+                failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+                break;
+            }
             small_bonds_recall(r, o->warm);
             const struct small_bonds ties = small_bonds_account(r);
             r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
@@ -116,7 +144,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         team_do(o->threads, small_loop, r);
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
-    small_set_walls(r);
+    small_walls_set(r);
     return failure->status;
 }
 
@@ -127,14 +155,14 @@ struct small_energy {
     vec3 momentum;
 };
 
-static struct small_energy energy_of(const struct packing *p)
+static struct small_energy small_energy_of(const struct packing *p)
 {
     struct small_energy e = { 0 };
     for (int64_t i = 0; i < p->n; i++) {
         const double m = p->mass[i];
         if (!(m > 0)) continue;
         e.kinetic +=
-            0.5 * (m * v3_dot(p->v[i], p->v[i]) + p->inertia[i] * v3_dot(p->w[i], p->w[i]));
+            0.5 * (m * v3_dot(p->v[i], p->v[i]) + rotation_energy2(p, i, p->q[i], p->w[i]));
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
@@ -157,6 +185,11 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= t->work;
         impulse = v3_add(impulse, v3_add(small_vec(t->sum), small_vec(t->f)));
     }
+    for (int64_t i = 0; i < l->meetings.n; i++) {
+        const struct small_meeting *m = &l->meetings.of[i];
+        b->drives -= m->work;
+        impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
+    }
     b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
     b->broken = -ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
@@ -171,7 +204,7 @@ static bool give_contact(struct contacts *out, const struct packing *p, const st
     if (!c) return false;
     contact_basis(c, p->dim, at->n);
     memcpy(c->shift, at->shift, sizeof c->shift);
-    c->gap = at->gap, c->x = at->x;
+    c->gap = at->gap, c->x = at->x, c->feature = at->feature;
     packing_set_law(p, c);
     *(*sums)++ = sum;
     return true;
@@ -192,6 +225,24 @@ static bool give_touches(struct contacts *out, const struct small_run *r, vec3 *
         if (c.gap <= 0 || v3_dot(sum, sum) > 0) room = give_contact(out, r->p, &c, sum, sums);
     }
     free(by);
+    return room;
+}
+
+static bool give_points(struct contacts *out, const struct small_run *r, vec3 **sums)
+{
+    bool room = true;
+    for (int64_t i = 0; room && i < r->l->meetings.n; i++) {
+        const struct small_meeting *m = &r->l->meetings.of[i];
+        struct contact c = { .a = m->key.a, .b = m->key.b };
+        memcpy(c.shift, m->key.shift, sizeof c.shift);
+        for (int64_t k = 0; room && k < m->points; k++) {
+            const struct small_point *t = &m->point[k];
+            const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
+            c.feature = t->feature, c.n = t->n, c.gap = t->gap, c.x = t->x;
+            if ((t->near && c.gap <= 0) || v3_dot(sum, sum) > 0)
+                room = give_contact(out, r->p, &c, sum, sums);
+        }
+    }
     return room;
 }
 
@@ -217,12 +268,36 @@ static bool give_pairs(struct contacts *out, const struct small_run *r, vec3 **s
     return room;
 }
 
+struct small_given {
+    struct contact c;
+    vec3 sum;
+};
+static int by_key(const void *x, const void *y)
+{
+    const struct small_given *s = x, *t = y;
+    return contact_compare(&s->c, &t->c);
+}
+
+/* Contacts and their sums in the order of keys; false when memory is short. */
+static bool sort_given(struct contacts *out, vec3 *sum)
+{
+    struct small_given *all = malloc((size_t)(out->n + 1) * sizeof *all);
+    for (int64_t i = 0; all && i < out->n; i++) all[i] = (struct small_given){ out->c[i], sum[i] };
+    if (all) qsort(all, (size_t)out->n, sizeof *all, by_key);
+    for (int64_t i = 0; all && i < out->n; i++) out->c[i] = all[i].c, sum[i] = all[i].sum;
+    free(all);
+    return all != NULL;
+}
+
 /* The contacts at the end of the interval, with the sums of their reactions over it */
 static int give_contacts(const struct small_run *r, struct contacts *out, struct failure *failure)
 {
-    vec3 *sum = malloc((size_t)(r->l->touches + r->l->pairs.n + 1) * sizeof *sum), *next = sum;
+    const int64_t most = r->l->touches + r->l->pairs.n + small_meetings_points(&r->l->meetings);
+    vec3 *sum = malloc((size_t)(most + 1) * sizeof *sum), *next = sum;
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
-    bool room = sum && give_touches(out, r, &next) && give_pairs(out, r, &next);
+    bool room = sum && give_touches(out, r, &next) && give_pairs(out, r, &next) &&
+                give_points(out, r, &next);
+    if (room && r->l->meetings.n) room = sort_given(out, sum);
     room = room && !contacts_alloc_found(out);
     for (int64_t i = 0; room && i < out->n; i++) {
         const struct contact *c = &out->c[i];
@@ -271,9 +346,8 @@ static double small_steady(const struct packing *p)
 
 int64_t small_count(const struct packing *p, double overlap)
 {
-    const double fastest = fmax(packing_whole(p).speed, small_wall_speed(p));
-    const double way = p->dt * (fastest + packing_most_fall(p) + small_tie_speed(p));
-    const double n = fmax(way / (overlap * packing_whole(p).small), p->dt / small_steady(p));
+    const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
+    const double n = fmax(way / (overlap * small_thickness(p)), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
@@ -289,26 +363,29 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
     if (touching_bond(p, failure)) return failure->status;
-    const struct small_energy before = energy_of(p);
+    const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t;
+    r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else if (!small_pull_init(&r, failure) && !small_sums_init(&r, failure))
+    else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
+             !small_sums_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0;
     *made = !failure->status && !r.failed;
+    if (*made && r.meets) small_points_last(&r);
     if (*made && !give_contacts(&r, s, failure) && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
-        const struct small_energy after = energy_of(p);
+        const struct small_energy after = small_energy_of(p);
         small_report(rep, &r, s);
         small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
@@ -317,6 +394,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
+    small_points_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }
