@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_cell.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_sums.h"
@@ -304,10 +305,11 @@ static double farthest(const struct small_run *r)
 static void prepare_step(struct small_run *r)
 {
     struct small_list *l = r->l;
-    const double wall = small_wall_speed(r->p), way = r->h * fmax(sqrt(r->fastest), wall);
+    const double wall = small_wall_speed(r->p),
+                 way = r->h * (fmax(sqrt(r->fastest), wall) + small_cell_stretch(r));
     if (!isfinite(way)) r->failed = r->stop = true;
     l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
-    if (wall == 0 && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
+    if (wall == 0 && !r->cell.moves && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
     l->way += way;
     r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;
@@ -348,6 +350,11 @@ void small_loop(void *arg, int me, int threads)
     int64_t first, end;
     small_share(r->l->s.bodies, me, threads, &first, &end);
     while (r->made < r->n && !r->stop) {
+        if (r->cell.moves) {
+            if (!me) small_cell_begin(r);
+            team_meet();
+            small_cell_images(r, me, threads);
+        }
         const double fastest = begin_bodies(r, first, end);
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
@@ -359,7 +366,8 @@ void small_loop(void *arg, int me, int threads)
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
         if (r->sums && !me) small_sums_step(r);
-        if (r->sums) team_meet();
+        if (r->cell.moves && !me) small_cell_end(r);
+        if (r->sums || r->cell.moves) team_meet();
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);

@@ -16,6 +16,17 @@ struct small_wall {
     vec3 belt;        /* m/s */
 };
 
+/* The cell in a small step [step/small_cell.h] */
+struct small_cell {
+    bool moves, relative;      /* ways of bodies are those relative to the flow */
+    struct cell cell;          /* where the small step begins; its arrays are borrowed */
+    vec3 edge[3], next[3];     /* m: where contacts act; m/s: rates at the end of the step */
+    struct cell_flow flow;     /* what the rates gain in the step; */
+    struct cell_flow peculiar; /* and their flow where it begins */
+    double strain;             /* 1/s */
+    double work;               /* J: of the edges in the interval, by images */
+};
+
 /* What a thread looks for points with */
 struct small_scratch {
     struct contacts found;
@@ -43,10 +54,11 @@ struct small_run {
     const struct small_kernels *kernel;
     struct small_wall *wall; /* [walls] */
     vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
-    struct small_pull *pull; /* [n] NULL: no forces on bodies */
-    double stored;           /* J: by attraction, where the interval begins */
-    struct face_sums *sums;  /* [walls] NULL: none are kept */
-    bool meets;              /* there may be meetings: a body with a shape, or a mesh */
+    struct small_pull *pull; /* [n] NULL: no forces on bodies, and no cell that moves */
+    struct small_cell cell;
+    double stored;          /* J: by attraction, where the interval begins */
+    struct face_sums *sums; /* [walls] NULL: none are kept */
+    bool meets;             /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */

@@ -10,6 +10,7 @@
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/small_bonds.h"
+#include "step/small_cell.h"
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -42,8 +43,7 @@ const char *small_lacks(const struct packing *p)
     if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
     if (p->sums.n && (p->shape || p->mesh.elements))
         return "sums of what grains with a shape do to walls, or grains to surfaces";
-    for (int k = 0; k < 3; k++)
-        if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
+    if (p->shape && small_cell_moves(p)) return "grains with a shape in a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
     if ((p->shape || p->mesh.elements) && (small_tie_holds(p) || packing_sticks(p)))
@@ -57,7 +57,7 @@ const char *small_lacks(const struct packing *p)
 static double small_fastest(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
-    return fmax(p->shape ? all.rotation_speed : all.speed, small_wall_speed(p));
+    return fmax(p->shape ? all.rotation_speed : small_cell_speed(p), small_wall_speed(p));
 }
 
 /* m: half the least thickness of a body; the smallest radius of balls */
@@ -123,11 +123,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
 {
     for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
     small_list_free(r->l);
-    r->l->surface = o->near->surface;
+    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
-        if (small_list_make(r->l, r->p, r->x, r->p->t + r->ahead, failure)) break;
+        if (small_list_make(r->l, r->p, r->x, r->cell.edge, r->p->t + r->ahead, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_set_rates(r), take_bodies(r), small_walls_set(r);
@@ -145,19 +145,20 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
     small_walls_set(r);
+    if (r->cell.moves) small_cell_images(r, 0, 1);
     return failure->status;
 }
 
 /* ---- its report ---- */
 
 struct small_energy {
-    double kinetic, potential;
+    double kinetic, potential, peculiar;
     vec3 momentum;
 };
 
 static struct small_energy small_energy_of(const struct packing *p)
 {
-    struct small_energy e = { 0 };
+    struct small_energy e = { .peculiar = energy_has_peculiar(p) ? energy_peculiar(p, NULL) : 0 };
     for (int64_t i = 0; i < p->n; i++) {
         const double m = p->mass[i];
         if (!(m > 0)) continue;
@@ -179,7 +180,10 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = -l->gone_work, b->loads = small_pull_work(r);
+    const struct small_pull pulls = small_pull_sum(r);
+    b->drives = pulls.carried + r->cell.work - l->gone_work, b->loads = pulls.work;
+    impulse = v3_add(impulse, small_vec(pulls.impulse));
+    b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
@@ -325,6 +329,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
                             .tied = small_tie_holds(r->p),
+                            .sheared = energy_has_peculiar(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };
 }
@@ -371,6 +376,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t;
     r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
+    small_cell_init(&r);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
@@ -383,6 +389,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
+        for (int k = 0; k < 3 && r.cell.moves; k++)
+            p->cell.edge[k] = r.cell.cell.edge[k], p->cell.rate[k] = r.cell.cell.rate[k];
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = small_energy_of(p);
