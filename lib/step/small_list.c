@@ -416,6 +416,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         const struct recall *r = &p->memory.recall[i];
         struct small_past x = { 0 };
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
+        for (int k = 0; k < 3; k++) x.sum[k] = -x.f[k]; // the interval before has counted it
         struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
         if (m) {
             room = room && small_meeting_recall(m, r, part);
@@ -423,7 +424,9 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         }
         if (r->a < 0) {
             struct small_touch *t = find_touch(l, r->b, -1 - r->a);
-            if (t) memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
+            if (!t) continue;
+            memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
+            memcpy(t->sum, x.sum, sizeof t->sum);
             continue;
         }
         at = find_pair(l, at, recall_key(r), &found);

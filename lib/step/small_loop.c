@@ -208,7 +208,8 @@ static void push_reactions(struct small_run *r, int me, int threads)
             push_body(&s->body[t->body], t->n, t->arm, v3_scale(SMALL_WARM, small_vec(t->f)),
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
-            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
+            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
+                memset(t->sum, 0, sizeof t->sum);
     }
 }
 
