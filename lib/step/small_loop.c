@@ -223,7 +223,7 @@ static void settle_slot(struct small *s, int64_t slot)
     if (a >= s->bodies) return;
     const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const vec3 n = v3_scale(1 / length, d);
+    const vec3 n = small_normal(d);
     const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
     const double most = small_persists(&s->rate, c->kept[k], w, rn);
     if (rn <= most) return;

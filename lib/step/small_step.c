@@ -165,11 +165,11 @@ static void small_balance(struct balance *b, const struct small_energy *before,
                           const struct small_energy *after, const struct small_run *r)
 {
     const struct small_list *l = r->l;
-    vec3 impulse = l->gone_impulse;
+    vec3 impulse = v3(0, 0, 0);
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = -l->gone_work, b->loads = small_pull_work(r);
+    b->drives = 0, b->loads = small_pull_work(r);
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
@@ -206,7 +206,7 @@ static bool give_touches(struct contacts *out, const struct small_run *r, vec3 *
     for (int64_t i = 0; room && i < l->touches; i++) {
         struct small_touch *t = by[i];
         const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-        if (!small_look_at_touch(r, t, l->margin)) continue;
+        if (!small_look_at_touch(r, t, l->margin) && small_is_zero(t->sum)) continue;
         struct contact c = { .a = -1 - t->wall, .b = t->body, .n = t->n };
         c.gap = t->arm - l->s.place[t->body].r;
         c.x = v3_axpy(small_vec(l->s.place[t->body].x), -t->arm, t->n);
@@ -247,7 +247,7 @@ static bool give_pairs(struct contacts *out, const struct small_run *r, vec3 **s
             v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k], b->sum[2][k] + b->f[2][k]);
         const vec3 d = small_branch(s, slot);
         const double length = v3_norm(d), ra = s->place[q->a].r;
-        struct contact c = { .a = q->a, .b = q->b, .n = v3_scale(1 / length, d) };
+        struct contact c = { .a = q->a, .b = q->b, .n = small_normal(d) };
         memcpy(c.shift, q->shift, sizeof c.shift);
         c.gap = length - ra - s->place[q->b].r;
         c.x = v3_axpy(small_vec(s->place[q->a].x), ra + 0.5 * c.gap, c.n);
