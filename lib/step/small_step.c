@@ -346,6 +346,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const struct packing whole = *p;
     const int64_t count = small_count(p, o->overlap);
     *made = false;
+    if (packing_check_clock(p, failure)) return failure->status;
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
