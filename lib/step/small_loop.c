@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_error.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_sums.h"
@@ -65,13 +66,6 @@ static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
 
 /* ---- walls ---- */
 
-/* m/s: of the body b against the wall at the contact */
-static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
-{
-    vec3 v = v3_sub(small_vec(b->v), t->v);
-    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
-}
-
 /* The law in the first sweep of a step */
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
@@ -83,7 +77,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
-    small_array(before, touch_velocity(t, &s->before[t->body]));
+    small_array(before, small_touch_velocity(t, &s->before[t->body]));
     small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
@@ -111,7 +105,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small *s = &r->l->s;
     struct body *b = &s->body[t->body];
-    struct small_law l = { .mu = t->mu };
+    struct small_law l;
     double df[3], dm[3] = { 0, 0, 0 };
     if (!again && !small_look_at_touch(r, t, s->rate.reach)) {
         leave_touch(r, t);
@@ -119,11 +113,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     }
     if (again && !t->near) return;
     t->near = true;
-    small_array(l.n, t->n), small_array(l.u, touch_velocity(t, b));
-    l.gap = t->arm - s->place[t->body].r;
-    l.wn = b->im, l.wt = b->im + t->arm * t->arm * b->ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt;
-    memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    small_touch_law(r, t, &l);
     if (!again) begin_touch(r, t, &l);
     small_solve(&l, df);
     memcpy(t->f, l.f, sizeof t->f);
@@ -323,6 +313,7 @@ void small_loop(void *arg, int me, int threads)
         small_sweeps(r, me, threads, first, end);
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();
+        if (r->judged) small_error_step(r, me, threads);
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);

@@ -54,6 +54,7 @@ struct small_run {
     int32_t swept;           /* of the step in hand */
     bool begins, stop;       /* the first step; the list serves no longer, or the step fails */
     bool uneven;             /* bodies have masses so different that sweeps are slow */
+    bool judged;             /* its errors are summed up [step/small_error.h] */
     bool failed;             /* the interval is to be made at once */
     _Atomic bool far;        /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock;    /* of what follows */
