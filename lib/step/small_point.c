@@ -375,7 +375,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     const struct small_rates *o = &rate;
     rate.relax = rate.per_h / (1 + RELAXES);
     struct small_law l = {
-        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu
+        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
     };
     double before[3];
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];

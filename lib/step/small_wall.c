@@ -48,7 +48,9 @@ void small_touch_law(const struct small_run *r, const struct small_touch *t, str
 {
     const struct small *s = &r->l->s;
     const struct body *b = &s->body[t->body];
-    *l = (struct small_law){ .mu = t->mu, .gap = t->arm - s->place[t->body].r };
+    *l = (struct small_law){ .mu = t->mu,
+                             .calm = s->rate.calm,
+                             .gap = t->arm - s->place[t->body].r };
     small_array(l->n, t->n), small_array(l->u, small_touch_velocity(t, b));
     l->wn = b->im, l->wt = b->im + t->arm * t->arm * b->ii;
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt;
