@@ -25,7 +25,10 @@
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 30
 
-enum { ROUNDS_MOST = 20 };         /* of the points of a meeting in one sweep */
+enum {
+    ROUNDS = 2,
+    ROUNDS_MOST = 20
+};                                 /* of the points of a meeting in one sweep; most in an impact */
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
 
 /* ---- bodies ---- */
