@@ -185,6 +185,21 @@ static bool add_pair(struct contacts *out, const struct sought *o, const struct 
     return true;
 }
 
+bool detect_pair(struct contacts *out, const struct situation *o, const struct pair *pair,
+                 double gap)
+{
+    const struct sought one = { .all = *o, .gap = gap };
+    return add_pair(out, &one, pair);
+}
+
+bool detect_wall(struct contacts *out, const struct situation *o, int32_t w, int64_t i, double gap)
+{
+    const struct sought one = { .all = *o, .gap = gap, .wall = w };
+    if (o->p->wall[w].shape == WALL_PLANE) return add_plane(out, &one, i, i + 1);
+    const struct pose pose = wall_pose(o->p, &o->p->wall[w], o->t);
+    return detect_add_body(out, &one, &pose, i);
+}
+
 /* From i on, the first entry that is not of the pair of bodies before it: what two bodies and their images
    have for contacts is sorted together. */
 static int64_t next_bodies(const struct pairs *s, int64_t i)

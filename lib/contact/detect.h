@@ -5,6 +5,7 @@
 #pragma once
 
 #include "contact/neighbours.h"
+#include "contact/seek.h"
 #include "state/contact.h"
 
 /*
@@ -31,3 +32,9 @@ int detect_choose(struct contacts *s, const struct packing *p, double gap, doubl
 /* The same with the bodies at x[n] (m), turned as they are, walls and cell where they are at time t (s). */
 int detect_contacts_at(struct contacts *out, const struct packing *p, const vec3 *x, double t,
                        double gap, struct failure *failure);
+
+/* Adds the contacts of one pair of bodies, and of body i and wall w, with at most this gap (m), sorted by feature; from where
+   a situation has them. False when memory is short. */
+bool detect_pair(struct contacts *out, const struct situation *o, const struct pair *pair,
+                 double gap);
+bool detect_wall(struct contacts *out, const struct situation *o, int32_t w, int64_t i, double gap);

@@ -251,14 +251,15 @@ static bool passes_above(const struct internal_edge_meeting *w, const struct int
     return !rises(o, f, g.n, level, near);
 }
 
-/* Is contact i of body s at a seam? */
+/* Is contact i of body s at a seam? l: NULL where all contacts are those of s */
 static bool at_seam(const struct internal_edge_meeting *w, const struct internal_edge_lists *l,
                     int32_t s)
 {
+    const int64_t first = l ? l->first[s] : 0, end = l ? l->first[s + 1] : w->all->n;
     const struct internal_edge_side f = side_of(w->o, &w->all->c[w->i], s);
     if (!internal_edge_moves(w->o, s)) return false;
-    for (int64_t k = l->first[s]; k < l->first[s + 1]; k++)
-        if (passes_above(w, &f, &w->all->c[l->of[k]])) return true;
+    for (int64_t k = first; k < end; k++)
+        if (passes_above(w, &f, &w->all->c[l ? l->of[k] : k])) return true;
     return false;
 }
 
@@ -297,13 +298,21 @@ static bool internal_edge_lists_init(struct internal_edge_lists *l, const struct
     return true;
 }
 
-static bool is_dropped(const struct situation *o, const struct contacts *all,
-                       const struct internal_edge_lists *l, int64_t i)
+static struct internal_edge_meeting internal_edge_meeting_of(const struct situation *o,
+                                                             const struct contacts *all, int64_t i)
 {
     const struct contact *c = &all->c[i];
     struct internal_edge_meeting w = { o, all, i, i, i + 1 };
     while (w.first > 0 && all->c[w.first - 1].a == c->a && all->c[w.first - 1].b == c->b) w.first--;
     while (w.end < all->n && all->c[w.end].a == c->a && all->c[w.end].b == c->b) w.end++;
+    return w;
+}
+
+static bool is_dropped(const struct situation *o, const struct contacts *all,
+                       const struct internal_edge_lists *l, int64_t i)
+{
+    const struct contact *c = &all->c[i];
+    const struct internal_edge_meeting w = internal_edge_meeting_of(o, all, i);
     return at_seam(&w, l, c->b) || (c->a >= 0 && at_seam(&w, l, c->a));
 }
 
@@ -325,4 +334,11 @@ int seams_drop(struct contacts *s, const struct situation *o, struct failure *fa
     if (good && drop) s->n = n;
     free(lists.first), free(lists.of), free(drop);
     return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts at seams");
+}
+
+bool seams_drop_one(const struct contacts *s, const struct situation *o, int32_t body, int64_t i)
+{
+    if (!internal_edge_may_be(o, &s->c[i])) return false;
+    const struct internal_edge_meeting w = internal_edge_meeting_of(o, s, i);
+    return at_seam(&w, NULL, body);
 }

@@ -22,3 +22,5 @@
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
 int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);
+/* Would it drop contact i of s, sorted, which are all contacts of this body with walls and with bodies that do not move? */
+bool seams_drop_one(const struct contacts *s, const struct situation *o, int32_t body, int64_t i);

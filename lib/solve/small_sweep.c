@@ -183,6 +183,16 @@ ALWAYS_INLINE void small_keep(struct small_law *l, const vd had[3], vm those, vd
     l->rn = pick(those, l->rn, dot3(l->n, l->f));
 }
 
+/* But for u, f, q and rn */
+ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *y,
+                                 const struct small *s)
+{
+    for (int j = 0; j < 3; j++) l->n[j] = y->n[j];
+    l->gap = y->gap, l->wn = y->a.im + y->b.im;
+    l->wt = l->wn + y->la * y->la * y->a.ii + y->lb * y->lb * y->b.ii;
+    l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
+}
+
 /* hot: of small_hot() in a later sweep, else NULL */
 ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot, bool rolls)
 {
@@ -195,10 +205,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     if (!s->live[BUNDLE * i + k] && !any(near)) return false;
     small_pairs_load(&y, s);
     small_velocity(&y, &y.ma, &y.mb, l.u);
-    for (int j = 0; j < 3; j++) l.n[j] = y.n[j];
-    l.gap = y.gap, l.wn = y.a.im + y.b.im;
-    l.wt = l.wn + y.la * y.la * y.a.ii + y.lb * y.lb * y.b.ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt, l.mu = vload(y.c->mu + k);
+    small_set_law(&l, &y, s);
     small_load(l.f, y.c->f, k);
     const double warm = hot ? 1 : SMALL_WARM;
     for (int j = 0; j < 3; j++) had[j] = warm * l.f[j];
@@ -254,7 +261,40 @@ static void small_push_bundles(struct small *s, int64_t first, int64_t end)
         }
 }
 
+static void small_judge_lanes(struct small *s, int64_t i, int k)
+{
+    struct small_pairs y;
+    struct small_law l;
+    vd had[3], df[3], zero = splat(0);
+    double far[LANES], load[LANES];
+    small_pairs_look(&y, s, i, k);
+    vd most = y.ra + y.rb + s->rate.reach;
+    vm near = le(y.d2, most * most);
+    if (!s->live[BUNDLE * i + k] && !any(near)) return;
+    small_pairs_load(&y, s);
+    small_velocity(&y, &y.ma, &y.mb, l.u);
+    small_load(had, y.c->f, k), small_load(l.q, y.c->q, k);
+    small_set_law(&l, &y, s);
+    for (int j = 0; j < 3; j++) l.f[j] = had[j];
+    vd pushes = norm3(had);
+    small_solve(&l, df);
+    vstore(far, pick(near | lt(zero, pushes), norm3(df), zero)), vstore(load, pushes);
+    for (int j = 0; j < LANES; j++) {
+        if (!(far[j] > 0) && !(load[j] > 0)) continue;
+        const int64_t a = body_index(y.c->a[k + j]), b = body_index(y.c->b[k + j]);
+        s->missing[a] += far[j], s->missing[b] += far[j];
+        s->load[a] += load[j], s->load[b] += load[j];
+    }
+}
+
+static void small_judge_bundles(struct small *s, int64_t first, int64_t end)
+{
+    for (int64_t i = first; i < end; i++)
+        for (int k = 0; k < BUNDLE; k += LANES) small_judge_lanes(s, i, k);
+}
+
 #define SMALL_(lanes)   small_##lanes
 #define SMALL_OF(lanes) SMALL_(lanes)
 extern const struct small_kernels SMALL_OF(LANES);
-const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles };
+const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles,
+                                               small_judge_bundles };

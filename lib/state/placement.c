@@ -15,12 +15,24 @@ static int32_t normals_of(const struct shape *s, int dim)
     return !shape_has_faces(s) ? 0 : dim == 2 ? s->vertices : s->faces;
 }
 
+void placed_turn(struct placed *s, int64_t i, quat q)
+{
+    const struct packing *p = s->p;
+    const struct shape *shape = packing_shape(p, i);
+    if (!shape) return;
+    vec3 *v = s->vertex + s->first[i], *n = s->normal + s->face[i];
+    for (int32_t k = 0; k < shape->vertices; k++)
+        v[k] = v3_axpy(s->x[i], p->radius[i], quat_turn(q, shape->vertex[k]));
+    for (int32_t k = 0; k < normals_of(shape, p->dim); k++) n[k] = quat_turn(q, shape->normal[k]);
+    for (int32_t k = 0; k < shape->vertices && p->dim == 2; k++) v[k].z = 0;
+    for (int32_t k = 0; k < normals_of(shape, p->dim) && p->dim == 2; k++) n[k].z = 0;
+}
+
 int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
                 struct failure *failure)
 {
-    const vec3 *x = at->x;
     const quat *q = at->q;
-    *s = (struct placed){ .p = p, .x = x };
+    *s = (struct placed){ .p = p, .x = at->x };
     s->first = calloc((size_t)p->n + 1, sizeof *s->first);
     s->face = calloc((size_t)p->n + 1, sizeof *s->face);
     for (int64_t i = 0; s->first && s->face && i < p->n; i++) {
@@ -35,17 +47,7 @@ int placed_init(struct placed *s, const struct packing *p, const struct position
         placed_free(s);
         return failure_set(failure, EX_SOFTWARE, "no memory for the corners of the bodies");
     }
-    for (int64_t i = 0; i < p->n; i++) {
-        const struct shape *shape = packing_shape(p, i);
-        if (!shape) continue;
-        vec3 *v = s->vertex + s->first[i], *n = s->normal + s->face[i];
-        for (int32_t k = 0; k < shape->vertices; k++)
-            v[k] = v3_axpy(x[i], p->radius[i], quat_turn(q[i], shape->vertex[k]));
-        for (int32_t k = 0; k < normals_of(shape, p->dim); k++)
-            n[k] = quat_turn(q[i], shape->normal[k]);
-        for (int32_t k = 0; k < shape->vertices && p->dim == 2; k++) v[k].z = 0;
-        for (int32_t k = 0; k < normals_of(shape, p->dim) && p->dim == 2; k++) n[k].z = 0;
-    }
+    for (int64_t i = 0; i < p->n; i++) placed_turn(s, i, q[i]);
     return 0;
 }
 

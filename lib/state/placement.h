@@ -36,6 +36,8 @@ struct placed {
 int placed_init(struct placed *s, const struct packing *p, const struct positions *at,
                 struct failure *failure);
 void placed_free(struct placed *s);
+/* Body i has moved to x[i], turned by q. */
+void placed_turn(struct placed *s, int64_t i, quat q);
 
 /* How many cores a body has, and one of them */
 int32_t placed_cores(const struct placed *s, int64_t i);

@@ -19,6 +19,7 @@ static void small_arrays_free(struct small_list *l)
     struct small *s = &l->s;
     free(s->bundle), free(s->turn), free(s->shift), free(s->live), free(s->late), free(s->group);
     free(l->slot), free(l->touch), free(l->pairs.pair);
+    small_meetings_free(&l->meetings);
 }
 
 /* The list has none of them. */
@@ -28,7 +29,7 @@ static void small_forget(struct small_list *l)
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->live = s->late = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     l->slot = NULL, l->touch = NULL, l->touches = l->room = 0;
-    l->pairs = (struct pairs){ 0 };
+    l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
 }
 
 void small_list_free(struct small_list *l)
@@ -165,6 +166,27 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
     contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
 }
 
+static struct contact_key pair_key(const struct pair *q)
+{
+    return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
+}
+
+/* Leaves pairs of balls to l->pairs; others are meetings. */
+static bool take_meetings(struct small_list *l, const struct packing *p)
+{
+    int64_t n = 0;
+    bool room = true;
+    for (int64_t i = 0; room && i < l->pairs.n; i++) {
+        const struct pair pair = l->pairs.pair[i];
+        if (small_meets(p, pair.a, pair.b))
+            room = small_meetings_add(&l->meetings, p, pair_key(&pair));
+        else
+            l->pairs.pair[n++] = pair;
+    }
+    l->pairs.n = n;
+    return room;
+}
+
 static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x)
 {
     struct small *s = &l->s;
@@ -226,11 +248,6 @@ vec3 small_branch(const struct small *s, int64_t slot)
     return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
 }
 
-static struct contact_key pair_key(const struct pair *q)
-{
-    return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
-}
-
 /* From `from` on, the first pair that is not before this one; *found: it is this one */
 static int64_t find_pair(const struct small_list *l, int64_t from, struct contact_key key,
                          bool *found)
@@ -283,6 +300,19 @@ static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, 
     return true;
 }
 
+/* Has the mesh of wall w elements at most `most` (m) from x, or nearly? */
+static bool near_mesh(const struct small_list *l, const struct packing *p, const struct pose *pose,
+                      int32_t w, vec3 x, double most)
+{
+    const struct surface *s = &l->surface[w];
+    struct surface_walk walk;
+    struct surface_branch leaf;
+    const vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(x, pose->shift)), p->wall[w].x);
+    if (!s->n) return false;
+    surface_walk_begin(&walk, s->n);
+    return surface_walk_next(&walk, s->box, c, most, &leaf);
+}
+
 static bool find_touches(struct small_list *l, const struct packing *p, const vec3 *x, double t)
 {
     struct pose *pose = malloc(((size_t)p->walls + 1) * sizeof *pose);
@@ -292,9 +322,14 @@ static bool find_touches(struct small_list *l, const struct packing *p, const ve
         for (int32_t w = 0; room && w < p->walls; w++) {
             vec3 n;
             if (!wall_there(&p->wall[w], t) || !packing_may_meet(p, -1 - w, (int32_t)i)) continue;
-            const double r = p->radius[i];
-            if (small_wall_distance(p, &pose[w], w, x[i], r + l->margin, &n) <= r + l->margin)
-                room = add_touch(l, p, w, (int32_t)i);
+            const double most = p->radius[i] + l->margin;
+            const struct contact_key key = { .a = -1 - w, .b = (int32_t)i };
+            if (p->wall[w].shape == WALL_MESH
+                    ? !near_mesh(l, p, &pose[w], w, x[i], most)
+                    : !(small_wall_distance(p, &pose[w], w, x[i], most, &n) <= most))
+                continue;
+            room = small_meets(p, key.a, key.b) ? small_meetings_add(&l->meetings, p, key)
+                                                : add_touch(l, p, w, (int32_t)i);
         }
     free(pose);
     return room;
@@ -335,6 +370,16 @@ static void carry_touches(struct small_list *to, const struct small_list *from)
     }
 }
 
+static void carry_meetings(struct small_list *to, struct small_list *from)
+{
+    small_meetings_carry(&to->meetings, &from->meetings);
+    for (int64_t i = 0; i < from->meetings.n; i++) {
+        const struct small_meeting *m = &from->meetings.of[i];
+        to->gone_work += m->work;
+        to->gone_impulse = v3_add(to->gone_impulse, small_meeting_impulse(m, to->s.body));
+    }
+}
+
 /* ---- the list ---- */
 
 int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
@@ -350,8 +395,10 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
     cell_predict(&p->cell, 0, edge);
     if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
-        room = small_pairs_lay(l, p, x) && find_touches(l, p, x, t);
-        if (room) carry_pairs(l, &was), carry_touches(l, &was);
+        room = (!p->shape || take_meetings(l, p)) && small_pairs_lay(l, p, x) &&
+               find_touches(l, p, x, t) &&
+               ((!p->shape && !p->mesh.elements) || small_meetings_lay(&l->meetings, p));
+        if (room) carry_pairs(l, &was), carry_touches(l, &was), carry_meetings(l, &was);
     }
     if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     memcpy(l->listed, x, (size_t)p->n * sizeof *x);
@@ -361,14 +408,19 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
 
 /* ---- reactions, from what the packing remembers ---- */
 
-void small_list_recall(struct small_list *l, const struct packing *p, double part)
+bool small_list_recall(struct small_list *l, const struct packing *p, double part)
 {
     int64_t at = 0;
-    bool found;
+    bool found, room = true;
     for (int64_t i = 0; i < p->memory.n; i++) {
         const struct recall *r = &p->memory.recall[i];
         struct small_past x = { 0 };
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
+        struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
+        if (m) {
+            room = room && small_meeting_recall(m, r, part);
+            continue;
+        }
         if (r->a < 0) {
             struct small_touch *t = find_touch(l, r->b, -1 - r->a);
             if (t) memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
@@ -377,6 +429,7 @@ void small_list_recall(struct small_list *l, const struct packing *p, double par
         at = find_pair(l, at, recall_key(r), &found);
         if (found) set_past(&l->s, l->slot[at], &x);
     }
+    return room;
 }
 
 /* ---- and back ---- */
@@ -404,7 +457,7 @@ static void remember_one(struct memory *m, struct contact_key k, const double f[
     if (small_is_zero(f)) return;
     m->recall[m->n++] = (struct recall){ k.a,
                                          k.b,
-                                         0,
+                                         k.feature,
                                          { k.shift[0], k.shift[1], k.shift[2] },
                                          v3_scale(times, small_vec(f)),
                                          v3_scale(times, small_vec(moment)) };
@@ -415,6 +468,7 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
 {
     struct small_touch **by = small_list_touches(l);
     struct memory m = { .on = true, .room = l->touches + l->pairs.n };
+    m.room += small_meetings_points(&l->meetings);
     m.recall = malloc((size_t)(m.room + 1) * sizeof *m.recall);
     if (!by || !m.recall) {
         free(by), free(m.recall);
@@ -428,6 +482,15 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
         const struct small_past x = past_of(&l->s, l->slot[i]);
         remember_one(&m, pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
     }
+    for (int64_t i = 0; i < l->meetings.n; i++) {
+        const struct small_meeting *y = &l->meetings.of[i];
+        struct contact_key k = y->key;
+        for (int64_t j = 0; j < y->points; j++) {
+            k.feature = y->point[j].feature;
+            remember_one(&m, k, y->point[j].f, y->point[j].m, 1 / part);
+        }
+    }
+    if (l->meetings.n) memory_sort(&m);
     free(by);
     memory_free(&p->memory);
     p->memory = m;

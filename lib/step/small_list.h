@@ -7,6 +7,7 @@
 #include "contact/seek.h"
 #include "solve/small.h"
 #include "state/packing.h"
+#include "step/small_meet.h"
 
 /* A body near a wall: numbers as in struct small_bundle */
 struct small_touch {
@@ -25,8 +26,10 @@ struct small_list {
     struct small s;
     double margin, way; /* m: pairs are listed to this gap; and nothing has moved farther since */
     vec3 *listed;       /* [bodies] m: where bodies were */
-    struct pairs pairs;
-    int64_t *slot; /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
+    struct pairs pairs; /* of balls */
+    struct small_meetings meetings; /* of others */
+    const struct surface *surface;  /* [walls] of meshes; borrowed */
+    int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
     /* Of this interval, by touches that are in the list no more */
@@ -41,8 +44,8 @@ void small_list_free(struct small_list *l);
  */
 int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
                     struct failure *failure);
-/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. */
-void small_list_recall(struct small_list *l, const struct packing *p, double part);
+/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
+bool small_list_recall(struct small_list *l, const struct packing *p, double part);
 /* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
 int small_list_remember(const struct small_list *l, struct packing *p, double part,
                         struct failure *failure);

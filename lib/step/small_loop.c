@@ -2,6 +2,11 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_error.h"
+#include "step/small_point.h"
+#include "step/small_pull.h"
+#include "step/small_sums.h"
+#include "step/small_wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,6 +28,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
     const vec3 g = r->p->g;
     const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
     double most = 0;
+    if (r->pull) return small_pull_bodies(r, first, end);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
@@ -33,6 +39,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
             was->v[k] = v, was->w[k] = w;
             v2 += v * v;
         }
+        if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
         most = v2 <= most ? most : v2; // not a number: it is the largest
     }
     return most;
@@ -46,6 +53,7 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
         for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
         r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
     }
+    if (r->meets) small_points_place(r, first, end);
 }
 
 /* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
@@ -58,42 +66,6 @@ static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
 
 /* ---- walls ---- */
 
-static void set_walls(struct small_run *r)
-{
-    const struct packing *p = r->p;
-    const double t = p->t + r->ahead;
-    for (int32_t w = 0; w < p->walls; w++) {
-        const struct wall *wall = &p->wall[w];
-        const vec3 at = wall_at(p, wall, t);
-        r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
-                                          .pose = wall_pose(p, wall, t),
-                                          .at = at,
-                                          .v = wall_held(p, wall, at),
-                                          .spin = wall_spin(p, wall) };
-        r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
-    }
-}
-
-bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach)
-{
-    const struct small_wall *w = &r->wall[t->wall];
-    const struct small_place *b = &r->l->s.place[t->body];
-    const vec3 x = small_vec(b->x);
-    if (!w->there) return false;
-    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
-    if (!(t->arm - b->r <= reach)) return false;
-    t->v = v3_add(w->v, v3_cross(w->spin, v3_sub(v3_axpy(x, -t->arm, t->n), w->at)));
-    t->v = v3_add(t->v, v3_axpy(w->belt, -v3_dot(w->belt, t->n), t->n));
-    return true;
-}
-
-/* m/s: of the body b against the wall at the contact */
-static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
-{
-    vec3 v = v3_sub(small_vec(b->v), t->v);
-    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
-}
-
 /* The law in the first sweep of a step */
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
@@ -105,7 +77,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
-    small_array(before, touch_velocity(t, &s->before[t->body]));
+    small_array(before, small_touch_velocity(t, &s->before[t->body]));
     small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
@@ -133,7 +105,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small *s = &r->l->s;
     struct body *b = &s->body[t->body];
-    struct small_law l = { .mu = t->mu };
+    struct small_law l;
     double df[3], dm[3] = { 0, 0, 0 };
     if (!again && !small_look_at_touch(r, t, s->rate.reach)) {
         leave_touch(r, t);
@@ -141,11 +113,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     }
     if (again && !t->near) return;
     t->near = true;
-    small_array(l.n, t->n), small_array(l.u, touch_velocity(t, b));
-    l.gap = t->arm - s->place[t->body].r;
-    l.wn = b->im, l.wt = b->im + t->arm * t->arm * b->ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt;
-    memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    small_touch_law(r, t, &l);
     if (!again) begin_touch(r, t, &l);
     small_solve(&l, df);
     memcpy(t->f, l.f, sizeof t->f);
@@ -285,14 +253,6 @@ static double farthest(const struct small_run *r)
     return sqrt(most);
 }
 
-double small_wall_speed(const struct packing *p)
-{
-    double most = 0;
-    for (int32_t w = 0; w < p->walls; w++)
-        most = fmax(most, wall_top_speed(p, &p->wall[w]) + v3_norm(p->wall[w].belt));
-    return most;
-}
-
 /* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
 static void prepare_step(struct small_run *r)
 {
@@ -315,6 +275,7 @@ static void small_sweeps(struct small_run *r, int me, int threads, int64_t first
         team_meet();
         sweep_touches(r, first, end, k > 0);
         team_meet();
+        if (r->meets) small_points_sweep(r, me, threads, k > 0);
         sweep_pairs(r, me, threads, k > 0);
         team_meet();
         far = r->far;
@@ -345,13 +306,18 @@ void small_loop(void *arg, int me, int threads)
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
         pthread_mutex_unlock(&r->lock);
-        if (!me) set_walls(r);
+        if (!me) small_walls_set(r);
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
+        if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
+        if (r->sums && !me) small_sums_step(r);
+        if (r->sums) team_meet();
+        if (r->judged) small_error_step(r, me, threads);
         end_touches(r, first, end);
         team_meet();
+        if (r->meets) small_points_end(r, me, threads);
         if (!me) finish_step(r);
         team_meet();
         move_bodies(r, first, end);

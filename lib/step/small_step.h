@@ -8,13 +8,16 @@
  */
 #pragma once
 
+#include "contact/neighbours.h"
 #include "state/report.h"
 #include "step/small_list.h"
 
 struct small_opt {
     double overlap; /* radii of the smallest body: none is moved farther by a small step */
     int threads;
-    bool warm; /* the first one starts from what the packing remembers */
+    struct neighbours *near; /* surfaces of meshes, kept from step to step */
+    bool bare;               /* nobody reads the errors and the contacts of this step */
+    bool warm;               /* the first one starts from what the packing remembers */
 };
 
 /* What of a packing small steps do not have, in words; NULL: they have all */

@@ -1,0 +1,70 @@
+/*
+ * step/small_meet.h: meetings of small steps: pairs of bodies that are not both balls, shaped bodies with walls, and all bodies
+ * with meshes. A meeting has several points, which the narrow phase [contact/detect.h] finds in each small step. A point
+ * is known by its feature and keeps its reaction from step to step; one that goes leaves it to a new point beside it
+ * [step/small_point.h].
+ *
+ * Groups of meetings share no body that moves, so that any number of threads gives the same bits.
+ */
+#pragma once
+
+#include "solve/small.h"
+#include "state/memory.h"
+#include "state/packing.h"
+
+/* f, kept, q, sum and m: as in struct small_bundle [solve/small.h] */
+struct small_point {
+    int32_t feature;
+    bool near;   /* it is there in the step in hand */
+    bool starts; /* its bodies do not have its f yet */
+    double f[3], kept, q[3], sum[3], m[3];
+    double mu, e[2];
+    double soft; /* C over W in the step in hand; 0: an impact */
+    /* Of the last step in which it was near */
+    vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
+    double gap;    /* m */
+    vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
+    vec3 v;        /* m/s: of the wall's material there */
+    double W[9];   /* 1/kg, in the basis */
+};
+
+struct small_meeting {
+    struct contact_key key; /* without a feature */
+    double most[2];         /* m: mu_p, mu_r */
+    int64_t points, room;
+    struct small_point
+        *point;  /* [points] by feature: those that are near, or have pushed in this interval */
+    double work; /* J: on a wall or a body that does not move, in this interval */
+};
+
+struct small_meetings {
+    int64_t n, room;
+    struct small_meeting *of; /* [n] by key */
+    int64_t groups, serial,
+        *group;     /* [groups + 1] of order[]; those from `serial` on are of one meeting each */
+    int64_t *order; /* [n] meetings */
+    int64_t *held_first,
+        *held; /* [bodies + 1] meetings of a body that moves with what does not: held[held_first[i]] ... */
+};
+
+/* Do bodies a (wall -1-w where a < 0) and b meet in several places, or otherwise than balls do? */
+static inline bool small_meets(const struct packing *p, int32_t a, int32_t b)
+{
+    if (packing_shape(p, b)) return true;
+    return a < 0 ? p->wall[-1 - a].shape == WALL_MESH : packing_shape(p, a) != NULL;
+}
+
+void small_meetings_free(struct small_meetings *m);
+/* A meeting without points. False when memory is short, as all that follow. */
+bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key);
+/* Order, groups and held ones, when all have been added */
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p);
+/* NULL: none has this key, whatever its feature. */
+struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key);
+/* Points go over to the meetings of the same bodies. */
+void small_meetings_carry(struct small_meetings *to, struct small_meetings *from);
+/* A point starts with a reaction that the packing remembers, and its moment, `part` of them. */
+bool small_meeting_recall(struct small_meeting *m, const struct recall *r, double part);
+int64_t small_meetings_points(const struct small_meetings *m);
+/* N s: of what does not move in the interval, on the body that does; body[]: as of struct small */
+vec3 small_meeting_impulse(const struct small_meeting *m, const struct body *body);

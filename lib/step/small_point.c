@@ -1,0 +1,613 @@
+/* step/small_point.c: where bodies of a meeting meet, and the law there [step/small_point.h]. */
+#include "step/small_point.h"
+
+#include "base/array.h"
+#include "base/team.h"
+#include "contact/detect.h"
+#include "contact/internal_edge.h"
+#include "solve/local_exact.h"
+#include "state/rotation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Of the smallest thickness: how far a point may be from one that has gone, whose reaction it takes; and the cosine of
+   their normals */
+#define BESIDE 0.2
+#define ALONG  0.9
+
+/* Of h: tau, in which overlaps are left */
+#define RELAXES 30
+
+enum { ROUNDS_MOST = 20 };         /* of the points of a meeting in one sweep */
+static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
+
+/* ---- bodies ---- */
+
+/* The world inertia of body i */
+static void set_inverse(struct small_run *r, int64_t i)
+{
+    const struct packing *p = r->p;
+    double *to = r->shapes.inverse[i];
+    const vec3 m = rotation_moments(p, i);
+    if (!(p->mass[i] > 0)) return;
+    if (!rotation_is(p, i)) {
+        to[2] = 1 / p->inertia[i];
+        if (p->dim == 3) to[0] = to[1] = to[2];
+        return;
+    }
+    const vec3 e[3] = { quat_turn(r->shapes.q[i], v3(1, 0, 0)),
+                        quat_turn(r->shapes.q[i], v3(0, 1, 0)),
+                        quat_turn(r->shapes.q[i], v3(0, 0, 1)) };
+    const double d[3] = { 1 / m.x, 1 / m.y, 1 / m.z };
+    for (int k = 0; k < 6; k++) to[k] = 0;
+    for (int k = 0; k < 3; k++) {
+        to[0] += d[k] * e[k].x * e[k].x, to[1] += d[k] * e[k].y * e[k].y;
+        to[2] += d[k] * e[k].z * e[k].z, to[3] += d[k] * e[k].y * e[k].z;
+        to[4] += d[k] * e[k].x * e[k].z, to[5] += d[k] * e[k].x * e[k].y;
+    }
+}
+
+/* rad/s: what a moment m (N m s) makes of body i */
+static vec3 turned_by(const struct small_run *r, int32_t i, vec3 m)
+{
+    const double *s = r->shapes.inverse[i];
+    return v3(s[0] * m.x + s[5] * m.y + s[4] * m.z, s[5] * m.x + s[1] * m.y + s[3] * m.z,
+              s[4] * m.x + s[3] * m.y + s[2] * m.z);
+}
+
+void small_points_free(struct small_run *r)
+{
+    struct small_shapes *s = &r->shapes;
+    for (int k = 0; s->scratch && k < s->threads; k++)
+        contacts_free(&s->scratch[k].found), free(s->scratch[k].point);
+    free(s->scratch), free(s->q), free(s->inverse), free(s->spread);
+    placed_free(&s->placed);
+    *s = (struct small_shapes){ 0 };
+}
+
+int small_points_init(struct small_run *r, const struct surface *surface, int threads,
+                      struct failure *failure)
+{
+    struct packing *p = r->p;
+    struct small_shapes *s = &r->shapes;
+    const size_t n = (size_t)p->n + 1;
+    *s = (struct small_shapes){ .threads = threads };
+    s->q = calloc(n, sizeof *s->q), s->inverse = calloc(n, sizeof *s->inverse);
+    s->spread = calloc(n, sizeof *s->spread);
+    s->scratch = calloc((size_t)threads, sizeof *s->scratch);
+    if (!s->q || !s->inverse || !s->spread || !s->scratch)
+        return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+    cell_predict(&p->cell, 0, s->edge);
+    for (int64_t i = 0; i < p->n; i++) {
+        const vec3 m = rotation_moments(p, i);
+        s->q[i] = rotation_predict(p, i);
+        small_array(r->l->s.body[i].w, rotation_predict_spin(p, i, s->q[i]));
+        if (p->mass[i] > 0) s->spread[i] = 1 / fmin(m.x, fmin(m.y, m.z));
+        set_inverse(r, i);
+    }
+    s->at = (struct situation){ .p = p, .x = r->x, .surface = surface };
+    if (cell_repeats(&p->cell)) s->at.edge = s->edge;
+    if (!p->shape) return 0;
+    const struct positions at = { .x = r->x, .q = s->q };
+    s->at.shaped = &s->placed;
+    return placed_init(&s->placed, p, &at, failure);
+}
+
+/* q and w of body i after a free turning by dt (s) */
+static quat turn_freely(const struct small_run *r, int64_t i, double dt, vec3 *w)
+{
+    const quat q = r->shapes.q[i];
+    if (!rotation_is(r->p, i)) return quat_unit(quat_mul(quat_rotation(v3_scale(dt, *w)), q));
+    const vec3 L = rotation_momentum(r->p, i, q, *w);
+    const quat then = rotation_turn(r->p, i, q, L, dt);
+    *w = rotation_spin(r->p, i, then, L);
+    return then;
+}
+
+quat small_points_q(const struct small_run *r, int64_t i, vec3 *w)
+{
+    *w = small_vec(r->l->s.body[i].w);
+    return turn_freely(r, i, -r->ahead, w);
+}
+
+double small_point_speed(const struct small_run *r, int64_t i)
+{
+    const struct body *b = &r->l->s.body[i];
+    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+}
+
+/* w^- follows as w does: what a step has added to it remains a moment's. */
+void small_points_place(struct small_run *r, int64_t first, int64_t end)
+{
+    struct small_shapes *s = &r->shapes;
+    for (int64_t i = first; i < end; i++) {
+        struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
+        vec3 w = small_vec(b->w);
+        r->x[i] = small_vec(r->l->s.place[i].x);
+        const quat q = turn_freely(r, i, r->h, &w);
+        if (rotation_is(r->p, i)) {
+            const vec3 L = rotation_momentum(r->p, i, s->q[i], small_vec(was->w));
+            small_array(was->w, rotation_spin(r->p, i, q, L));
+            small_array(b->w, w);
+        }
+        s->q[i] = q;
+        if (rotation_is(r->p, i)) set_inverse(r, i);
+        if (r->p->shape) placed_turn(&s->placed, i, q);
+    }
+}
+
+/* ---- where points are ---- */
+
+static vec3 image_of(const struct small_run *r, const struct small_meeting *m)
+{
+    return r->shapes.at.edge ? cell_shift(r->shapes.edge, m->key.shift) : v3(0, 0, 0);
+}
+
+/* Adds to W what body i has of it, with this arm (m). */
+static void add_block(const struct small_run *r, struct small_point *t, int32_t i, vec3 arm)
+{
+    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
+    const double im = r->l->s.body[i].im;
+    vec3 lever[3], turn[3];
+    for (int k = 0; k < 3; k++) lever[k] = v3_cross(arm, e[k]), turn[k] = turned_by(r, i, lever[k]);
+    for (int k = 0; k < 9; k++) t->W[k] += v3_dot(lever[k / 3], turn[k % 3]) + (k % 4 ? 0 : im);
+}
+
+/* A point is where contact c is. */
+static void set_point(const struct small_run *r, const struct small_meeting *m,
+                      struct small_point *t, const struct contact *c)
+{
+    const int32_t a = m->key.a, b = m->key.b;
+    t->feature = c->feature, t->near = true;
+    t->x = c->x, t->n = c->n, t->t1 = c->t1, t->gap = c->gap;
+    t->mu = c->mu, t->e[0] = c->en, t->e[1] = c->et;
+    t->b = v3_sub(c->x, v3_add(r->x[b], image_of(r, m)));
+    t->v = t->a = v3(0, 0, 0);
+    for (int k = 0; k < 9; k++) t->W[k] = 0;
+    add_block(r, t, b, t->b);
+    if (a < 0) {
+        t->v = small_wall_velocity(&r->wall[-1 - a], c->x, c->n);
+        return;
+    }
+    t->a = v3_sub(c->x, r->x[a]);
+    add_block(r, t, a, t->a);
+}
+
+/* What a point has pushed is known no more, but for its sum. */
+static bool point_lasts(const struct small_point *t)
+{
+    return !small_is_zero(t->f) || !small_is_zero(t->sum);
+}
+
+/* Points that are there no more leave their reactions to new ones beside them. */
+static void hand_over(const struct small_run *r, struct small_meeting *m)
+{
+    const double most = BESIDE * r->thin;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *gone = &m->point[i], *next = NULL;
+        double least = most;
+        if (gone->near || gone->starts || small_is_zero(gone->f)) continue;
+        for (int64_t k = 0; k < m->points; k++) {
+            struct small_point *t = &m->point[k];
+            const double way = v3_norm(v3_sub(t->x, gone->x));
+            if (!t->near || !t->starts || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
+                continue;
+            least = way, next = t;
+        }
+        for (int k = 0; next && k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+    }
+}
+
+/* The points that c->found has, and those before that last. False when memory is short. */
+static bool take_points(const struct small_run *r, struct small_meeting *m, struct small_scratch *c)
+{
+    int64_t i = 0, j = 0, n = 0;
+    const struct contacts *found = &c->found;
+    if (!array_grow(&c->point, &c->room, m->points + found->n, sizeof *c->point)) return false;
+    while (i < m->points || j < found->n) {
+        struct small_point *to = &c->point[n];
+        const struct small_point *was = i < m->points ? &m->point[i] : NULL;
+        const struct contact *is = j < found->n ? &found->c[j] : NULL;
+        if (was && (!is || was->feature <= is->feature)) {
+            const bool same = is && was->feature == is->feature;
+            *to = *was, to->near = false, i++;
+            if (!same && !point_lasts(was)) continue;
+            if (same && small_is_zero(to->f)) to->starts = true;
+            if (same) set_point(r, m, to, is), j++;
+        } else {
+            *to = (struct small_point){ .starts = true };
+            set_point(r, m, to, is), j++;
+        }
+        n++;
+    }
+    if (!array_grow(&m->point, &m->room, n, sizeof *m->point)) return false;
+    if (n) memcpy(m->point, c->point, (size_t)n * sizeof *m->point);
+    m->points = n;
+    hand_over(r, m);
+    return true;
+}
+
+static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
+                            struct small_scratch *c)
+{
+    const struct small_shapes *s = &r->shapes;
+    const double reach = r->l->s.rate.reach;
+    const struct pair pair = { m->key.a,
+                               m->key.b,
+                               { m->key.shift[0], m->key.shift[1], m->key.shift[2] } };
+    bool room = true;
+    c->found.n = 0;
+    if (pair.a >= 0)
+        room = detect_pair(&c->found, &s->at, &pair, reach);
+    else if (r->wall[-1 - pair.a].there)
+        room = detect_wall(&c->found, &s->at, -1 - pair.a, pair.b, reach);
+    return room && take_points(r, m, c);
+}
+
+/* The points of body i with what does not move, as contacts; false when memory is short. */
+static bool gather_held(const struct small_run *r, int64_t i, struct small_scratch *c)
+{
+    const struct small_meetings *all = &r->l->meetings;
+    c->found.n = 0;
+    for (int64_t k = all->held_first[i]; k < all->held_first[i + 1]; k++) {
+        const struct small_meeting *m = &all->of[all->held[k]];
+        for (int64_t l = 0; l < m->points; l++) {
+            const struct small_point *t = &m->point[l];
+            if (!t->near) continue;
+            struct contact *to = contacts_add(&c->found, m->key.a, m->key.b);
+            if (!to) return false;
+            to->feature = t->feature, to->x = t->x, to->n = t->n, to->t1 = t->t1, to->gap = t->gap;
+            memcpy(to->shift, m->key.shift, sizeof to->shift);
+            to->mu = t->mu, to->en = t->e[0], to->et = t->e[1];
+        }
+    }
+    return true;
+}
+
+/* Points of body i at seams are none [contact/internal_edge.h]. */
+static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratch *c)
+{
+    const struct small_meetings *all = &r->l->meetings;
+    int64_t n = 0;
+    if (!gather_held(r, i, c)) return false;
+    if (c->found.n < 2) return true;
+    for (int64_t k = all->held_first[i]; k < all->held_first[i + 1]; k++) {
+        struct small_meeting *m = &all->of[all->held[k]];
+        for (int64_t l = 0; l < m->points; l++) {
+            struct small_point *t = &m->point[l];
+            if (!t->near || !seams_drop_one(&c->found, &r->shapes.at, (int32_t)i, n++)) continue;
+            t->near = false;
+        }
+    }
+    return true;
+}
+
+static void look_some(struct small_run *r, int me, int threads, bool seams)
+{
+    struct small_meetings *all = &r->l->meetings;
+    const int64_t n = seams ? r->p->n : all->n;
+    for (int64_t i = n * me / threads; i < n * (me + 1) / threads; i++) {
+        struct small_scratch *c = &r->shapes.scratch[me];
+        if (seams ? !drop_seams(r, i, c) : !look_at_meeting(r, &all->of[i], c))
+            r->shapes.failed = true;
+    }
+}
+
+void small_points_look(struct small_run *r, int me, int threads)
+{
+    if (!me) r->shapes.at.t = r->p->t + r->ahead;
+    team_meet();
+    look_some(r, me, threads, false);
+    team_meet();
+    look_some(r, me, threads, true);
+    team_meet();
+    if (!me && r->shapes.failed) r->failed = r->stop = true;
+}
+
+void small_points_last(struct small_run *r)
+{
+    r->shapes.at.t = r->p->t + r->ahead;
+    look_some(r, 0, 1, false), look_some(r, 0, 1, true);
+    for (int64_t i = 0; i < r->l->meetings.n; i++) {
+        struct small_meeting *m = &r->l->meetings.of[i];
+        for (int64_t k = 0; k < m->points; k++) {
+            struct small_point *t = &m->point[k];
+            if (!t->starts && !t->near)
+                for (int j = 0; j < 3; j++) t->sum[j] += t->f[j], t->f[j] = t->m[j] = 0;
+            if (t->starts && t->near)
+                for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j];
+        }
+    }
+}
+
+/* ---- the law ---- */
+
+/* Bodies of[] get a reaction f on b, and its moment m. */
+static void push_point(const struct small_run *r, struct body *of, const struct small_meeting *y,
+                       const struct small_point *t, vec3 f, vec3 m)
+{
+    for (int side = 0; side < 2; side++) {
+        const int32_t i = side ? y->key.b : y->key.a;
+        const double sign = side ? 1 : -1;
+        if (i < 0 || !(of[i].im > 0)) continue;
+        const vec3 w = turned_by(r, i, v3_add(m, v3_cross(side ? t->b : t->a, f)));
+        const double s = sign * of[i].im;
+        of[i].v[0] += s * f.x, of[i].v[1] += s * f.y, of[i].v[2] += s * f.z;
+        of[i].w[0] += sign * w.x, of[i].w[1] += sign * w.y, of[i].w[2] += sign * w.z;
+    }
+}
+
+static vec3 spin_of(const struct small_run *r, const struct body *of, int32_t i)
+{
+    return i < 0 ? r->wall[-1 - i].spin : small_vec(of[i].w);
+}
+
+/* m/s: of the material of a at the point */
+static vec3 velocity_at_a(const struct small_meeting *m, const struct small_point *t,
+                          const struct body *of)
+{
+    if (m->key.a < 0) return t->v;
+    const struct body *a = &of[m->key.a];
+    return v3_add(small_vec(a->v), v3_cross(small_vec(a->w), t->a));
+}
+
+static vec3 velocity_at_b(const struct small_meeting *m, const struct small_point *t,
+                          const struct body *of)
+{
+    const struct body *b = &of[m->key.b];
+    return v3_add(small_vec(b->v), v3_cross(small_vec(b->w), t->b));
+}
+
+static vec3 point_velocity(const struct small_meeting *m, const struct small_point *t,
+                           const struct body *of)
+{
+    return v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+}
+
+/* The law in the first sweep of a step */
+static void begin_point(const struct small_run *r, const struct small_meeting *m,
+                        struct small_point *t)
+{
+    const struct small *s = &r->l->s;
+    struct small_rates rate = s->rate;
+    const struct small_rates *o = &rate;
+    rate.relax = rate.per_h / (1 + RELAXES);
+    struct small_law l = {
+        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu
+    };
+    double before[3];
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];
+    small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
+    l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
+    t->kept = dot3(l.n, l.f), t->starts = false;
+    const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
+    l.spin = 0.5 * o->h * v3_dot(w, t->n);
+    small_press(&l, o);
+    small_array(before, point_velocity(m, t, s->before));
+    l.cn = l.ct = 0;
+    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
+    memcpy(t->q, l.q, sizeof t->q);
+}
+
+/* The reaction of one point of which u would be b without it: exact, or as of balls where there is no solution */
+static void solve_local(int d, const double W[9], const double b[3], double mu, double f[3])
+{
+    struct local y = { .d = d, .W = W, .mu = mu };
+    double found[3], u[3];
+    memcpy(y.b, b, sizeof y.b), memcpy(y.r, f, sizeof y.r);
+    if (exact_general(&y, found)) {
+        memcpy(f, found, sizeof found);
+        return;
+    }
+    const double w = local_lambda_max(W);
+    local_velocity(&y, f, u);
+    for (int k = 0; k < 3; k++) y.r[k] = f[k] - u[k] / w;
+    disc_project(mu, y.r, f);
+}
+
+static void roll_point(const struct small_run *r, const struct small_meeting *y,
+                       struct small_point *t, double rn)
+{
+    struct body *of = r->l->s.body;
+    const int32_t a = y->key.a, b = y->key.b;
+    const double wr = (a < 0 ? 0 : r->shapes.spread[a]) + r->shapes.spread[b];
+    double n[3], w[3], dm[3];
+    small_array(n, t->n), small_array(w, v3_sub(spin_of(r, of, b), spin_of(r, of, a)));
+    small_roll(n, rn, w, wr, y->most, t->m, dm);
+    push_point(r, of, y, t, v3(0, 0, 0), small_vec(dm));
+}
+
+/* The reaction that a point has, f, and the one by its law, in its basis e */
+static void point_law(const struct small_run *r, const struct small_meeting *m,
+                      const struct small_point *t, const vec3 e[3], double f[3], double is[3])
+{
+    const vec3 u = v3_add(point_velocity(m, t, r->l->s.body), small_vec(t->q));
+    const double soft = t->soft * fmax(t->W[4], t->W[8]);
+    double W[9], b[3];
+    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
+    for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
+    memcpy(W, t->W, sizeof W);
+    W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
+    solve_local(r->p->dim, W, b, t->mu, is);
+}
+
+/* Returns by how much (m/s) the point's u changes. */
+static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+{
+    struct small *s = &r->l->s;
+    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
+    double f[3], is[3], change2 = 0;
+    point_law(r, m, t, e, f, is);
+    const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
+    small_array(t->f, new);
+    push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
+    if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, is[0]);
+    for (int k = 0; k < 3; k++) f[k] = is[k] - f[k];
+    for (int k = 0; k < 3; k++) change2 += dot3(t->W + 3 * k, f) * dot3(t->W + 3 * k, f);
+    return sqrt(change2);
+}
+
+/* A body has changed by x (m/s) [solve/small_sweep.c]. */
+static bool mark_body(struct small *s, int32_t i, double x, double allowed)
+{
+    if (i < 0) return false;
+    s->change[i] += x;
+    if (!(s->change[i] > allowed)) return false;
+    s->change[i] = 0, s->hot[i] = s->sweep;
+    return true;
+}
+
+static void mark_meeting(struct small_run *r, const struct small_meeting *m, double change,
+                         bool again)
+{
+    struct small *s = &r->l->s;
+    const int32_t a = m->key.a, b = m->key.b;
+    const double ia = a < 0 ? 0 : s->body[a].im, ib = s->body[b].im, least = fmin(ia, ib);
+    const double allowed = s->rate.allowed[again] * (least > 0 ? sqrt(least / fmax(ia, ib)) : 1);
+    if (!(change > (again ? 0 : allowed))) return;
+    const bool far = mark_body(s, a, change, allowed);
+    if (mark_body(s, b, change, allowed) || far) r->far = true;
+}
+
+static bool is_hot(const struct small *s, const struct small_meeting *m)
+{
+    const int32_t a = m->key.a, b = m->key.b, last = s->sweep - 1;
+    return s->hot[b] >= last || (a >= 0 && s->hot[a] >= last);
+}
+
+static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
+{
+    int64_t near = 0;
+    double first = 0;
+    for (int64_t i = 0; i < m->points; i++) {
+        if (!m->point[i].near) continue;
+        if (!again) begin_point(r, m, &m->point[i]);
+        near++;
+    }
+    for (int k = 0; near && k < ROUNDS_MOST; k++) {
+        double most = 0;
+        for (int64_t i = 0; i < m->points; i++)
+            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i]));
+        if (!k) first = most;
+        if (near == 1 || !(most > ENOUGH * first)) break;
+    }
+    mark_meeting(r, m, first, again);
+}
+
+/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
+   that have gone they are to have nothing. */
+static void start_meeting(struct small_run *r, struct small_meeting *m)
+{
+    int64_t n = 0;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point t = m->point[i];
+        const vec3 f = small_vec(t.f), moment = small_vec(t.m);
+        const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
+        if (times != 0 && !small_is_zero(t.f))
+            push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
+        for (int k = 0; k < 3; k++) {
+            if (t.starts) t.sum[k] -= t.near ? t.f[k] : 0; // the step adds it
+            if (!t.starts && !t.near) t.sum[k] += t.f[k];
+            if (!t.near) t.f[k] = t.m[k] = 0;
+        }
+        t.starts = false;
+        if (t.near || point_lasts(&t)) m->point[n++] = t;
+    }
+    m->points = n;
+}
+
+static void judge_meeting(struct small_run *r, const struct small_meeting *m)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < m->points; i++) {
+        const struct small_point *t = &m->point[i];
+        const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
+        double f[3], is[3];
+        if (!t->near) continue;
+        point_law(r, m, t, e, f, is);
+        for (int side = m->key.a < 0; side < 2; side++) {
+            const int32_t body = side ? m->key.b : m->key.a;
+            s->load[body] += norm3(f);
+            s->missing[body] += norm3((double[3]){ is[0] - f[0], is[1] - f[1], is[2] - f[2] });
+        }
+    }
+}
+
+/* What persists of the reactions, and what they have done to walls and bodies that do not move */
+static void end_meeting(struct small_run *r, struct small_meeting *m)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        const vec3 f = small_vec(t->f), moment = small_vec(t->m);
+        const int32_t a = m->key.a, b = m->key.b;
+        if (!t->near || small_is_zero(t->f)) continue;
+        if (a < 0 || !(s->body[a].im > 0))
+            m->work -=
+                v3_dot(f, velocity_at_a(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, a));
+        if (!(s->body[b].im > 0))
+            m->work +=
+                v3_dot(f, velocity_at_b(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, b));
+        const double rn = v3_dot(f, t->n), most = small_persists(&s->rate, t->kept, t->W[0], rn);
+        if (rn <= most) continue;
+        const double back = 1 - most / rn;
+        for (int k = 0; k < 3; k++) {
+            t->sum[k] += back * t->f[k];
+            t->f[k] *= most / rn, t->m[k] *= most / rn;
+        }
+        push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));
+    }
+}
+
+/* ---- all meetings ---- */
+
+enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_JUDGE, PASS_END };
+
+static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
+                          enum small_point_pass pass)
+{
+    for (int64_t i = first; i < end; i++) {
+        struct small_meeting *m = &r->l->meetings.of[r->l->meetings.order[i]];
+        if (!m->points) continue;
+        if (pass == PASS_START) start_meeting(r, m);
+        if (pass == PASS_SWEEP) sweep_meeting(r, m, false);
+        if (pass == PASS_AGAIN && is_hot(&r->l->s, m)) sweep_meeting(r, m, true);
+        if (pass == PASS_JUDGE) judge_meeting(r, m);
+        if (pass == PASS_END) end_meeting(r, m);
+    }
+}
+
+static void pass_groups(struct small_run *r, int me, int threads, enum small_point_pass pass)
+{
+    const struct small_meetings *m = &r->l->meetings;
+    for (int64_t g = 0; g < m->serial; g++) {
+        const int64_t at = m->group[g], n = m->group[g + 1] - at;
+        pass_meetings(r, at + n * me / threads, at + n * (me + 1) / threads, pass);
+        team_meet();
+    }
+    if (m->serial == m->groups) return;
+    if (!me) pass_meetings(r, m->group[m->serial], m->n, pass);
+    team_meet();
+}
+
+void small_points_start(struct small_run *r, int me, int threads)
+{
+    pass_groups(r, me, threads, PASS_START);
+}
+
+void small_points_sweep(struct small_run *r, int me, int threads, bool again)
+{
+    pass_groups(r, me, threads, again ? PASS_AGAIN : PASS_SWEEP);
+}
+
+void small_points_judge(struct small_run *r, int me, int threads)
+{
+    pass_groups(r, me, threads, PASS_JUDGE);
+}
+
+void small_points_end(struct small_run *r, int me, int threads)
+{
+    pass_groups(r, me, threads, PASS_END);
+}

@@ -1,0 +1,39 @@
+/*
+ * step/small_point.h: the points of meetings in a small step. In this order:
+ *
+ *     place     bodies turn, with their corners and world inertia
+ *     look      the narrow phase finds the points of each meeting; those of a body at seams of surfaces go
+ *     start     reactions go to the bodies: of points that start, and back of points that have gone
+ *     sweep     the law of each point, exact with its W of 3 x 3; the points of a meeting several times in turn
+ *     end       what of a new reaction does not persist, as of pairs [solve/small.h]
+ *
+ * The law is that of pairs. An impact has C = 0, for its body may meet in several points, each of which has a part
+ * of the impulse.
+ */
+#pragma once
+
+#include "step/small_wall.h"
+
+/* Bodies where the small steps begin: orientations ahead, world inertia, corners. surface: of walls that are meshes; NULL:
+   none. Returns 0 or EX_SOFTWARE. */
+int small_points_init(struct small_run *r, const struct surface *surface, int threads,
+                      struct failure *failure);
+void small_points_free(struct small_run *r);
+/* The orientation and the angular velocity (rad/s) of body i when the small steps end */
+quat small_points_q(const struct small_run *r, int64_t i, vec3 *w);
+
+/* m/s: the speed of the fastest point of body i */
+double small_point_speed(const struct small_run *r, int64_t i);
+/* Bodies first .. end-1 have moved by a small step, and turn. */
+void small_points_place(struct small_run *r, int64_t first, int64_t end);
+
+/* By thread `me` of `threads`, all together; they have met before. */
+void small_points_look(struct small_run *r, int me, int threads);
+void small_points_start(struct small_run *r, int me, int threads);
+void small_points_sweep(struct small_run *r, int me, int threads, bool again);
+/* What is missing of their reactions [step/small_error.h] */
+void small_points_judge(struct small_run *r, int me, int threads);
+void small_points_end(struct small_run *r, int me, int threads);
+
+/* By one thread: the points where the bodies are now */
+void small_points_last(struct small_run *r);
