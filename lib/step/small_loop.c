@@ -329,6 +329,7 @@ static void finish_step(struct small_run *r)
     settle_pairs(s);
     r->sweeps += r->swept, r->swept = 0;
     r->begins = false, r->made++;
+    r->p->step0--; // the step that packing_next_time() ends with is the next small one
     r->p->t = r->p->t0 + (double)r->made * r->h;
 }
 

@@ -261,14 +261,14 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
-    p->dt = r.h, p->t0 = p->t;
+    p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
              !small_sums_init(&r, failure))
         small_steps(&r, o, rep, failure);
-    p->dt = whole.dt, p->t0 = whole.t0;
+    p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
     *made = !failure->status && !r.failed;
     if (*made && r.meets) small_points_last(&r);
     if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
