@@ -249,6 +249,7 @@ static double read_number(const struct nsd_run *r, const char *name, bool *known
         { "boundaries", p->walls, false },
         { "contacts", (double)r->f.contacts.n, false },
         { "sweeps", rep->sweeps, true },
+        { "small_steps", (double)rep->small, true },
         { "converged", rep->converged, true },
         { "error", err_of(&rep->err, rep->criterion), true },
         { "natural", rep->err.natural, true },

@@ -222,9 +222,13 @@ static const struct cli_option warm = { CLI_FLAG, .name = "warm", .to = &options
 static const struct cli_option substeps = { CLI_INT, .name = "substeps", .to = &options.substeps,
                                             .min = 1, .max = 1e6 };
 
+static const struct cli_option small_steps = { CLI_REAL, .name = "small-steps",
+                                               .to = &options.small, .min = 0, .max = 0.1 };
+
 static const struct cli_option *option_named(const char *name)
 {
     if (!strcmp(name, substeps.name)) return &substeps;
+    if (!strcmp(name, small_steps.name)) return &small_steps;
     if (!strcmp(name, threads.name)) return &threads;
     if (!strcmp(name, warm.name)) return &warm;
     for (int t = 0; t < 2; t++)

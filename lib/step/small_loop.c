@@ -2,7 +2,11 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_error.h"
 #include "step/small_point.h"
+#include "step/small_pull.h"
+#include "step/small_sums.h"
+#include "step/small_wall.h"
 
 #include <math.h>
 #include <string.h>
@@ -24,6 +28,7 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
     const vec3 g = r->p->g;
     const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
     double most = 0;
+    if (r->pull) return small_pull_bodies(r, first, end);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
@@ -61,49 +66,6 @@ static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
 
 /* ---- walls ---- */
 
-static void set_walls(struct small_run *r)
-{
-    const struct packing *p = r->p;
-    const double t = p->t + r->ahead;
-    for (int32_t w = 0; w < p->walls; w++) {
-        const struct wall *wall = &p->wall[w];
-        const vec3 at = wall_at(p, wall, t);
-        const double way = r->wall[w].way + r->h * wall_top_speed(p, wall);
-        r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
-                                          .pose = wall_pose(p, wall, t),
-                                          .at = at,
-                                          .v = wall_held(p, wall, at),
-                                          .spin = wall_spin(p, wall),
-                                          .way = way };
-        r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
-    }
-}
-
-vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n)
-{
-    const vec3 v = v3_add(w->v, v3_cross(w->spin, v3_sub(x, w->at)));
-    return v3_add(v, v3_axpy(w->belt, -v3_dot(w->belt, n), n));
-}
-
-bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach)
-{
-    const struct small_wall *w = &r->wall[t->wall];
-    const struct small_place *b = &r->l->s.place[t->body];
-    const vec3 x = small_vec(b->x);
-    if (!w->there) return false;
-    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
-    if (!(t->arm - b->r <= reach)) return false;
-    t->v = small_wall_velocity(w, v3_axpy(x, -t->arm, t->n), t->n);
-    return true;
-}
-
-/* m/s: of the body b against the wall at the contact */
-static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
-{
-    vec3 v = v3_sub(small_vec(b->v), t->v);
-    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
-}
-
 /* The law in the first sweep of a step */
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
@@ -115,7 +77,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
-    small_array(before, touch_velocity(t, &s->before[t->body]));
+    small_array(before, small_touch_velocity(t, &s->before[t->body]));
     small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
@@ -130,10 +92,40 @@ static void roll_touch(const struct small_run *r, struct small_touch *t, const s
     small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
 }
 
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
+   0.98 persists (N s). */
+static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const double had = t->hold[HOLD_PULL];
+    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
+    const double dp = pull - SMALL_WARM * had;
+    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
+    l->calm += 2 * l->wn * pull;
+    return dp;
+}
+
+/* mu of the step, by the velocities before it */
+static void stick_touch(const struct small_run *r, struct small_touch *t)
+{
+    const struct packing *p = r->p;
+    const int32_t pair = packing_pair(p, -1 - t->wall, t->body);
+    const vec3 u = small_touch_velocity(t, &r->l->s.before[t->body]);
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, pair);
+    t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
+}
+
+/* What persists of the reaction and the pull of the last step: on the body */
+static vec3 persisting_force(const struct small_touch *t)
+{
+    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
+}
+
 /* A touch whose body has left gives its reaction back. */
 static void leave_touch(struct small_run *r, struct small_touch *t)
 {
-    vec3 f = v3_scale(-SMALL_WARM, small_vec(t->f)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    vec3 f = v3_scale(-1, persisting_force(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (!small_is_zero(t->f)) push_body(&r->l->s.body[t->body], t->n, t->arm, f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
@@ -143,23 +135,23 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small *s = &r->l->s;
     struct body *b = &s->body[t->body];
-    struct small_law l = { .mu = t->mu };
-    double df[3], dm[3] = { 0, 0, 0 };
-    if (!again && !small_look_at_touch(r, t, s->rate.reach)) {
+    struct small_law l;
+    double df[3], dm[3] = { 0, 0, 0 }, dp = 0;
+    if (!again && !small_look_at_touch(r, t, s->hold ? r->l->margin : s->rate.reach)) {
         leave_touch(r, t);
         return;
     }
     if (again && !t->near) return;
     t->near = true;
-    small_array(l.n, t->n), small_array(l.u, touch_velocity(t, b));
-    l.gap = t->arm - s->place[t->body].r;
-    l.wn = b->im, l.wt = b->im + t->arm * t->arm * b->ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt;
-    memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    small_touch_law(r, t, &l);
+    if (!again && s->hold) dp = hold_touch(r, t, &l);
+    if (!again && s->stick) stick_touch(r, t);
+    l.mu = t->mu;
     if (!again) begin_touch(r, t, &l);
     small_solve(&l, df);
     memcpy(t->f, l.f, sizeof t->f);
     if (s->turn) roll_touch(r, t, &l, small_vec(df), dm);
+    for (int k = 0; k < 3; k++) df[k] -= dp * l.n[k];
     push_body(b, t->n, t->arm, small_vec(df), small_vec(dm));
     const double change = l.wn * norm3(df);
     if (!again && !(change > s->rate.allowed[0])) return;
@@ -187,10 +179,12 @@ static void end_touches(struct small_run *r, int64_t first, int64_t end)
     for (int64_t i = small_list_touch(l, first, 0); i < last; i++) {
         struct small_touch *t = &l->touch[i];
         const vec3 f = small_vec(t->f), m = small_vec(t->m);
+        if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
         if (small_is_zero(t->f)) continue;
         t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
         const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
-        const double most = small_persists(&l->s.rate, t->kept, w, rn);
+        const double held = t->kept + 2 * t->hold[HOLD_PULL];
+        const double most = small_persists(&l->s.rate, held, w, rn);
         if (rn <= most) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
@@ -235,9 +229,9 @@ static void push_reactions(struct small_run *r, int me, int threads)
     r->kernel->push(s, s->group[s->serial], s->bundles);
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
-        if (small_is_zero(t->f)) continue;
+        if (small_is_zero(t->f) && !(t->hold[HOLD_PULL] > 0)) continue;
         if (small_look_at_touch(r, t, l->margin))
-            push_body(&s->body[t->body], t->n, t->arm, v3_scale(SMALL_WARM, small_vec(t->f)),
+            push_body(&s->body[t->body], t->n, t->arm, persisting_force(t),
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
             memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
@@ -256,7 +250,8 @@ static void settle_slot(struct small *s, int64_t slot)
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
     const vec3 n = v3_scale(1 / length, d);
     const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
-    const double most = small_persists(&s->rate, c->kept[k], w, rn);
+    const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
+    const double most = small_persists(&s->rate, held, w, rn);
     if (rn <= most) return;
     const double left = most / rn, back = 1 - left;
     vec3 m = v3(0, 0, 0);
@@ -295,24 +290,16 @@ static double farthest(const struct small_run *r)
     return sqrt(most);
 }
 
-double small_wall_speed(const struct packing *p)
-{
-    double most = 0;
-    for (int32_t w = 0; w < p->walls; w++)
-        most = fmax(most, wall_top_speed(p, &p->wall[w]) + v3_norm(p->wall[w].belt));
-    return most;
-}
-
 /* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
 static void prepare_step(struct small_run *r)
 {
     struct small_list *l = r->l;
     const double wall = small_wall_speed(r->p), way = r->h * fmax(sqrt(r->fastest), wall);
     if (!isfinite(way)) r->failed = r->stop = true;
-    l->s.rate.reach = fmin(2 * way + r->h * l->s.rate.calm, l->margin);
-    if (wall == 0 && l->way + 2 * way > 0.49 * l->margin) l->way = farthest(r);
+    l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
+    if (wall == 0 && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
     l->way += way;
-    r->stop = r->stop || l->way + way > 0.49 * l->margin;
+    r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;
 }
 
@@ -342,6 +329,7 @@ static void finish_step(struct small_run *r)
     settle_pairs(s);
     r->sweeps += r->swept, r->swept = 0;
     r->begins = false, r->made++;
+    r->p->step0--; // the step that packing_next_time() ends with is the next small one
     r->p->t = r->p->t0 + (double)r->made * r->h;
 }
 
@@ -355,12 +343,15 @@ void small_loop(void *arg, int me, int threads)
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
         pthread_mutex_unlock(&r->lock);
-        if (!me) set_walls(r);
+        if (!me) small_walls_set(r);
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
+        if (r->sums && !me) small_sums_step(r);
+        if (r->sums) team_meet();
+        if (r->judged) small_error_step(r, me, threads);
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);

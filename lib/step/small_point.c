@@ -412,7 +412,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     const struct small_rates *o = &rate;
     rate.relax = rate.per_h / (1 + RELAXES);
     struct small_law l = {
-        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu
+        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
     };
     double before[3];
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];
@@ -456,19 +456,27 @@ static void roll_point(const struct small_run *r, const struct small_meeting *y,
     push_point(r, of, y, t, v3(0, 0, 0), small_vec(dm));
 }
 
-/* Returns by how much (m/s) the point's u changes. */
-static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+/* The reaction that a point has, f, and the one by its law, in its basis e */
+static void point_law(const struct small_run *r, const struct small_meeting *m,
+                      const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
-    struct small *s = &r->l->s;
-    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
-    const vec3 u = v3_add(point_velocity(m, t, s->body), small_vec(t->q)), had = small_vec(t->f);
-    double W[9], b[3], f[3], is[3], change2 = 0;
+    const vec3 u = v3_add(point_velocity(m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
-    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], had);
+    double W[9], b[3];
+    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
     for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
     memcpy(W, t->W, sizeof W);
     W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
     solve_local(r->p->dim, W, b, t->mu, is);
+}
+
+/* Returns by how much (m/s) the point's u changes. */
+static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+{
+    struct small *s = &r->l->s;
+    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
+    double f[3], is[3], change2 = 0;
+    point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
     small_array(t->f, new);
     push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
@@ -551,6 +559,23 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
     m->points = n;
 }
 
+static void judge_meeting(struct small_run *r, const struct small_meeting *m)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < m->points; i++) {
+        const struct small_point *t = &m->point[i];
+        const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
+        double f[3], is[3];
+        if (!t->near) continue;
+        point_law(r, m, t, e, f, is);
+        for (int side = m->key.a < 0; side < 2; side++) {
+            const int32_t body = side ? m->key.b : m->key.a;
+            s->load[body] += norm3(f);
+            s->missing[body] += norm3((double[3]){ is[0] - f[0], is[1] - f[1], is[2] - f[2] });
+        }
+    }
+}
+
 /* What persists of the reactions, and what they have done to walls and bodies that do not move */
 static void end_meeting(struct small_run *r, struct small_meeting *m)
 {
@@ -579,7 +604,7 @@ static void end_meeting(struct small_run *r, struct small_meeting *m)
 
 /* ---- all meetings ---- */
 
-enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_END };
+enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_JUDGE, PASS_END };
 
 static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
                           enum small_point_pass pass)
@@ -590,6 +615,7 @@ static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
         if (pass == PASS_START) start_meeting(r, m);
         if (pass == PASS_SWEEP) sweep_meeting(r, m, false);
         if (pass == PASS_AGAIN && is_hot(&r->l->s, m)) sweep_meeting(r, m, true);
+        if (pass == PASS_JUDGE) judge_meeting(r, m);
         if (pass == PASS_END) end_meeting(r, m);
     }
 }
@@ -615,6 +641,11 @@ void small_points_start(struct small_run *r, int me, int threads)
 void small_points_sweep(struct small_run *r, int me, int threads, bool again)
 {
     pass_groups(r, me, threads, again ? PASS_AGAIN : PASS_SWEEP);
+}
+
+void small_points_judge(struct small_run *r, int me, int threads)
+{
+    pass_groups(r, me, threads, PASS_JUDGE);
 }
 
 void small_points_end(struct small_run *r, int me, int threads)

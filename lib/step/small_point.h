@@ -12,7 +12,7 @@
  */
 #pragma once
 
-#include "step/small_loop.h"
+#include "step/small_wall.h"
 
 /* Bodies where the small steps begin: orientations ahead, world inertia, corners. surface: of walls that are meshes; NULL:
    none. Returns 0 or EX_SOFTWARE. */
@@ -31,6 +31,8 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end);
 void small_points_look(struct small_run *r, int me, int threads);
 void small_points_start(struct small_run *r, int me, int threads);
 void small_points_sweep(struct small_run *r, int me, int threads, bool again);
+/* What is missing of their reactions [step/small_error.h] */
+void small_points_judge(struct small_run *r, int me, int threads);
 void small_points_end(struct small_run *r, int me, int threads);
 
 /* By one thread: the points where the bodies are now */

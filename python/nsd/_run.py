@@ -321,7 +321,7 @@ class Run:
 
     def set(self, **options: Any) -> "Run":
         """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4 (s), threads=2,
-        contacts=True ...; returns the run. Raises Error (status 64) if there is no such option or value; those before it are set."""
+        small_steps=0.01, contacts=True ...; returns the run. Raises Error (status 64) if there is no such option or value; those before it are set."""
         for name, value in options.items():
             if not isinstance(value, (bool, np.bool_, int, float, np.number, str)):
                 raise TypeError(f"{name}: an option is a number, a text, True or False, not {type(value).__name__}")

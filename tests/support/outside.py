@@ -57,7 +57,7 @@ gen = tool("nsd-gen", path("scene.json"))
 with open(path("begin.h5"), "wb") as f:
     f.write(gen)
 for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion": "natural"}, {"dt": "auto:0.01"},
-                {"method": "exact", "relax": 1.2, "overlap": "keep"}, {"threads": 2, "cold": True}):
+                {"method": "exact", "relax": 1.2, "overlap": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
     words = [w for key, x in options.items()
              for w in (["--" + key] if x is True else ["--" + key.replace("_", "-"), str(x)])]
     tool("nsd-step", "-n", "60", "--every", "20", *words, "-o", path("step.h5"), path("begin.h5"))

@@ -583,6 +583,29 @@ static void test_stiffness(void)
     nsd_close(&r);
 }
 
+/* A ball falls from 0.1 m onto a floor with e_n 0.5: in small steps it keeps a quarter of its energy. A contact with a stiffness
+   is made at once, and the number of small steps says so. */
+static void test_small_steps(void)
+{
+    struct nsd_run *r = scene(
+        "{\"dt\": 1e-3, \"e_n\": 0.5, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}], "
+        "\"bodies\": [{\"x\": [0, 0, 0.11], \"radius\": 0.01, \"mass\": 0.02}]}");
+    double n = 0;
+    must(nsd_set(r, "small-steps", "0.01") || nsd_step(r, 200) || nsd_number(r, "small_steps", &n),
+         r);
+    const double v = array(r, "velocity", NULL)[2], z = array(r, "position", NULL)[2];
+    ok(n > 1, "a step is made in %g small ones", n);
+    ok(fabs((v * v / 2 + 9.81 * (z - 0.01)) / 0.981 - 0.25) < 2e-3, "which keep Newton's law");
+    must(nsd_set(r, "stiffness", "1e5") || nsd_step(r, 1) || nsd_number(r, "small_steps", &n), r);
+    ok(n == 0, "a step with a stiffness is made at once, and the run says so");
+    must(nsd_set(r, "stiffness", "rigid") || nsd_set(r, "small-steps", "0") || nsd_step(r, 1) ||
+             nsd_number(r, "small_steps", &n),
+         r);
+    ok(n == 0, "small steps are switched off");
+    ok(nsd_set(r, "small-steps", "2") == NSD_USAGE, "at most 0.1: %s", nsd_error(r));
+    nsd_close(&r);
+}
+
 static void test_errors(void)
 {
     struct nsd_run *r = scene(heap), *none = NULL, *twin = scene(heap);
@@ -1075,8 +1098,8 @@ int main(void)
     if (!mkdtemp(folder)) return 1;
     test_forces(), test_velocities(), test_top(), test_walls(), test_places();
     test_resume(), test_lasting(), test_appends(), test_flow(), test_arrays(), test_threads(),
-        test_failure(), test_endless(), test_stiffness(), test_errors(), test_random(),
-        test_missing(), test_documents(), test_undone(), test_fork();
+        test_failure(), test_endless(), test_stiffness(), test_small_steps(), test_errors(),
+        test_random(), test_missing(), test_documents(), test_undone(), test_fork();
     char command[100];
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command)) return 1;

@@ -1,0 +1,96 @@
+/* step/small_pull.c: forces on bodies in small steps [step/small_pull.h]. */
+#include "step/small_pull.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static bool small_pull_acts(const struct packing *p)
+{
+    return p->outside.force || p->outside.torque || p->pulls.n;
+}
+
+int small_pull_init(struct small_run *r, struct failure *failure)
+{
+    if (!small_pull_acts(r->p)) return 0;
+    r->pull = calloc((size_t)r->p->n + 1, sizeof *r->pull);
+    return r->pull ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for forces on bodies");
+}
+
+/* N; N m where `turns`: on body i at time t (s) */
+static vec3 small_pull_on(const struct packing *p, int64_t i, double t, bool turns)
+{
+    const vec3 *outside = turns ? p->outside.torque : p->outside.force;
+    vec3 f = outside ? outside[i] : v3(0, 0, 0);
+    return p->pulls.n ? v3_add(f, packing_pull(p, i, t, turns)) : f;
+}
+
+/* J: half of what the forces of its step do to body i, which moves as it does now */
+static double half_work(const struct small_run *r, int64_t i)
+{
+    const struct packing *p = r->p;
+    const struct small_pull *y = &r->pull[i];
+    const struct body *b = &r->l->s.body[i];
+    if (!(b->im > 0)) return 0;
+    const vec3 pushed = v3_axpy(small_vec(y->dv), -r->h, p->g);
+    return 0.5 * (p->mass[i] * v3_dot(pushed, small_vec(b->v)) +
+                  p->inertia[i] * v3_dot(small_vec(y->dw), small_vec(b->w)));
+}
+
+/* The forces of the step that begins, in place of those of the last one */
+static void next_forces(struct small_run *r, int64_t i)
+{
+    const struct packing *p = r->p;
+    const struct body *b = &r->l->s.body[i];
+    struct small_pull *y = &r->pull[i];
+    const double t = p->t + r->h / 2;
+    if (!(b->im > 0)) return;
+    if (!r->begins) y->work += half_work(r, i);
+    small_array(y->dv, v3_axpy(v3_scale(r->h, p->g), r->h * b->im, small_pull_on(p, i, t, false)));
+    small_array(y->dw, v3_scale(r->h * b->ii, small_pull_on(p, i, t, true)));
+    y->work += half_work(r, i);
+}
+
+double small_pull_bodies(struct small_run *r, int64_t first, int64_t end)
+{
+    const double warm = r->begins ? 0 : SMALL_WARM;
+    double most = 0;
+    for (int64_t i = first; i < end; i++) {
+        struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
+        const struct small_pull had = r->pull[i], *y = &r->pull[i];
+        const vec3 v = small_vec(b->v), w = small_vec(b->w);
+        next_forces(r, i);
+        for (int k = 0; k < 3; k++) {
+            b->v[k] += y->dv[k] + warm * (b->v[k] - was->v[k] - had.dv[k]);
+            b->w[k] += y->dw[k] + warm * (b->w[k] - was->w[k] - had.dw[k]);
+        }
+        small_array(was->v, v), small_array(was->w, w);
+        const double v2 = v3_dot(v, v);
+        most = v2 <= most ? most : v2; // not a number: it is the largest
+    }
+    return most;
+}
+
+double small_pull_work(const struct small_run *r)
+{
+    double sum = 0;
+    for (int64_t i = 0; r->pull && i < r->p->n; i++) sum += r->pull[i].work + half_work(r, i);
+    return sum;
+}
+
+double small_pull_presses(const struct packing *p)
+{
+    double mass = 0, force = 0, wide = 0, lo[3], hi[3];
+    if (!small_pull_acts(p)) return 0;
+    for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double x[3] = { p->x[i].x, p->x[i].y, p->x[i].z };
+        if (!(p->mass[i] > 0)) continue;
+        mass += p->mass[i];
+        force += v3_norm(small_pull_on(p, i, p->t + p->dt / 2, false));
+        for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], x[k]), hi[k] = fmax(hi[k], x[k]);
+    }
+    for (int k = 0; k < 3; k++) wide = fmax(wide, hi[k] - lo[k]);
+    if (!(mass > 0)) return 0;
+    return p->outside.most + p->pulls_most +
+           force / mass * (1 + wide / (2 * packing_whole(p).large));
+}

@@ -1,0 +1,65 @@
+/*
+ * step/small_run.h: the small steps of an interval, while they are made [step/small_loop.h].
+ */
+#pragma once
+
+#include "state/placement.h"
+#include "step/small_list.h"
+
+#include <pthread.h>
+
+/* A wall in a small step */
+struct small_wall {
+    bool there;
+    struct pose pose;
+    vec3 at, v, spin; /* m; m/s, rad/s: of its material at that point */
+    vec3 belt;        /* m/s */
+    double way;       /* m: that its fastest point has gone in the interval */
+};
+
+/* What a thread looks for points with */
+struct small_scratch {
+    struct contacts found;
+    struct small_point *point;
+    int64_t room;
+};
+
+/* Bodies as meetings have them, where there are any [step/small_point.h] */
+struct small_shapes {
+    quat *q;              /* [n] */
+    double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
+    double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
+    double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
+    vec3 edge[3];         /* m */
+    struct placed placed;
+    struct situation at;
+    int threads;
+    struct small_scratch *scratch; /* [threads] */
+    _Atomic bool failed;           /* memory was short */
+};
+
+/* The small steps of an interval */
+struct small_run {
+    struct packing *p; /* its dt and t are those of the small step in hand */
+    struct small_list *l;
+    const struct small_kernels *kernel;
+    struct small_wall *wall; /* [walls] */
+    vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
+    struct small_pull *pull; /* [n] NULL: no forces on bodies */
+    double stored;           /* J: by attraction, where the interval begins */
+    struct face_sums *sums;  /* [walls] NULL: none are kept */
+    bool meets;              /* there may be meetings: a body with a shape, or a mesh */
+    struct small_shapes shapes;
+    double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
+    double h, ahead;         /* s */
+    int64_t n, made, sweeps; /* small steps, and those made; sweeps of all */
+    int64_t unsolved;        /* small steps that have ended with the limit of sweeps */
+    int32_t swept;           /* of the step in hand */
+    bool begins, stop;       /* the first step; the list serves no longer, or the step fails */
+    bool uneven;             /* bodies have masses so different that sweeps are slow */
+    bool judged;             /* its errors are summed up [step/small_error.h] */
+    bool failed;             /* the interval is to be made at once */
+    _Atomic bool far;        /* a sweep has changed a body by more than is allowed */
+    pthread_mutex_t lock;    /* of what follows */
+    double fastest;          /* m^2/s^2: of bodies */
+};
