@@ -33,6 +33,7 @@
 #pragma once
 
 #include "solve/bundle.h"
+#include "solve/small_hold.h"
 
 /* Where a body is, in the place of its struct body */
 struct small_place {
@@ -56,6 +57,17 @@ struct small_turn {
     double most[2][BUNDLE]; /* m: mu_p, mu_r */
 };
 
+/* What attracts the pairs of a bundle [solve/small_hold.h] */
+struct small_holds {
+    double x[HOLD_COUNT][BUNDLE];
+};
+
+/* Static and kinetic friction of a bundle, of which mu is one in each step [contact/contact_law.h] */
+struct small_stick {
+    double mu[2][BUNDLE]; /* mu_s and mu */
+    double v_s[BUNDLE];   /* m/s */
+};
+
 struct small_shift {
     double d[3][BUNDLE]; /* m: the image of b that a meets is so far from b */
 };
@@ -68,6 +80,8 @@ struct small_rates {
     double soft;     /* C over W of the pair */
     double calm;     /* m/s: no pair at rest approaches faster [state/freedom.h] */
     double reach;    /* m: pairs that are farther apart do not touch in this step */
+    double pulls;    /* m/s: no pair is pulled faster in a step */
+    double holds;    /* m: nor are held together without a bridge; 0 */
     double allowed
         [2]; /* m/s: a change of a velocity that is not followed up, in the first sweep and in others */
 };
@@ -84,6 +98,8 @@ struct small {
     struct small_bundle *bundle;
     struct small_turn *turn;   /* NULL: nothing rolls */
     struct small_shift *shift; /* NULL: no images */
+    struct small_holds *hold;  /* NULL: nothing attracts */
+    struct small_stick *stick; /* NULL: no static friction */
     uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */
     int32_t sweep;        /* counted over all steps, from 1 on */
     struct small_rates rate;
@@ -99,6 +115,7 @@ struct small_law {
     vd f[3];               /* N s */
     vd q[3];               /* m/s */
     vd rn;                 /* N s: f along n */
+    vd calm;               /* m/s: the pair at rest does not approach faster */
 };
 
 ALWAYS_INLINE void small_split(const vd n[3], const vd x[3], vd *along, vd across[3])
@@ -137,8 +154,8 @@ ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, co
 {
     vd un, ut[3], hit[3], zero = splat(0);
     small_split(l->n, before, &un, ut);
-    vm meets = lt(un, splat(-o->calm)) & lt(un + l->gap * o->per_h, zero) &
-               le(l->wn * kept, -SMALL_SLIGHT * un);
+    vm meets =
+        lt(un, -l->calm) & lt(un + l->gap * o->per_h, zero) & le(l->wn * kept, -SMALL_SLIGHT * un);
     vm waits = le(kept, zero) & lt(zero, l->gap) & lt(zero, en) & ~meets;
     vd open = pick(le(en, zero), larger(l->gap, zero) * o->per_h, zero);
     vd rn = larger(-(un + en * un + open) / l->wn, zero);

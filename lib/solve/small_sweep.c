@@ -193,23 +193,65 @@ ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
 }
 
-/* hot: of small_hot() in a later sweep, else NULL */
-ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot, bool rolls)
+/* Attraction of pairs that have pushed f: dp, the change of the pull along n, of which 0.98 persists; lanes that it holds */
+ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct small *s,
+                                  struct small_law *l, bool again, vd *dp)
+{
+    double(*to)[BUNDLE] = s->hold[y->i].x;
+    const int k = y->k;
+    vd x[HOLD_COUNT], sum[3], had = vload(to[HOLD_PULL] + k), zero = splat(0);
+    for (int j = 0; j < HOLD_COUNT; j++) x[j] = vload(to[j] + k);
+    *dp = zero;
+    if (!again) {
+        *dp = small_hold_pull(x, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h) - SMALL_WARM * had;
+        for (int j = HOLD_WET; j < HOLD_COUNT; j++) vstore(to[j] + k, x[j]);
+        small_load(sum, y->c->sum, k);
+        for (int j = 0; j < 3; j++) sum[j] -= x[HOLD_PULL] * l->n[j];
+        small_store(y->c->sum, k, sum);
+    }
+    l->calm += 2 * l->wn * x[HOLD_PULL];
+    for (int j = 0; j < 3; j++) l->u[j] -= l->wn * *dp * l->n[j];
+    return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
+}
+
+/* mu of the step, by the velocities before it */
+ALWAYS_INLINE void small_stick_pairs(const struct small_pairs *y, const struct small *s,
+                                     struct small_law *l)
+{
+    struct small_stick *t = &s->stick[y->i];
+    struct bodies a, b;
+    struct twist ma, mb;
+    vd u[3], un, ut[3];
+    bodies_load(&a, s->before, y->c->a + y->k, &ma);
+    bodies_load(&b, s->before, y->c->b + y->k, &mb);
+    small_velocity(y, &ma, &mb, u), small_split(l->n, u, &un, ut);
+    vm sticks = le(norm3(ut), vload(t->v_s + y->k));
+    l->mu = pick(sticks, vload(t->mu[0] + y->k), vload(t->mu[1] + y->k));
+    vstore(y->c->mu + y->k, l->mu);
+}
+
+/* hot: of small_hot() in a later sweep, else NULL; rich: pairs may attract or stick */
+ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot, bool rolls,
+                               bool rich)
 {
     struct small_pairs y;
     struct small_law l;
-    vd had[3], df[3], dm[3];
+    vd had[3], df[3], dm[3], dp = splat(0);
     small_pairs_look(&y, s, i, k);
-    vd most = y.ra + y.rb + s->rate.reach;
+    const double reach = rich && s->rate.holds > s->rate.reach ? s->rate.holds : s->rate.reach;
+    vd most = y.ra + y.rb + reach;
     vm near = le(y.d2, most * most);
     if (!s->live[BUNDLE * i + k] && !any(near)) return false;
     small_pairs_load(&y, s);
     small_velocity(&y, &y.ma, &y.mb, l.u);
     small_set_law(&l, &y, s);
+    l.calm = splat(s->rate.calm);
     small_load(l.f, y.c->f, k);
     const double warm = hot ? 1 : SMALL_WARM;
     for (int j = 0; j < 3; j++) had[j] = warm * l.f[j];
-    vm acts = near | lt(splat(0), dot3(had, had));
+    vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
+    if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, &dp), acts = acts | holds;
+    if (rich && s->stick && !hot) small_stick_pairs(&y, s, &l);
     if (hot)
         small_load(l.q, y.c->q, k), acts = acts & *hot;
     else
@@ -218,32 +260,36 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     small_keep(&l, had, acts, df);
     small_store(y.c->f, k, l.f);
     if (rolls) small_turn_pairs(&y, s, &l, acts, warm, df, dm);
-    s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn));
-    s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + s->rate.calm / l.wn), l.rn));
+    s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn) | holds);
+    s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
+    for (int j = 0; j < 3 && rich; j++) df[j] -= dp * l.n[j];
     small_give(&y, s, df, rolls ? dm : NULL);
     return small_mark(&y, s, l.wn * norm3(df), hot);
 }
 
 ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bool again,
-                                 bool rolls)
+                                 bool rolls, bool rich)
 {
     bool far = false;
     for (int64_t i = first; i < end; i++)
         for (int k = 0; k < BUNDLE; k += LANES) {
             vm hot = NONE;
             if (again) hot = small_hot(s, &s->bundle[i], k);
-            if (!again || any(hot)) far |= small_lanes(s, i, k, again ? &hot : NULL, rolls);
+            if (!again || any(hot)) far |= small_lanes(s, i, k, again ? &hot : NULL, rolls, rich);
         }
     return far;
 }
 
 static bool small_sweep_bundles(struct small *s, int64_t first, int64_t end, bool again)
 {
+    if (s->hold || s->stick)
+        return again ? small_bundles(s, first, end, true, s->turn, true)
+                     : small_bundles(s, first, end, false, s->turn, true);
     if (s->turn)
-        return again ? small_bundles(s, first, end, true, true)
-                     : small_bundles(s, first, end, false, true);
-    return again ? small_bundles(s, first, end, true, false)
-                 : small_bundles(s, first, end, false, false);
+        return again ? small_bundles(s, first, end, true, true, false)
+                     : small_bundles(s, first, end, false, true, false);
+    return again ? small_bundles(s, first, end, true, false, false)
+                 : small_bundles(s, first, end, false, false, false);
 }
 
 static void small_push_bundles(struct small *s, int64_t first, int64_t end)
@@ -256,6 +302,8 @@ static void small_push_bundles(struct small *s, int64_t first, int64_t end)
             small_pairs_look(&y, s, i, k), small_pairs_load(&y, s);
             small_load(f, y.c->f, k);
             if (s->turn) small_load(m, s->turn[i].m, k);
+            for (int j = 0; j < 3 && s->hold; j++)
+                f[j] -= vload(s->hold[i].x[HOLD_PULL] + k) * y.n[j];
             for (int j = 0; j < 3; j++) f[j] *= SMALL_WARM, m[j] *= SMALL_WARM;
             small_give(&y, s, f, s->turn ? m : NULL);
         }

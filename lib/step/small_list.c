@@ -17,7 +17,8 @@ enum { COLOURS = 64 };
 static void small_arrays_free(struct small_list *l)
 {
     struct small *s = &l->s;
-    free(s->bundle), free(s->turn), free(s->shift), free(s->live), free(s->late), free(s->group);
+    free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->live),
+        free(s->late), free(s->group);
     free(l->slot), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
@@ -26,7 +27,8 @@ static void small_arrays_free(struct small_list *l)
 static void small_forget(struct small_list *l)
 {
     struct small *s = &l->s;
-    s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->live = s->late = NULL, s->group = NULL;
+    s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
+    s->live = s->late = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     l->slot = NULL, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
@@ -137,7 +139,7 @@ static bool small_colour(struct small_list *l, const struct packing *p, const ve
     bool *beside = malloc((size_t)l->pairs.n + 1);
     l->slot = malloc((size_t)(l->pairs.n + 1) * sizeof *l->slot);
     bool room = c.used && c.of && beside && l->slot;
-    const double near = BESIDE / MARGIN * l->margin;
+    const double near = BESIDE / MARGIN * l->spare;
     for (int64_t i = 0; room && i < l->pairs.n; i++)
         beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
     for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
@@ -161,14 +163,20 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
         struct small_shift *to = &l->s.shift[l->slot[i] / BUNDLE];
         to->d[0][k] = d.x, to->d[1][k] = d.y, to->d[2][k] = d.z;
     }
+    if (l->s.hold) {
+        double x[HOLD_COUNT];
+        small_tie_set(x, p, pair->a, pair->b, p->dt);
+        for (int j = 0; j < HOLD_COUNT; j++) l->s.hold[l->slot[i] / BUNDLE].x[j][k] = x[j];
+    }
+    if (l->s.stick) {
+        struct small_stick *t = &l->s.stick[l->slot[i] / BUNDLE];
+        double mu[2];
+        small_tie_stick(mu, &t->v_s[k], p, m);
+        t->mu[0][k] = mu[0], t->mu[1][k] = mu[1];
+    }
     if (!l->s.turn) return;
     struct small_turn *t = &l->s.turn[l->slot[i] / BUNDLE];
     contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
-}
-
-static struct contact_key pair_key(const struct pair *q)
-{
-    return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
 }
 
 /* Leaves pairs of balls to l->pairs; others are meetings. */
@@ -179,7 +187,7 @@ static bool take_meetings(struct small_list *l, const struct packing *p)
     for (int64_t i = 0; room && i < l->pairs.n; i++) {
         const struct pair pair = l->pairs.pair[i];
         if (small_meets(p, pair.a, pair.b))
-            room = small_meetings_add(&l->meetings, p, pair_key(&pair));
+            room = small_meetings_add(&l->meetings, p, small_pair_key(&pair));
         else
             l->pairs.pair[n++] = pair;
     }
@@ -196,10 +204,13 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
     s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
     if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
     if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
+    if (small_tie_holds(p)) s->hold = lay_lines(s->bundles, sizeof *s->hold);
+    if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
     s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
     if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
-        !s->live || !s->late)
+        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) || !s->live ||
+        !s->late)
         return false;
     for (int64_t i = 0; i < s->bundles; i++)
         for (int k = 0; k < BUNDLE; k++)
@@ -210,7 +221,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 
 /* What a slot has of the past */
 struct small_past {
-    double f[3], m[3], sum[3];
+    double f[3], m[3], sum[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -222,7 +233,13 @@ static struct small_past past_of(const struct small *s, int64_t slot)
         x.f[j] = c->f[j][k], x.sum[j] = c->sum[j][k];
         x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
     }
+    for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
     return x;
+}
+
+void small_list_wake(struct small *s, int64_t slot)
+{
+    memset(&s->live[slot / BUNDLE * BUNDLE], 1, BUNDLE);
 }
 
 static void set_past(struct small *s, int64_t slot, const struct small_past *x)
@@ -233,7 +250,10 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
         c->f[j][k] = x->f[j], c->sum[j][k] = x->sum[j];
         if (s->turn) s->turn[slot / BUNDLE].m[j][k] = x->m[j];
     }
-    if (!small_is_zero(x->f)) memset(&s->live[slot / BUNDLE * BUNDLE], 1, BUNDLE);
+    for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
+        s->hold[slot / BUNDLE].x[j][k] = x->held[j];
+    if (!small_is_zero(x->f) || x->held[HOLD_WET] > 0 || x->held[HOLD_PULL] > 0)
+        small_list_wake(s, slot);
 }
 
 vec3 small_branch(const struct small *s, int64_t slot)
@@ -248,13 +268,17 @@ vec3 small_branch(const struct small *s, int64_t slot)
     return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
 }
 
-/* From `from` on, the first pair that is not before this one; *found: it is this one */
-static int64_t find_pair(const struct small_list *l, int64_t from, struct contact_key key,
-                         bool *found)
+struct contact_key small_pair_key(const struct pair *q)
+{
+    return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
+}
+
+int64_t small_list_pair(const struct small_list *l, int64_t from, struct contact_key key,
+                        bool *found)
 {
     int order = -1;
     while (from < l->pairs.n &&
-           (order = contact_key_order(pair_key(&l->pairs.pair[from]), key)) < 0)
+           (order = contact_key_order(small_pair_key(&l->pairs.pair[from]), key)) < 0)
         from++;
     *found = order == 0;
     return from;
@@ -267,9 +291,13 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
-        if (small_is_zero(x.f) && small_is_zero(x.sum)) continue;
-        k = find_pair(to, k, pair_key(&from->pairs.pair[i]), &found);
-        if (found) set_past(&to->s, to->slot[k], &x);
+        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 || x.held[HOLD_JOINED] < 0;
+        if (small_is_zero(x.f) && small_is_zero(x.sum) && !holds) continue;
+        k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
+        if (found)
+            set_past(&to->s, to->slot[k], &x);
+        else
+            to->gone_joined += x.held[HOLD_JOINED];
     }
 }
 
@@ -297,6 +325,7 @@ static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, 
     struct small_touch *t = &l->touch[l->touches++];
     *t = (struct small_touch){ .wall = w, .body = i, .mu = p->mu[m], .e = { p->en[m], p->et[m] } };
     contact_laws_rolling(p, -1 - w, i, &t->most[1], &t->most[0]);
+    if (l->s.hold) small_tie_set(t->hold, p, -1 - w, i, p->dt);
     return true;
 }
 
@@ -349,7 +378,7 @@ int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall)
     return lo;
 }
 
-static struct small_touch *find_touch(const struct small_list *l, int32_t body, int32_t wall)
+struct small_touch *small_list_find_touch(const struct small_list *l, int32_t body, int32_t wall)
 {
     const int64_t k = small_list_touch(l, body, wall);
     return k < l->touches && l->touch[k].body == body && l->touch[k].wall == wall ? &l->touch[k]
@@ -360,12 +389,13 @@ static void carry_touches(struct small_list *to, const struct small_list *from)
 {
     for (int64_t i = 0; i < from->touches; i++) {
         const struct small_touch *t = &from->touch[i];
-        struct small_touch *same = find_touch(to, t->body, t->wall);
+        struct small_touch *same = small_list_find_touch(to, t->body, t->wall);
         if (same) {
             *same = *t;
         } else {
             const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-            to->gone_work += t->work, to->gone_impulse = v3_add(to->gone_impulse, sum);
+            to->gone_work += t->work, to->gone_joined += t->hold[HOLD_JOINED];
+            to->gone_impulse = v3_add(to->gone_impulse, sum);
         }
     }
 }
@@ -391,7 +421,8 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     if (small_bodies(l, p, failure)) return failure->status;
     was = *l;
     small_forget(l);
-    l->margin = MARGIN * packing_whole(p).small, l->way = 0;
+    l->spare = MARGIN * packing_whole(p).small, l->way = 0;
+    l->margin = l->spare + small_tie_reach(p);
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
     cell_predict(&p->cell, 0, edge);
     if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
@@ -422,11 +453,11 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
             continue;
         }
         if (r->a < 0) {
-            struct small_touch *t = find_touch(l, r->b, -1 - r->a);
+            struct small_touch *t = small_list_find_touch(l, r->b, -1 - r->a);
             if (t) memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
             continue;
         }
-        at = find_pair(l, at, recall_key(r), &found);
+        at = small_list_pair(l, at, recall_key(r), &found);
         if (found) set_past(&l->s, l->slot[at], &x);
     }
     return room;
@@ -480,7 +511,7 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
     }
     for (int64_t i = 0; i < l->pairs.n; i++) {
         const struct small_past x = past_of(&l->s, l->slot[i]);
-        remember_one(&m, pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
+        remember_one(&m, small_pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
     }
     for (int64_t i = 0; i < l->meetings.n; i++) {
         const struct small_meeting *y = &l->meetings.of[i];

@@ -8,6 +8,7 @@
 #include "solve/small.h"
 #include "state/packing.h"
 #include "step/small_meet.h"
+#include "step/small_tie.h"
 
 /* A body near a wall: numbers as in struct small_bundle */
 struct small_touch {
@@ -15,6 +16,7 @@ struct small_touch {
     double f[3], kept, q[3], sum[3];
     double m[3], most[2];
     double mu, e[2];
+    double hold[HOLD_COUNT]; /* where something attracts */
     /* Of the step in hand */
     bool near;
     vec3 n, v;   /* normal; m/s: of the wall's material there */
@@ -24,17 +26,19 @@ struct small_touch {
 
 struct small_list {
     struct small s;
-    double margin, way; /* m: pairs are listed to this gap; and nothing has moved farther since */
-    vec3 *listed;       /* [bodies] m: where bodies were */
-    struct pairs pairs; /* of balls */
+    double margin, spare, way; /* m: pairs are listed to this gap; the list serves until a body has
+                                  moved by half of `spare`; and nothing has moved farther since */
+    vec3 *listed;              /* [bodies] m: where bodies were */
+    struct pairs pairs;        /* of balls */
     struct small_meetings meetings; /* of others */
     const struct surface *surface;  /* [walls] of meshes; borrowed */
     int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
     /* Of this interval, by touches that are in the list no more */
-    double gone_work;  /* J */
-    vec3 gone_impulse; /* N s */
+    double gone_work;   /* J */
+    double gone_joined; /* J: by bridges of pairs, too [solve/small_hold.h] */
+    vec3 gone_impulse;  /* N s */
 };
 
 void small_list_free(struct small_list *l);
@@ -53,6 +57,15 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
 int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall);
 /* [touches] in the order of contacts; NULL when memory is short. To be freed */
 struct small_touch **small_list_touches(const struct small_list *l);
+
+/* From `from` on, the first pair that is not before that of this key; *found: it is that one */
+int64_t small_list_pair(const struct small_list *l, int64_t from, struct contact_key key,
+                        bool *found);
+/* The touch of this body and wall, or NULL */
+struct small_touch *small_list_find_touch(const struct small_list *l, int32_t body, int32_t wall);
+/* The bundle of a slot has a lane that pushes, or is held. */
+void small_list_wake(struct small *s, int64_t slot);
+struct contact_key small_pair_key(const struct pair *pair);
 
 /* m, from a to the image of b that it meets: of slot i */
 vec3 small_branch(const struct small *s, int64_t slot);

@@ -92,10 +92,40 @@ static void roll_touch(const struct small_run *r, struct small_touch *t, const s
     small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
 }
 
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
+   0.98 persists (N s). */
+static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const double had = t->hold[HOLD_PULL];
+    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
+    const double dp = pull - SMALL_WARM * had;
+    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
+    l->calm += 2 * l->wn * pull;
+    return dp;
+}
+
+/* mu of the step, by the velocities before it */
+static void stick_touch(const struct small_run *r, struct small_touch *t)
+{
+    const struct packing *p = r->p;
+    const int32_t pair = packing_pair(p, -1 - t->wall, t->body);
+    const vec3 u = small_touch_velocity(t, &r->l->s.before[t->body]);
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, pair);
+    t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
+}
+
+/* What persists of the reaction and the pull of the last step: on the body */
+static vec3 persisting_force(const struct small_touch *t)
+{
+    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
+}
+
 /* A touch whose body has left gives its reaction back. */
 static void leave_touch(struct small_run *r, struct small_touch *t)
 {
-    vec3 f = v3_scale(-SMALL_WARM, small_vec(t->f)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    vec3 f = v3_scale(-1, persisting_force(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (!small_is_zero(t->f)) push_body(&r->l->s.body[t->body], t->n, t->arm, f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
@@ -106,18 +136,22 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     struct small *s = &r->l->s;
     struct body *b = &s->body[t->body];
     struct small_law l;
-    double df[3], dm[3] = { 0, 0, 0 };
-    if (!again && !small_look_at_touch(r, t, s->rate.reach)) {
+    double df[3], dm[3] = { 0, 0, 0 }, dp = 0;
+    if (!again && !small_look_at_touch(r, t, s->hold ? r->l->margin : s->rate.reach)) {
         leave_touch(r, t);
         return;
     }
     if (again && !t->near) return;
     t->near = true;
     small_touch_law(r, t, &l);
+    if (!again && s->hold) dp = hold_touch(r, t, &l);
+    if (!again && s->stick) stick_touch(r, t);
+    l.mu = t->mu;
     if (!again) begin_touch(r, t, &l);
     small_solve(&l, df);
     memcpy(t->f, l.f, sizeof t->f);
     if (s->turn) roll_touch(r, t, &l, small_vec(df), dm);
+    for (int k = 0; k < 3; k++) df[k] -= dp * l.n[k];
     push_body(b, t->n, t->arm, small_vec(df), small_vec(dm));
     const double change = l.wn * norm3(df);
     if (!again && !(change > s->rate.allowed[0])) return;
@@ -145,10 +179,12 @@ static void end_touches(struct small_run *r, int64_t first, int64_t end)
     for (int64_t i = small_list_touch(l, first, 0); i < last; i++) {
         struct small_touch *t = &l->touch[i];
         const vec3 f = small_vec(t->f), m = small_vec(t->m);
+        if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
         if (small_is_zero(t->f)) continue;
         t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
         const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
-        const double most = small_persists(&l->s.rate, t->kept, w, rn);
+        const double held = t->kept + 2 * t->hold[HOLD_PULL];
+        const double most = small_persists(&l->s.rate, held, w, rn);
         if (rn <= most) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
@@ -193,9 +229,9 @@ static void push_reactions(struct small_run *r, int me, int threads)
     r->kernel->push(s, s->group[s->serial], s->bundles);
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
-        if (small_is_zero(t->f)) continue;
+        if (small_is_zero(t->f) && !(t->hold[HOLD_PULL] > 0)) continue;
         if (small_look_at_touch(r, t, l->margin))
-            push_body(&s->body[t->body], t->n, t->arm, v3_scale(SMALL_WARM, small_vec(t->f)),
+            push_body(&s->body[t->body], t->n, t->arm, persisting_force(t),
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
             memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
@@ -214,7 +250,8 @@ static void settle_slot(struct small *s, int64_t slot)
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
     const vec3 n = v3_scale(1 / length, d);
     const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
-    const double most = small_persists(&s->rate, c->kept[k], w, rn);
+    const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
+    const double most = small_persists(&s->rate, held, w, rn);
     if (rn <= most) return;
     const double left = most / rn, back = 1 - left;
     vec3 m = v3(0, 0, 0);
@@ -259,10 +296,10 @@ static void prepare_step(struct small_run *r)
     struct small_list *l = r->l;
     const double wall = small_wall_speed(r->p), way = r->h * fmax(sqrt(r->fastest), wall);
     if (!isfinite(way)) r->failed = r->stop = true;
-    l->s.rate.reach = fmin(2 * way + r->h * l->s.rate.calm, l->margin);
-    if (wall == 0 && l->way + 2 * way > 0.49 * l->margin) l->way = farthest(r);
+    l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
+    if (wall == 0 && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
     l->way += way;
-    r->stop = r->stop || l->way + way > 0.49 * l->margin;
+    r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;
 }
 

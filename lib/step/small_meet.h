@@ -15,25 +15,30 @@
 /* f, kept, q, sum and m: as in struct small_bundle [solve/small.h] */
 struct small_point {
     int32_t feature;
-    bool near;   /* it is there in the step in hand */
+    bool there;  /* the narrow phase has found it when it last looked */
+    bool near;   /* its gap is in reach in the step in hand */
     bool starts; /* its bodies do not have its f yet */
     double f[3], kept, q[3], sum[3], m[3];
     double mu, e[2];
     double soft; /* C over W in the step in hand; 0: an impact */
-    /* Of the last step in which it was near */
+    /* Where it is, or was last */
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
     vec3 v;        /* m/s: of the wall's material there */
+    vec3 on[2];    /* m: the places on a and b that meet there, in the axes of the bodies */
     double W[9];   /* 1/kg, in the basis */
 };
 
 struct small_meeting {
     struct contact_key key; /* without a feature */
     double most[2];         /* m: mu_p, mu_r */
+    bool follows; /* points may be followed for a while: those of sharp hulls, and with planes */
+    bool looked;
+    double wide, way; /* m: points were looked for to this gap; and what both had gone then */
     int64_t points, room;
     struct small_point
-        *point;  /* [points] by feature: those that are near, or have pushed in this interval */
+        *point;  /* [points] by feature: those that are there, or have pushed in this interval */
     double work; /* J: on a wall or a body that does not move, in this interval */
 };
 

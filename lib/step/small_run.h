@@ -14,6 +14,7 @@ struct small_wall {
     struct pose pose;
     vec3 at, v, spin; /* m; m/s, rad/s: of its material at that point */
     vec3 belt;        /* m/s */
+    double way;       /* m: that its fastest point has gone in the interval */
 };
 
 /* What a thread looks for points with */
@@ -28,6 +29,7 @@ struct small_shapes {
     quat *q;              /* [n] */
     double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
     double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
+    double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
     vec3 edge[3];         /* m */
     struct placed placed;
     struct situation at;
@@ -44,6 +46,7 @@ struct small_run {
     struct small_wall *wall; /* [walls] */
     vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
     struct small_pull *pull; /* [n] NULL: no forces on bodies */
+    double stored;           /* J: by attraction, where the interval begins */
     struct face_sums *sums;  /* [walls] NULL: none are kept */
     bool meets;              /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;

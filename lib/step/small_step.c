@@ -3,11 +3,13 @@
 
 #include "base/team.h"
 #include "contact/depth.h"
+#include "contact/touching.h"
 #include "contact/tunnelling.h"
 #include "solve/backend.h"
 #include "state/freedom.h"
 #include "state/placement.h"
 #include "state/rotation.h"
+#include "step/small_bonds.h"
 #include "step/small_error.h"
 #include "step/small_give.h"
 #include "step/small_loop.h"
@@ -38,7 +40,6 @@ static const double ALLOWED[2] = { 1, 0.3 };
 const char *small_lacks(const struct packing *p)
 {
     if (freedoms_in(p)) return "loads";
-    if (packing_sticks(p)) return "static friction";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
     if (p->sums.n && (p->shape || p->mesh.elements))
@@ -46,7 +47,9 @@ const char *small_lacks(const struct packing *p)
     for (int k = 0; k < 3; k++)
         if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
-        if (pair_law_attracts(&p->law[k])) return "cohesion";
+        if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
+    if ((p->shape || p->mesh.elements) && (small_tie_holds(p) || packing_sticks(p)))
+        return "attraction or static friction of grains with a shape, or on surfaces";
     return NULL;
 }
 
@@ -85,6 +88,8 @@ static void small_set_rates(struct small_run *r)
                                          .push = 2 * fall + 0.02 * fastest,
                                          .soft = COMPLIANCE,
                                          .calm = freedoms_calm(p),
+                                         .pulls = 2 * r->h * small_tie_most(p),
+                                         .holds = small_tie_range(p, r->h),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
 }
 
@@ -127,18 +132,22 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         if (small_list_make(r->l, r->p, r->x, r->p->t + r->ahead, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
-            small_set_rates(r), take_bodies(r);
+            small_set_rates(r), take_bodies(r), small_walls_set(r);
             if (!o->bare && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
             if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
                 break;
             }
+            small_bonds_recall(r, o->warm);
+            const struct small_bonds ties = small_bonds_account(r);
+            r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
+    small_walls_set(r);
     return failure->status;
 }
 
@@ -165,8 +174,9 @@ static struct small_energy small_energy_of(const struct packing *p)
 
 /* Dissipation is what the other terms leave. */
 static void small_balance(struct balance *b, const struct small_energy *before,
-                          const struct small_energy *after, const struct small_run *r)
+                          const struct small_energy *after, struct small_run *r)
 {
+    const struct small_bonds ties = small_bonds_account(r);
     const struct small_list *l = r->l;
     vec3 impulse = l->gone_impulse;
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
@@ -183,7 +193,9 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->dissipation = b->gravity + b->drives + b->loads - b->change;
+    b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
+    b->broken = -ties.joined;
+    b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
 
@@ -204,6 +216,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
+                            .tied = small_tie_holds(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };
 }
@@ -214,7 +227,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
 static double small_steady(const struct packing *p)
 {
     const double g = v3_norm(p->g), least = packing_whole(p).small;
-    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p);
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
@@ -225,7 +238,7 @@ static double small_steady(const struct packing *p)
 
 int64_t small_count(const struct packing *p, double overlap)
 {
-    const double way = p->dt * (small_fastest(p) + packing_most_fall(p));
+    const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
     const double n = fmax(way / (overlap * small_thickness(p)), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
@@ -241,6 +254,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
+    if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
@@ -257,7 +271,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
     *made = !failure->status && !r.failed;
     if (*made && r.meets) small_points_last(&r);
-    if (*made && !small_give_contacts(&r, s, o->bare, failure) &&
+    if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
+        !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
         memory_set(&p->memory, o->warm);

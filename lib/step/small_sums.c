@@ -21,7 +21,8 @@ static void add_touch_sums(struct face_sums *to, const struct small_run *r,
 {
     const struct small *s = &r->l->s;
     const struct body *was = &s->before[t->body], *b = &s->body[t->body];
-    const vec3 f = small_vec(t->f), m = small_vec(t->m), spin = r->wall[t->wall].spin;
+    const vec3 push = small_vec(t->f), m = small_vec(t->m), spin = r->wall[t->wall].spin;
+    const vec3 f = v3_axpy(push, -t->hold[HOLD_PULL], t->n);
     const vec3 x = v3_axpy(small_vec(s->place[t->body].x), -t->arm, t->n);
     const vec3 w = small_mean(was->w, b->w), v = v3_sub(small_mean(was->v, b->v), t->v);
     const vec3 u = v3_axpy(v, -t->arm, v3_cross(w, t->n));
@@ -39,7 +40,7 @@ void small_sums_step(struct small_run *r)
 {
     for (int64_t i = 0; i < r->l->touches; i++) {
         const struct small_touch *t = &r->l->touch[i];
-        if (!small_is_zero(t->f)) add_touch_sums(&r->sums[t->wall], r, t);
+        if (t->near) add_touch_sums(&r->sums[t->wall], r, t);
     }
 }
 

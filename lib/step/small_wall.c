@@ -11,11 +11,13 @@ void small_walls_set(struct small_run *r)
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         const vec3 at = wall_at(p, wall, t);
+        const double way = r->wall[w].way + r->h * wall_top_speed(p, wall);
         r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
                                           .pose = wall_pose(p, wall, t),
                                           .at = at,
                                           .v = wall_held(p, wall, at),
-                                          .spin = wall_spin(p, wall) };
+                                          .spin = wall_spin(p, wall),
+                                          .way = way };
         r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
     }
 }
@@ -48,7 +50,9 @@ void small_touch_law(const struct small_run *r, const struct small_touch *t, str
 {
     const struct small *s = &r->l->s;
     const struct body *b = &s->body[t->body];
-    *l = (struct small_law){ .mu = t->mu, .gap = t->arm - s->place[t->body].r };
+    *l = (struct small_law){ .mu = t->mu,
+                             .calm = s->rate.calm,
+                             .gap = t->arm - s->place[t->body].r };
     small_array(l->n, t->n), small_array(l->u, small_touch_velocity(t, b));
     l->wn = b->im, l->wt = b->im + t->arm * t->arm * b->ii;
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt;

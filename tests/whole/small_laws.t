@@ -89,4 +89,61 @@ small 50 --sums
 ok "a wall that a ball meets at 1.2 m/s with e 0.5 gets m 1.2 1.5, and works on it by that times 0.2 m/s" \
     near "$(sums '.force[0][2]') * 0.05 + $(sums '.power[0]') * 0.05 / 0.2 + 2 * $mass * 1.8" 0 1e-9
 
+# ---- attraction ----
+
+for force in 0.11 0.05; do # m g = 0.10273 N
+    scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, -9.81], dt: 1e-3, cohesion: { force: $force },
+        bodies: [{ x: [0, 0, -0.01], radius: 0.01, density: 2500 }]"
+    ok "cohesion is made in small steps, $force N" small 100
+    ok "a ball below a ceiling hangs by $force N or falls" \
+        near "$(body '.x[2]')" "-0.01 - (if $force < 9.81 * $mass then 9.81 * 0.005 else 0 end)" "if $force > 0.1 then 1e-6 else 1.5e-3 end"
+done
+scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, -9.81], dt: 1e-3, cohesion: { force: 0.3, range: 5e-3 },
+    bodies: [{ x: [0, 0, -0.014], radius: 0.01, density: 2500 }]"
+small 10
+ok "within its range a pull accelerates with A/m - g" near "$(body '.x[2]')" "-0.014 + (0.3 / $mass - 9.81) * 0.01 * 0.01 / 2" 1e-10
+ok "and nothing is dissipated" near "$(last '.balance | .dissipation / .bond_change')" 0 1e-2
+small 200
+ok "then the ball rests" near "$(body '.v[2]') + ($(body '.x[2]') + 0.01) / 1e-2" 0 1e-3
+ok "and stores - A range" near "$(last '.balance.bond_energy')" "-0.3 * 5e-3" 1e-5
+
+scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, 0], dt: 1e-4, cohesion: { force: 0.1 },
+    bodies: [{ x: [0, 0, -0.01], radius: 0.01, density: 2500 }],
+    forces: [{ bodies: [0], along: [0, 0, -1], force: { table: [[0, 0], [1, 1]] } }]"
+small 1500
+ok "a force that grows pulls a ball off at A: then it falls freely" \
+    near "$(body '.v[2]')" "-(0.15 * 0.15 - 0.1 * 0.1) / 2 / $mass" 2e-2
+
+# the energy of a bridge: the integral of its force from 0 to V^(1/3) [state/pair_law.h]
+bridge='(2 * 3.14159265358979 * 1e-3 * 0.072 * (4.641588833612779e-4 - (4.641588833612779e-4 * 4.641588833612779e-4 + $c2 | sqrt) + ($c2 | sqrt)))'
+wet='capillary: { volume: 1e-10, tension: 0.072 }'
+for v in 0.15 0.11; do
+    scene "dt: 1e-5, gravity: [0, 0, 0], $wet, bodies: [{ x: [0, 0, 0], radius: 1e-3, fixed: true },
+        { x: [0, 0, -2e-3], radius: 1e-3, density: 2500, v: [0, 0, -$v] }]"
+    small 3000
+    ok "a ball leaves a liquid bridge with what is left of its energy, or comes back: $v m/s" near "$(body '.v[2]' 1)" \
+        "(2e-10 / 3.14159265358979 / 1e-3) as \$c2 | ($v * $v - 2 * $bridge / ($mass * 1e-3)) | if . > 0 then -sqrt else 0 end" 4e-4
+done
+is "a ball that comes back stays wet" "$(small 3000 --contacts && nsd-info --last -c "$tmp/out.h5" | jq .wet)" true
+
+scene "dt: 1e-3, gravity: [6.9367, 0, -6.9367], mu: 0.1, mu_s: 0.4, v_s: 0.01, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+    bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500 }]"
+small 100
+ok "static friction lets a ball roll where kinetic friction does not: 5/7 g sin" near "$(body '.v[0]')" "5 / 7 * 6.9367 * 0.1" 1e-4
+jq 'del(.mu_s, .v_s)' <(nsd-info --scene "$tmp/in.h5") | nsd-gen - >"$tmp/dry.h5" && mv "$tmp/dry.h5" "$tmp/in.h5"
+small 100
+ok "with kinetic friction alone it slides" near "$(body '.v[0]')" "0.9 * 6.9367 * 0.1" 1e-4
+
+heap='dim: 3, dt: 1e-3, density: 2500, mu: 0.3, e_n: 0.3, gravity: [0, 0, -9.81], walls: [{ point: [0, 0, 0], normal: [0, 0, 1] },
+    { point: [0, 0, 0], normal: [1, 0, 0] }, { point: [0, 0, 0], normal: [0, 1, 0] }],
+    bodies: [range(5) as $i | range(4) as $j | range(6) as $k | { radius: (0.005 + 0.001 * (($i + 3 * $j + 2 * $k) % 5) / 5),
+        x: [$i, $j, $k] | map((. + 0.55) * 0.0121) }]'
+for law in "$wet" 'cohesion: { force: 0.05, range: 2e-4 }, rolling: { mu_r: 1e-5 }, mu_s: 0.5, v_s: 0.01'; do
+    scene "$heap, $law"
+    ok "a heap with ${law%%:*}: the same bytes" same_bytes 60
+done
+scene "$heap, cohesion: { force: 0.05, range: 2e-4 }"
+small 600
+ok "a cohesive heap comes to rest" near "$(last .kinetic_energy)" 0 1e-12
+
 done_testing
