@@ -5,7 +5,7 @@
 #
 #   PROBLEMS=DIR            another folder of problems; leaves solvers-DIR.{tsv,md,svg}
 #   ONLY=nsd|siconos        that half; the other as the results have it
-#   ONLY=draw               no run: the .svg alone, from the .tsv in the folder RESULTS
+#   ONLY=draw               no run: the tables and the .svg again, from the .tsv in the folder RESULTS, of the SOLVERS alone
 #   SOLVERS="auto nlgs"     nsd's: of --global, or sbp, sal, ebp, eal for Gauss-Seidel with that local method
 #   LIMIT=10                seconds of a solve
 #   FLOOR=1e-4              seconds: what is faster counts as this
@@ -127,11 +127,13 @@ else
 fi
 touch "$work/nsd" "$work/siconos"
 
-[ "${ONLY:-}" = draw ] || {
-    echo "# $(machine); limit $limit s"
+{
+    if [ "${ONLY:-}" = draw ]; then head -n 1 "$results/$name.tsv"; else echo "# $(machine); limit $limit s"; fi
     printf 'solver\tproblem\tcontacts\ttolerance\tseconds\terror\tsolved\tsteps\tnewton\thow\n'
-    cat "$work/nsd" "$work/siconos"
-} > "$results/$name.tsv"
+    awk -F'\t' -v solvers=" $solvers " 'index(solvers, " " $1 " ")' "$work/nsd"
+    cat "$work/siconos"
+} > "$work/rows"
+mv "$work/rows" "$results/$name.tsv"
 
 # ---- what it comes to ----
 
@@ -206,8 +208,9 @@ awk -F'\t' -v OFS='\t' -v floor="$floor" '
 drawn=$(awk -F'\t' '/^siconos-/ && !/^siconos-2d/ { print $8 + 0 "\t" $5 + 0 "\t" $1 }' "$work/table" |
     sort -k1,1nr -k2,2nr | head -n 7 | cut -f 3 | paste -sd' ')
 gnuplot -e "data='${work//\'/\'\'}/profile'; out='$results/$name.svg'; ours='$solvers'; theirs='$drawn'" bench/solvers.gp
-if [ "${ONLY:-}" = draw ]; then exit 0; fi
 
+# the head of the page
+about()
 {
     echo "# Solvers over ${#files[@]} FCLIB problems"
     echo
@@ -224,6 +227,10 @@ if [ "${ONLY:-}" = draw ]; then exit 0; fi
     echo
     echo "![profiles](${name}.svg)"
     echo
+}
+if [ "${ONLY:-}" = draw ]; then sed '/^| solver/,$d' "$results/$name.md" > "$work/about"; else about > "$work/about"; fi
+{
+    cat "$work/about"
     {
         printf 'solver\tsolved to 1e-4\tfastest\tseconds\tto 1e-8\tfastest\tseconds\tto 1e-12\tfastest\tseconds\n'
         cat "$work/table"

@@ -98,8 +98,10 @@ static struct {
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
     int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all; */
-    int64_t limited;              /* of those the ones that ended at the limit of their sweeps */
-    bool lacks;                   /* small steps do not have all of the packing */
+    double missing, missing_mean; /* impulse, of the steps whose errors are known: the largest */
+    int64_t missing_step, missing_id;
+    int64_t limited; /* of those the ones that ended at the limit of their sweeps */
+    bool lacks;      /* small steps do not have all of the packing */
     double seconds;
     struct account account; /* of this run */
     int64_t ended;          /* the step that failed, with which the run has ended; 0: none */
@@ -175,6 +177,9 @@ static void count(const struct report *r)
     total.seconds += r->seconds;
     if (r->substeps > 1) total.divided++, total.substeps += r->substeps;
     if (r->small) total.small++, total.small_steps += r->small, total.limited += r->small_limited;
+    total.missing_mean = fmax(total.missing_mean, r->missing_mean);
+    if (r->missing > total.missing)
+        total.missing = r->missing, total.missing_step = r->step, total.missing_id = r->missing_id;
     if (r->converged) return;
     if (!total.missed++) total.first_missed = r->step;
     double error = err_of(&r->err, r->criterion);
@@ -198,6 +203,11 @@ static void summary(int64_t made)
     if (total.small)
         warn("%lld steps were made in %lld small ones", (long long)total.small,
              (long long)total.small_steps);
+    if (total.missing > 0)
+        warn("impulse missing to the laws, over the load: %.2g in all bodies, %.2g at most (step "
+             "%lld, body %lld)",
+             total.missing_mean, total.missing, (long long)total.missing_step,
+             (long long)total.missing_id);
     if (total.limited)
         warn("%lld small steps have ended at the limit of their sweeps", (long long)total.limited);
     if (options.small > 0 && !total.lacks && total.small < made)

@@ -1,2 +1,2 @@
 #!/usr/bin/env bash
-awk '{ exit !($1 > 700 && $2 > 700 && $2 < 900) }' density.tsv && [ -s beaker.png ]
+awk '{ exit !($1 > 700 && $2 > 760 && $2 < 880) }' density.tsv && [ -s beaker.png ]

@@ -1,2 +1,2 @@
 #!/usr/bin/env bash
-awk '{ good += $2 > 38 && $2 < 65 && $3 > 0.5 && $3 < 6 } END { exit !(NR == 2 && good == 2) }' angle.tsv && [ -s surface.png ]
+awk '{ good += $2 > 42 && $2 < 66 && $3 > 0.5 && $3 < 4; angle[NR] = $2 } END { exit !(NR == 2 && good == 2 && angle[2] > angle[1]) }' angle.tsv && [ -s surface.png ]

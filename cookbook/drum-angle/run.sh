@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 set -euo pipefail
 # the powder itself: GRAIN=1 DT=3e-4 SPEEDS="10 15 20 30 45" UNTIL=3 SURFACES=FOLDER, where FOLDER has the STL files
-grain=${GRAIN:-3.2} dt=${DT:-5e-4} surfaces=${SURFACES:-}
+grain=${GRAIN:-2.8} dt=${DT:-5e-4} surfaces=${SURFACES:-}
+read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 for rpm in ${SPEEDS:-15 45}; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson rpm "$rpm" --arg surfaces "$surfaces" | nsd-gen - |
-        nsd-step --until "${UNTIL:-1}" --every 0.02s -o "drum-$rpm.h5"
+        nsd-step "${step[@]}" --until "${UNTIL:-1}" --every 0.02s -o "drum-$rpm.h5"
     # in columns of 4 mm, frames from 0.5 s on: the mean height of the highest grain and its standard deviation
     nsd-info -p -s "$(jq -n "0.5 / $dt | ceil")": "drum-$rpm.h5" | jq -r '[.step, (.x[0] / 0.004 | floor), .x[2] + .radius] | @tsv' |
         awk -v rpm="$rpm" '{ k = $1 "\t" $2; if (!(k in h) || $3 > h[k]) h[k] = $3 }

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 set -euo pipefail
 # the instrument itself: GRAIN=1 DT=3e-4 TUBE=23.7 ORIFICES="10 14 20" SURFACES=FOLDER, where FOLDER has the STL files
-grain=${GRAIN:-2} dt=${DT:-6e-4} tube=${TUBE:-13} surfaces=${SURFACES:-} orifices=${ORIFICES:-13 15.5 18}
+grain=${GRAIN:-1.8} dt=${DT:-6e-4} tube=${TUBE:-13} surfaces=${SURFACES:-} orifices=${ORIFICES:-13 15.5 18}
+read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 for d in $orifices; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson orifice "$d" --argjson tube "$tube" --arg surfaces "$surfaces" |
-        nsd-gen - | nsd-step --until "${UNTIL:-0.55}" --every 0.01s -o "flow-$d.h5"
+        nsd-gen - | nsd-step "${step[@]}" --until "${UNTIL:-0.55}" --every 0.01s -o "flow-$d.h5"
     # the rate: the line through the mass that has left, from 10 to 60 % of it
     nsd-info "flow-$d.h5" | jq -rs --argjson d "$d" 'map(select(.step != null)) | map([.time, .removed[0].mass * 1000]) as $m |
         ([$m[][1]] | max) as $most | [$m[] | select(.[1] > 0.1 * $most and .[1] < 0.6 * $most)] |

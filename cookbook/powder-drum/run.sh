@@ -2,10 +2,11 @@
 set -euo pipefail
 # GRAIN: size of the balls, 1 is that of the powder; COUNT: their number, of that size, of which fewer fill the drum alike where they are larger;
 # PHOTOS: the folder with measured-15rpm.bmp.gz and measured-45rpm.bmp.gz
-grain=${GRAIN:-3.2} dt=${DT:-5e-4} count=${COUNT:-25500} mu=${MU:-0.561} mu_r_ratio=${MU_R_RATIO:-0.293} until=${UNTIL:-0.9} pictures=()
+grain=${GRAIN:-2.4} dt=${DT:-1e-3} count=${COUNT:-26500} mu=${MU:-0.561} mu_r_ratio=${MU_R_RATIO:-0.293} until=${UNTIL:-0.9} pictures=()
+read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 for rpm in 15 45; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson rpm $rpm --argjson count "$count" --argjson mu "$mu" --argjson mu_r_ratio "$mu_r_ratio" |
-        nsd-gen - | nsd-step --until "$until" --every 0.01s -o "drum-$rpm.h5"
+        nsd-gen - | nsd-step "${step[@]}" --until "$until" --every 0.01s -o "drum-$rpm.h5"
     photo=()
     if [ -n "${PHOTOS-}" ]; then
         gunzip -c "$PHOTOS/measured-${rpm}rpm.bmp.gz" >photo.bmp

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 set -euo pipefail
 # the powder itself: GRAIN=1 DT=3e-4 TAPS=500 SURFACES=FOLDER, where FOLDER has the STL files
-grain=${GRAIN:-3.4} dt=${DT:-5e-4} taps=${TAPS:-15} surfaces=${SURFACES:-} period=0.08 # s, from tap to tap
+grain=${GRAIN:-2.4} dt=${DT:-5e-4} taps=${TAPS:-15} surfaces=${SURFACES:-} period=0.08 # s, from tap to tap
+read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson taps "$taps" --argjson period $period --arg surfaces "$surfaces" |
-    nsd-gen - | nsd-step --until "$(jq -n "0.2 + $taps * $period + 0.04")" --every 0.04s -o taps.h5
+    nsd-gen - | nsd-step "${step[@]}" --until "$(jq -n "0.2 + $taps * $period + 0.04")" --every 0.04s -o taps.h5
 # 0.04 s after each tap: the mass over that of the tube up to twice the height of the centre of mass, which is the height of a column
 mass=$(nsd-info -p --last taps.h5 | jq -s 'map(.mass) | add')
 nsd-stat -m energy taps.h5 | jq -rs --argjson m "$mass" --argjson p $period 'map(.k = (.time - 0.24) / $p) |

@@ -8,6 +8,7 @@
  *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             500 per pair in reach,
  *                                                                                              140 per other pair
  *     again     pairs of bodies that a sweep has changed by more than is allowed
+ *     judge     what is missing to the law, where it is asked for                              400 per pair in reach
  *     settle    what of a new reaction does not persist is taken out of v^-                    500 per such pair
  *     move      x <- x + h v                                                                   150 per body
  *
@@ -91,6 +92,7 @@ struct small {
     int64_t bodies; /* and two more at the end, far from each other, for lanes without a pair */
     struct small_place *place;
     struct body *body, *before; /* at v, w; at v^-, w^- */
+    double *missing, *load;     /* [bodies] N s: of small_judge; NULL */
     int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
     double *change; /* [bodies] m/s: by sweeps of this step since then */
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
@@ -217,7 +219,12 @@ typedef bool small_sweep(struct small *s, int64_t first, int64_t end, bool again
 /* Bodies get the reactions that the bundles have. */
 typedef void small_push(struct small *s, int64_t first, int64_t end);
 
+/* Both bodies of each pair: s->missing grows by how far its reaction is from the law, for the velocities that bodies have,
+   and s->load by the reaction. */
+typedef void small_judge(struct small *s, int64_t first, int64_t end);
+
 struct small_kernels {
     small_sweep *sweep;
     small_push *push;
+    small_judge *judge;
 };

@@ -54,7 +54,9 @@ ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s
     bodies_load(&y->a, s->body, y->c->a + y->k, &y->ma);
     bodies_load(&y->b, s->body, y->c->b + y->k, &y->mb);
     vd distance = root(y->d2), per = 1 / distance;
-    for (int j = 0; j < 3; j++) y->n[j] = y->d[j] * per;
+    const vm apart =
+        lt(splat(0), distance); // bodies in one place have the normal of small_normal()
+    for (int j = 0; j < 3; j++) y->n[j] = pick(apart, y->d[j] * per, splat(j == 1));
     y->gap = distance - (y->ra + y->rb);
     y->la = y->ra + 0.5 * y->gap, y->lb = y->rb + 0.5 * y->gap;
 }
@@ -191,6 +193,16 @@ ALWAYS_INLINE void small_keep(struct small_law *l, const vd had[3], vm those, vd
     l->rn = pick(those, l->rn, dot3(l->n, l->f));
 }
 
+/* But for u, f, q and rn */
+ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *y,
+                                 const struct small *s)
+{
+    for (int j = 0; j < 3; j++) l->n[j] = y->n[j];
+    l->gap = y->gap, l->wn = y->a.im + y->b.im;
+    l->wt = l->wn + y->la * y->la * y->a.ii + y->lb * y->lb * y->b.ii;
+    l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
+}
+
 /* Attraction of pairs that have pushed f: dp, the change of the pull along n, of which 0.98 persists; lanes that it holds */
 ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct small *s,
                                   struct small_law *l, bool again, vd *dp)
@@ -245,10 +257,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
         small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
     else
         small_velocity(&y, &y.ma, &y.mb, l.u);
-    for (int j = 0; j < 3; j++) l.n[j] = y.n[j];
-    l.gap = y.gap, l.wn = y.a.im + y.b.im;
-    l.wt = l.wn + y.la * y.la * y.a.ii + y.lb * y.lb * y.b.ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt, l.mu = vload(y.c->mu + k);
+    small_set_law(&l, &y, s);
     l.calm = splat(s->rate.calm);
     small_load(l.f, y.c->f, k);
     const double warm = hot ? 1 : SMALL_WARM;
@@ -313,7 +322,40 @@ static void small_push_bundles(struct small *s, int64_t first, int64_t end)
         }
 }
 
+static void small_judge_lanes(struct small *s, int64_t i, int k)
+{
+    struct small_pairs y;
+    struct small_law l;
+    vd had[3], df[3], zero = splat(0);
+    double far[LANES], load[LANES];
+    small_pairs_look(&y, s, i, k);
+    vd most = y.ra + y.rb + s->rate.reach;
+    vm near = le(y.d2, most * most);
+    if (!s->live[BUNDLE * i + k] && !any(near)) return;
+    small_pairs_load(&y, s);
+    small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
+    small_load(had, y.c->f, k), small_load(l.q, y.c->q, k);
+    small_set_law(&l, &y, s);
+    for (int j = 0; j < 3; j++) l.f[j] = had[j];
+    vd pushes = norm3(had);
+    small_solve(&l, df);
+    vstore(far, pick(near | lt(zero, pushes), norm3(df), zero)), vstore(load, pushes);
+    for (int j = 0; j < LANES; j++) {
+        if (!(far[j] > 0) && !(load[j] > 0)) continue;
+        const int64_t a = body_index(y.c->a[k + j]), b = body_index(y.c->b[k + j]);
+        s->missing[a] += far[j], s->missing[b] += far[j];
+        s->load[a] += load[j], s->load[b] += load[j];
+    }
+}
+
+static void small_judge_bundles(struct small *s, int64_t first, int64_t end)
+{
+    for (int64_t i = first; i < end; i++)
+        for (int k = 0; k < BUNDLE; k += LANES) small_judge_lanes(s, i, k);
+}
+
 #define SMALL_(lanes)   small_##lanes
 #define SMALL_OF(lanes) SMALL_(lanes)
 extern const struct small_kernels SMALL_OF(LANES);
-const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles };
+const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles,
+                                               small_judge_bundles };

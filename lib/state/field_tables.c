@@ -454,11 +454,23 @@ const struct field projection_balance_fields[] = {
     { 0 },
 };
 
+/* The same where small steps are asked for */
+const struct field small_step_fields[] = {
+    FIELD(struct report, small, I64, 1, "small_steps", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, small_limited, I64, 1, "small_steps_limited", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, missing_mean, F64, 1, "missing_impulse_mean", "1", FIELD_MOVES),
+    FIELD(struct report, missing, F64, 1, "missing_impulse", "1", FIELD_MOVES),
+    { 0 },
+};
+
 const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
     { bond_balance_fields, offsetof(struct report, tied) },
     { spring_balance_fields, offsetof(struct report, soft) },
     { gain_balance_fields, offsetof(struct report, may_gain) },
     { projection_balance_fields, offsetof(struct report, projected) },
     { peculiar_balance_fields, offsetof(struct report, sheared) },
+    { small_step_fields, offsetof(struct report, fine) },
     { NULL, 0 },
 };

@@ -27,14 +27,14 @@ extern const struct field contact_fields[], contact_key_fields[], contact_law_fi
 /* Of struct report */
 extern const struct field report_fields[], terms_fields[], velocity_fields[], balance_fields[];
 extern const struct field bond_balance_fields[], spring_balance_fields[], gain_balance_fields[],
-    peculiar_balance_fields[], projection_balance_fields[];
+    peculiar_balance_fields[], projection_balance_fields[], small_step_fields[];
 
 /* Terms that the balances of some packings have, and where struct report says that it has them: a bool */
 struct balance_part {
     const struct field *fields;
     size_t flag;
 };
-enum { BALANCE_PARTS = 5 };
+enum { BALANCE_PARTS = 6 };
 extern const struct balance_part balance_parts[BALANCE_PARTS + 1];
 static inline bool balance_part_has(const struct balance_part *part, const void *report)
 {

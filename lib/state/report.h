@@ -121,8 +121,12 @@ struct report {
     int64_t passed; /* bodies that went through a wall or another body in this step */
     int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
     int64_t substeps;                  /* that the step was made in */
-    int64_t small;           /* small steps, of which it is made; 0: it was made at once */
-    int64_t small_limited;   /* those of them that have ended at the limit of their sweeps */
+    int64_t small;         /* small steps, of which it is made; 0: it was made at once */
+    int64_t small_limited; /* those of them that have ended at the limit of their sweeps */
+    bool fine;             /* small steps were asked for, and what follows is known */
+    double missing_mean,
+        missing; /* what is missing of reactions, over the load: of all bodies, and of the worst */
+    int32_t missing_id;      /* the worst */
     struct endless endless;  /* for which the step was not made */
     double work;             /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *given_up;    /* why it ended before its limits, a literal; or NULL */

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "step/small_cell.h"
+#include "step/small_error.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_sums.h"
@@ -66,13 +67,6 @@ static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
 
 /* ---- walls ---- */
 
-/* m/s: of the body b against the wall at the contact */
-static vec3 touch_velocity(const struct small_touch *t, const struct body *b)
-{
-    vec3 v = v3_sub(small_vec(b->v), t->v);
-    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
-}
-
 /* The law in the first sweep of a step */
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
@@ -84,7 +78,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
-    small_array(before, touch_velocity(t, &s->before[t->body]));
+    small_array(before, small_touch_velocity(t, &s->before[t->body]));
     small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
@@ -116,7 +110,7 @@ static void stick_touch(const struct small_run *r, struct small_touch *t)
 {
     const struct packing *p = r->p;
     const int32_t pair = packing_pair(p, -1 - t->wall, t->body);
-    const vec3 u = touch_velocity(t, &r->l->s.before[t->body]);
+    const vec3 u = small_touch_velocity(t, &r->l->s.before[t->body]);
     double mu[2], v_s;
     small_tie_stick(mu, &v_s, p, pair);
     t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
@@ -142,7 +136,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small *s = &r->l->s;
     struct body *b = &s->body[t->body];
-    struct small_law l = { .calm = s->rate.calm };
+    struct small_law l;
     double df[3], dm[3] = { 0, 0, 0 }, dp = 0;
     if (!again && !small_look_at_touch(r, t, s->hold ? r->l->margin : s->rate.reach)) {
         leave_touch(r, t);
@@ -150,11 +144,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     }
     if (again && !t->near) return;
     t->near = true;
-    small_array(l.n, t->n), small_array(l.u, touch_velocity(t, b));
-    l.gap = t->arm - s->place[t->body].r;
-    l.wn = b->im, l.wt = b->im + t->arm * t->arm * b->ii;
-    l.cn = s->rate.soft * l.wn, l.ct = s->rate.soft * l.wt;
-    memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    small_touch_law(r, t, &l);
     if (!again && s->hold) dp = hold_touch(r, t, &l);
     if (!again && s->stick) stick_touch(r, t);
     l.mu = t->mu;
@@ -245,7 +235,8 @@ static void push_reactions(struct small_run *r, int me, int threads)
             push_body(&s->body[t->body], t->n, t->arm, persisting_force(t),
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
-            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
+            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
+                memset(t->sum, 0, sizeof t->sum);
     }
 }
 
@@ -259,7 +250,7 @@ static void settle_slot(struct small *s, int64_t slot)
     if (a >= s->bodies) return;
     const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const vec3 n = v3_scale(1 / length, d);
+    const vec3 n = small_normal(d);
     const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
     const double most = small_persists(&s->rate, held, w, rn);
@@ -341,6 +332,7 @@ static void finish_step(struct small_run *r)
     settle_pairs(s);
     r->sweeps += r->swept, r->swept = 0;
     r->begins = false, r->made++;
+    r->p->step0--; // the step that packing_next_time() ends with is the next small one
     r->p->t = r->p->t0 + (double)r->made * r->h;
 }
 
@@ -366,8 +358,9 @@ void small_loop(void *arg, int me, int threads)
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
         small_sweeps(r, me, threads, first, end);
         if (r->sums && !me) small_sums_step(r);
+        if (r->sums) team_meet();
+        if (r->judged) small_error_step(r, me, threads);
         if (r->cell.moves && !me) small_cell_end(r);
-        if (r->sums || r->cell.moves) team_meet();
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);

@@ -15,12 +15,13 @@
 /* f, kept, q, sum and m: as in struct small_bundle [solve/small.h] */
 struct small_point {
     int32_t feature;
-    bool near;   /* it is there in the step in hand */
+    bool there;  /* the narrow phase has found it when it last looked */
+    bool near;   /* its gap is in reach in the step in hand */
     bool starts; /* its bodies do not have its f yet */
     double f[3], kept, q[3], sum[3], m[3];
     double mu, e[2];
     double soft; /* C over W in the step in hand; 0: an impact */
-    /* Of the last step in which it was near */
+    /* Where it is, or was last */
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
@@ -31,9 +32,11 @@ struct small_point {
 struct small_meeting {
     struct contact_key key; /* without a feature */
     double most[2];         /* m: mu_p, mu_r */
+    bool looked;
+    double wide, way; /* m: points were looked for to this gap; and what both had gone then */
     int64_t points, room;
     struct small_point
-        *point;  /* [points] by feature: those that are near, or have pushed in this interval */
+        *point;  /* [points] by feature: those that are there, or have pushed in this interval */
     double work; /* J: on a wall or a body that does not move, in this interval */
 };
 
@@ -57,8 +60,9 @@ static inline bool small_meets(const struct packing *p, int32_t a, int32_t b)
 void small_meetings_free(struct small_meetings *m);
 /* A meeting without points. False when memory is short, as all that follow. */
 bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key);
-/* Order, groups and held ones, when all have been added */
-bool small_meetings_lay(struct small_meetings *m, const struct packing *p);
+/* Order, groups and held ones, when all have been added; those of `from` that have pushed in this interval are added, too. */
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p,
+                        const struct small_meetings *from);
 /* NULL: none has this key, whatever its feature. */
 struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key);
 /* Points go over to the meetings of the same bodies. */

@@ -17,10 +17,17 @@
 #define BESIDE 0.2
 #define ALONG  0.9
 
+/* Of the smallest thickness: how much farther than in reach points are looked for. Where there is none, that serves until
+   the bodies have gone as far. */
+#define WIDE 0.05
+
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 30
 
-enum { ROUNDS_MOST = 20 };         /* of the points of a meeting in one sweep */
+enum {
+    ROUNDS = 2,
+    ROUNDS_MOST = 20
+};                                 /* of the points of a meeting in one sweep; most in an impact */
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
 
 /* ---- bodies ---- */
@@ -62,7 +69,7 @@ void small_points_free(struct small_run *r)
     struct small_shapes *s = &r->shapes;
     for (int k = 0; s->scratch && k < s->threads; k++)
         contacts_free(&s->scratch[k].found), free(s->scratch[k].point);
-    free(s->scratch), free(s->q), free(s->inverse), free(s->spread);
+    free(s->scratch), free(s->q), free(s->inverse), free(s->spread), free(s->way);
     placed_free(&s->placed);
     *s = (struct small_shapes){ 0 };
 }
@@ -75,9 +82,9 @@ int small_points_init(struct small_run *r, const struct surface *surface, int th
     const size_t n = (size_t)p->n + 1;
     *s = (struct small_shapes){ .threads = threads };
     s->q = calloc(n, sizeof *s->q), s->inverse = calloc(n, sizeof *s->inverse);
-    s->spread = calloc(n, sizeof *s->spread);
+    s->spread = calloc(n, sizeof *s->spread), s->way = calloc(n, sizeof *s->way);
     s->scratch = calloc((size_t)threads, sizeof *s->scratch);
-    if (!s->q || !s->inverse || !s->spread || !s->scratch)
+    if (!s->q || !s->inverse || !s->spread || !s->way || !s->scratch)
         return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     cell_predict(&p->cell, 0, s->edge);
     for (int64_t i = 0; i < p->n; i++) {
@@ -126,6 +133,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
         struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
+        s->way[i] += r->h * small_point_speed(r, i);
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
             const vec3 L = rotation_momentum(r->p, i, s->q[i], small_vec(was->w));
@@ -155,24 +163,30 @@ static void add_block(const struct small_run *r, struct small_point *t, int32_t 
     for (int k = 0; k < 9; k++) t->W[k] += v3_dot(lever[k / 3], turn[k % 3]) + (k % 4 ? 0 : im);
 }
 
+/* The arms of a point at x, and the velocity of a wall there */
+static void set_arms(const struct small_run *r, const struct small_meeting *m,
+                     struct small_point *t)
+{
+    t->b = v3_sub(t->x, v3_add(r->x[m->key.b], image_of(r, m)));
+    t->v = t->a = v3(0, 0, 0);
+    if (m->key.a < 0)
+        t->v = small_wall_velocity(&r->wall[-1 - m->key.a], t->x, t->n);
+    else
+        t->a = v3_sub(t->x, r->x[m->key.a]);
+}
+
 /* A point is where contact c is. */
 static void set_point(const struct small_run *r, const struct small_meeting *m,
                       struct small_point *t, const struct contact *c)
 {
     const int32_t a = m->key.a, b = m->key.b;
-    t->feature = c->feature, t->near = true;
+    t->feature = c->feature, t->there = true;
     t->x = c->x, t->n = c->n, t->t1 = c->t1, t->gap = c->gap;
     t->mu = c->mu, t->e[0] = c->en, t->e[1] = c->et;
-    t->b = v3_sub(c->x, v3_add(r->x[b], image_of(r, m)));
-    t->v = t->a = v3(0, 0, 0);
+    set_arms(r, m, t);
     for (int k = 0; k < 9; k++) t->W[k] = 0;
     add_block(r, t, b, t->b);
-    if (a < 0) {
-        t->v = small_wall_velocity(&r->wall[-1 - a], c->x, c->n);
-        return;
-    }
-    t->a = v3_sub(c->x, r->x[a]);
-    add_block(r, t, a, t->a);
+    if (a >= 0) add_block(r, t, a, t->a);
 }
 
 /* What a point has pushed is known no more, but for its sum. */
@@ -212,12 +226,11 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
         const struct contact *is = j < found->n ? &found->c[j] : NULL;
         if (was && (!is || was->feature <= is->feature)) {
             const bool same = is && was->feature == is->feature;
-            *to = *was, to->near = false, i++;
+            *to = *was, to->there = false, i++;
             if (!same && !point_lasts(was)) continue;
-            if (same && small_is_zero(to->f)) to->starts = true;
             if (same) set_point(r, m, to, is), j++;
         } else {
-            *to = (struct small_point){ .starts = true };
+            *to = (struct small_point){ 0 };
             set_point(r, m, to, is), j++;
         }
         n++;
@@ -225,25 +238,49 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
     if (!array_grow(&m->point, &m->room, n, sizeof *m->point)) return false;
     if (n) memcpy(m->point, c->point, (size_t)n * sizeof *m->point);
     m->points = n;
-    hand_over(r, m);
     return true;
+}
+
+/* Which points are in reach */
+static void choose_points(const struct small_run *r, struct small_meeting *m)
+{
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        t->near = t->there && t->gap <= r->l->s.rate.reach;
+        if (t->near && small_is_zero(t->f)) t->starts = true;
+    }
+}
+
+static bool find_points(const struct small_run *r, struct small_meeting *m, double gap,
+                        struct small_scratch *c)
+{
+    const struct situation *at = &r->shapes.at;
+    const struct contact_key *k = &m->key;
+    const struct pair pair = { k->a, k->b, { k->shift[0], k->shift[1], k->shift[2] } };
+    bool room = true;
+    c->found.n = 0;
+    if (pair.a >= 0)
+        room = detect_pair(&c->found, at, &pair, gap);
+    else if (r->wall[-1 - pair.a].there)
+        room = detect_wall(&c->found, at, -1 - pair.a, pair.b, gap);
+    return room && take_points(r, m, c);
 }
 
 static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
                             struct small_scratch *c)
 {
-    const struct small_shapes *s = &r->shapes;
-    const double reach = r->l->s.rate.reach;
-    const struct pair pair = { m->key.a,
-                               m->key.b,
-                               { m->key.shift[0], m->key.shift[1], m->key.shift[2] } };
-    bool room = true;
-    c->found.n = 0;
-    if (pair.a >= 0)
-        room = detect_pair(&c->found, &s->at, &pair, reach);
-    else if (r->wall[-1 - pair.a].there)
-        room = detect_wall(&c->found, &s->at, -1 - pair.a, pair.b, reach);
-    return room && take_points(r, m, c);
+    const int32_t a = m->key.a, b = m->key.b;
+    const double *way = r->shapes.way, reach = r->l->s.rate.reach;
+    const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
+    bool there = false;
+    for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
+    if (there || !m->looked || reach + gone - m->way > m->wide) {
+        m->looked = true, m->way = gone, m->wide = reach + WIDE * r->thin;
+        if (!find_points(r, m, m->wide, c)) return false;
+    }
+    choose_points(r, m);
+    hand_over(r, m);
+    return true;
 }
 
 /* The points of body i with what does not move, as contacts; false when memory is short. */
@@ -419,19 +456,27 @@ static void roll_point(const struct small_run *r, const struct small_meeting *y,
     push_point(r, of, y, t, v3(0, 0, 0), small_vec(dm));
 }
 
-/* Returns by how much (m/s) the point's u changes. */
-static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+/* The reaction that a point has, f, and the one by its law, in its basis e */
+static void point_law(const struct small_run *r, const struct small_meeting *m,
+                      const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
-    struct small *s = &r->l->s;
-    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
-    const vec3 u = v3_add(point_velocity(m, t, s->body), small_vec(t->q)), had = small_vec(t->f);
-    double W[9], b[3], f[3], is[3], change2 = 0;
+    const vec3 u = v3_add(point_velocity(m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
-    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], had);
+    double W[9], b[3];
+    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
     for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
     memcpy(W, t->W, sizeof W);
     W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
     solve_local(r->p->dim, W, b, t->mu, is);
+}
+
+/* Returns by how much (m/s) the point's u changes. */
+static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+{
+    struct small *s = &r->l->s;
+    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
+    double f[3], is[3], change2 = 0;
+    point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
     small_array(t->f, new);
     push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
@@ -472,13 +517,17 @@ static bool is_hot(const struct small *s, const struct small_meeting *m)
 static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
 {
     int64_t near = 0;
+    bool hits = false, new = false;
     double first = 0;
     for (int64_t i = 0; i < m->points; i++) {
         if (!m->point[i].near) continue;
         if (!again) begin_point(r, m, &m->point[i]);
+        hits |= m->point[i].soft == 0;
+        new |= m->point[i].kept <= 0;
         near++;
     }
-    for (int k = 0; near && k < ROUNDS_MOST; k++) {
+    const int rounds = hits ? ROUNDS_MOST : new ? 6 : ROUNDS;
+    for (int k = 0; near && k < rounds; k++) {
         double most = 0;
         for (int64_t i = 0; i < m->points; i++)
             if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i]));
@@ -505,9 +554,26 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
             if (!t.near) t.f[k] = t.m[k] = 0;
         }
         t.starts = false;
-        if (t.near || point_lasts(&t)) m->point[n++] = t;
+        if (t.near || t.there || point_lasts(&t)) m->point[n++] = t;
     }
     m->points = n;
+}
+
+static void judge_meeting(struct small_run *r, const struct small_meeting *m)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < m->points; i++) {
+        const struct small_point *t = &m->point[i];
+        const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
+        double f[3], is[3];
+        if (!t->near) continue;
+        point_law(r, m, t, e, f, is);
+        for (int side = m->key.a < 0; side < 2; side++) {
+            const int32_t body = side ? m->key.b : m->key.a;
+            s->load[body] += norm3(f);
+            s->missing[body] += norm3((double[3]){ is[0] - f[0], is[1] - f[1], is[2] - f[2] });
+        }
+    }
 }
 
 /* What persists of the reactions, and what they have done to walls and bodies that do not move */
@@ -538,7 +604,7 @@ static void end_meeting(struct small_run *r, struct small_meeting *m)
 
 /* ---- all meetings ---- */
 
-enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_END };
+enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_JUDGE, PASS_END };
 
 static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
                           enum small_point_pass pass)
@@ -549,6 +615,7 @@ static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
         if (pass == PASS_START) start_meeting(r, m);
         if (pass == PASS_SWEEP) sweep_meeting(r, m, false);
         if (pass == PASS_AGAIN && is_hot(&r->l->s, m)) sweep_meeting(r, m, true);
+        if (pass == PASS_JUDGE) judge_meeting(r, m);
         if (pass == PASS_END) end_meeting(r, m);
     }
 }
@@ -574,6 +641,11 @@ void small_points_start(struct small_run *r, int me, int threads)
 void small_points_sweep(struct small_run *r, int me, int threads, bool again)
 {
     pass_groups(r, me, threads, again ? PASS_AGAIN : PASS_SWEEP);
+}
+
+void small_points_judge(struct small_run *r, int me, int threads)
+{
+    pass_groups(r, me, threads, PASS_JUDGE);
 }
 
 void small_points_end(struct small_run *r, int me, int threads)

@@ -31,6 +31,8 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end);
 void small_points_look(struct small_run *r, int me, int threads);
 void small_points_start(struct small_run *r, int me, int threads);
 void small_points_sweep(struct small_run *r, int me, int threads, bool again);
+/* What is missing of their reactions [step/small_error.h] */
+void small_points_judge(struct small_run *r, int me, int threads);
 void small_points_end(struct small_run *r, int me, int threads);
 
 /* By one thread: the points where the bodies are now */

@@ -14,6 +14,7 @@ struct small_wall {
     struct pose pose;
     vec3 at, v, spin; /* m; m/s, rad/s: of its material at that point */
     vec3 belt;        /* m/s */
+    double way;       /* m: that its fastest point has gone in the interval */
 };
 
 /* The cell in a small step [step/small_cell.h] */
@@ -39,6 +40,7 @@ struct small_shapes {
     quat *q;              /* [n] */
     double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
     double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
+    double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
     vec3 edge[3];         /* m */
     struct placed placed;
     struct situation at;
@@ -67,6 +69,7 @@ struct small_run {
     int32_t swept;           /* of the step in hand */
     bool begins, stop;       /* the first step; the list serves no longer, or the step fails */
     bool uneven;             /* bodies have masses so different that sweeps are slow */
+    bool judged;             /* its errors are summed up [step/small_error.h] */
     bool failed;             /* the interval is to be made at once */
     _Atomic bool far;        /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock;    /* of what follows */

@@ -11,6 +11,8 @@
 #include "state/rotation.h"
 #include "step/small_bonds.h"
 #include "step/small_cell.h"
+#include "step/small_error.h"
+#include "step/small_give.h"
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -131,6 +133,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_set_rates(r), take_bodies(r), small_walls_set(r);
+            if (!o->bare && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
             if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
@@ -176,12 +179,12 @@ static void small_balance(struct balance *b, const struct small_energy *before,
 {
     const struct small_bonds ties = small_bonds_account(r);
     const struct small_list *l = r->l;
-    vec3 impulse = l->gone_impulse;
+    vec3 impulse = v3(0, 0, 0);
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
     const struct small_pull pulls = small_pull_sum(r);
-    b->drives = pulls.carried + r->cell.work - l->gone_work, b->loads = pulls.work;
+    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work;
     impulse = v3_add(impulse, small_vec(pulls.impulse));
     b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
@@ -200,121 +203,9 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
 
-/* A contact with what it has pushed; false when memory is short. */
-static bool give_contact(struct contacts *out, const struct packing *p, const struct contact *at,
-                         vec3 sum, vec3(**sums))
-{
-    struct contact *c = contacts_add(out, at->a, at->b);
-    if (!c) return false;
-    contact_basis(c, p->dim, at->n);
-    memcpy(c->shift, at->shift, sizeof c->shift);
-    c->gap = at->gap, c->x = at->x, c->feature = at->feature;
-    packing_set_law(p, c);
-    *(*sums)++ = sum;
-    return true;
-}
-
-static bool give_touches(struct contacts *out, const struct small_run *r, vec3 **sums)
-{
-    struct small_list *l = r->l;
-    struct small_touch **by = small_list_touches(l);
-    bool room = by != NULL;
-    for (int64_t i = 0; room && i < l->touches; i++) {
-        struct small_touch *t = by[i];
-        const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-        if (!small_look_at_touch(r, t, l->margin)) continue;
-        struct contact c = { .a = -1 - t->wall, .b = t->body, .n = t->n };
-        c.gap = t->arm - l->s.place[t->body].r;
-        c.x = v3_axpy(small_vec(l->s.place[t->body].x), -t->arm, t->n);
-        if (c.gap <= 0 || v3_dot(sum, sum) > 0) room = give_contact(out, r->p, &c, sum, sums);
-    }
-    free(by);
-    return room;
-}
-
-static bool give_points(struct contacts *out, const struct small_run *r, vec3 **sums)
-{
-    bool room = true;
-    for (int64_t i = 0; room && i < r->l->meetings.n; i++) {
-        const struct small_meeting *m = &r->l->meetings.of[i];
-        struct contact c = { .a = m->key.a, .b = m->key.b };
-        memcpy(c.shift, m->key.shift, sizeof c.shift);
-        for (int64_t k = 0; room && k < m->points; k++) {
-            const struct small_point *t = &m->point[k];
-            const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-            c.feature = t->feature, c.n = t->n, c.gap = t->gap, c.x = t->x;
-            if ((t->near && c.gap <= 0) || v3_dot(sum, sum) > 0)
-                room = give_contact(out, r->p, &c, sum, sums);
-        }
-    }
-    return room;
-}
-
-static bool give_pairs(struct contacts *out, const struct small_run *r, vec3 **sums)
-{
-    const struct small *s = &r->l->s;
-    bool room = true;
-    for (int64_t i = 0; room && i < r->l->pairs.n; i++) {
-        const struct pair *q = &r->l->pairs.pair[i];
-        const int64_t slot = r->l->slot[i];
-        const struct small_bundle *b = &s->bundle[slot / BUNDLE];
-        const int k = (int)(slot % BUNDLE);
-        const vec3 sum =
-            v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k], b->sum[2][k] + b->f[2][k]);
-        const vec3 d = small_branch(s, slot);
-        const double length = v3_norm(d), ra = s->place[q->a].r;
-        struct contact c = { .a = q->a, .b = q->b, .n = v3_scale(1 / length, d) };
-        memcpy(c.shift, q->shift, sizeof c.shift);
-        c.gap = length - ra - s->place[q->b].r;
-        c.x = v3_axpy(small_vec(s->place[q->a].x), ra + 0.5 * c.gap, c.n);
-        if (c.gap <= 0 || v3_dot(sum, sum) > 0) room = give_contact(out, r->p, &c, sum, sums);
-    }
-    return room;
-}
-
-struct small_given {
-    struct contact c;
-    vec3 sum;
-};
-static int by_key(const void *x, const void *y)
-{
-    const struct small_given *s = x, *t = y;
-    return contact_compare(&s->c, &t->c);
-}
-
-/* Contacts and their sums in the order of keys; false when memory is short. */
-static bool sort_given(struct contacts *out, vec3 *sum)
-{
-    struct small_given *all = malloc((size_t)(out->n + 1) * sizeof *all);
-    for (int64_t i = 0; all && i < out->n; i++) all[i] = (struct small_given){ out->c[i], sum[i] };
-    if (all) qsort(all, (size_t)out->n, sizeof *all, by_key);
-    for (int64_t i = 0; all && i < out->n; i++) out->c[i] = all[i].c, sum[i] = all[i].sum;
-    free(all);
-    return all != NULL;
-}
-
-/* The contacts at the end of the interval, with the sums of their reactions over it */
-static int give_contacts(const struct small_run *r, struct contacts *out, struct failure *failure)
-{
-    const int64_t most = r->l->touches + r->l->pairs.n + small_meetings_points(&r->l->meetings);
-    vec3 *sum = malloc((size_t)(most + 1) * sizeof *sum), *next = sum;
-    out->n = 0, contacts_free_found(out), contacts_free_tie(out);
-    bool room = sum && give_touches(out, r, &next) && give_pairs(out, r, &next) &&
-                give_points(out, r, &next);
-    if (room && r->l->meetings.n) room = sort_given(out, sum);
-    room = room && !contacts_alloc_found(out);
-    for (int64_t i = 0; room && i < out->n; i++) {
-        const struct contact *c = &out->c[i];
-        struct found *f = &out->found[i];
-        f->r[0] = v3_dot(sum[i], c->n), f->r[1] = v3_dot(sum[i], c->t1);
-        f->r[2] = v3_dot(sum[i], contact_t2(c)), f->status = STATUS_SUMMED;
-    }
-    free(sum);
-    return room ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
-}
-
 /* What the report has been given before the step, and nothing of another step */
-static void small_report(struct report *rep, const struct small_run *r, const struct contacts *s)
+static void small_report(struct report *rep, const struct small_run *r, const struct contacts *s,
+                         bool bare)
 {
     *rep = (struct report){ .options = rep->options,
                             .criterion = rep->criterion,
@@ -324,7 +215,8 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .step = r->p->step,
                             .t = r->p->t,
                             .err = { .contacts = s->n, .max_overlap = contacts_max_overlap(s) },
-                            .balanced = true,
+                            .balanced = !bare,
+                            .fine = true,
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
@@ -364,6 +256,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const struct packing whole = *p;
     const int64_t count = small_count(p, o->overlap);
     *made = false;
+    if (packing_check_clock(p, failure)) return failure->status;
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
@@ -374,7 +267,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
-    p->dt = r.h, p->t0 = p->t;
+    p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
     small_cell_init(&r);
     if (!r.wall || !r.x || !r.turned)
@@ -382,10 +275,10 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
              !small_sums_init(&r, failure))
         small_steps(&r, o, rep, failure);
-    p->dt = whole.dt, p->t0 = whole.t0;
+    p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
     *made = !failure->status && !r.failed;
     if (*made && r.meets) small_points_last(&r);
-    if (*made && !give_contacts(&r, s, failure) && !small_bonds_keep(&r, failure) &&
+    if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
@@ -394,7 +287,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = small_energy_of(p);
-        small_report(rep, &r, s);
+        small_report(rep, &r, s, o->bare);
+        small_error_give(&r, rep);
         small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {
@@ -402,7 +296,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    small_points_free(&r);
+    small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }

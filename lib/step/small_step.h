@@ -16,6 +16,7 @@ struct small_opt {
     double overlap; /* radii of the smallest body: none is moved farther by a small step */
     int threads;
     struct neighbours *near; /* surfaces of meshes, kept from step to step */
+    bool bare;               /* nobody reads the errors and the contacts of this step */
     bool warm;               /* the first one starts from what the packing remembers */
 };
 

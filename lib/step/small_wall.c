@@ -2,6 +2,7 @@
 #include "step/small_wall.h"
 
 #include <math.h>
+#include <string.h>
 
 void small_walls_set(struct small_run *r)
 {
@@ -10,11 +11,13 @@ void small_walls_set(struct small_run *r)
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         const vec3 at = wall_at(p, wall, t);
+        const double way = r->wall[w].way + r->h * wall_top_speed(p, wall);
         r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
                                           .pose = wall_pose(p, wall, t),
                                           .at = at,
                                           .v = wall_held(p, wall, at),
-                                          .spin = wall_spin(p, wall) };
+                                          .spin = wall_spin(p, wall),
+                                          .way = way };
         r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
     }
 }
@@ -31,10 +34,31 @@ bool small_look_at_touch(const struct small_run *r, struct small_touch *t, doubl
     const struct small_place *b = &r->l->s.place[t->body];
     const vec3 x = small_vec(b->x);
     if (!w->there) return false;
-    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
-    if (!(t->arm - b->r <= reach)) return false;
+    vec3 n;
+    const double arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &n);
+    if (!(arm - b->r <= reach)) return false;
+    t->arm = arm, t->n = n;
     t->v = small_wall_velocity(w, v3_axpy(x, -t->arm, t->n), t->n);
     return true;
+}
+
+vec3 small_touch_velocity(const struct small_touch *t, const struct body *b)
+{
+    vec3 v = v3_sub(small_vec(b->v), t->v);
+    return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
+}
+
+void small_touch_law(const struct small_run *r, const struct small_touch *t, struct small_law *l)
+{
+    const struct small *s = &r->l->s;
+    const struct body *b = &s->body[t->body];
+    *l = (struct small_law){ .mu = t->mu,
+                             .calm = s->rate.calm,
+                             .gap = t->arm - s->place[t->body].r };
+    small_array(l->n, t->n), small_array(l->u, small_touch_velocity(t, b));
+    l->wn = b->im, l->wt = b->im + t->arm * t->arm * b->ii;
+    l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt;
+    memcpy(l->f, t->f, sizeof l->f), memcpy(l->q, t->q, sizeof l->q);
 }
 
 double small_wall_speed(const struct packing *p)

@@ -11,3 +11,7 @@ double small_wall_speed(const struct packing *p);
 vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n);
 /* Where the body of t is against its wall: n, v, arm. False: it is farther than `reach` (m). */
 bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach);
+/* m/s: of the body b against the wall at the contact */
+vec3 small_touch_velocity(const struct small_touch *t, const struct body *b);
+/* The law of a touch that is near, from where it is; but for rn */
+void small_touch_law(const struct small_run *r, const struct small_touch *t, struct small_law *l);

@@ -405,9 +405,14 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
                          .substeps = &steps },
                        kept };
     bool impulsive = false; // its reactions are no loads, from which small steps could begin
-    rep->small = rep->small_limited = 0;
+    rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
+    rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
     if (o->small > 0 && kept && !small_lacks(p)) {
-        const struct small_opt small = { o->small, o->solve.threads, &kept->near, o->warm };
+        const struct small_opt small = { .overlap = o->small,
+                                         .threads = o->solve.threads,
+                                         .near = &kept->near,
+                                         .bare = o->bare,
+                                         .warm = o->warm };
         bool made;
         rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
         if (small_advance(p, s, &kept->small, &small, rep, &made, failure) || made)

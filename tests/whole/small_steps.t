@@ -44,6 +44,13 @@ ok "a sliding disc ends at 2/3" near "$(body '.v[0]')" "2 / 3" 2e-5
 scene "$floor, mu: 0.5, rolling: { mu_r: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01, v: [1, 0, 0], w: [0, 100, 0] }]"
 small 300
 ok "rolling friction: v = v0 - 5/7 g mu_r t/r" near "$(body '.v[0]')" "1 - 5 / 7 * 9.81 * 0.01 * 0.3" 1e-5
+# a lift that starts late: what it does in a small step is not what it does at another time
+scene 'gravity: [0, 0, -9.81], dt: 1e-3, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], drives: [{ along: [0, 0, 1], table: [[0, 0], [0.1, 0], [0.2, 0.01], [0.3, 0.01]] }] }]'
+small 95
+ok "a ball on a floor that is to rise at 0.1 s is at rest before" near "$(body '.x[2]')" 0.01 2e-6
+small 150
+ok "and rises with it" near "$(body '.x[2]')" 0.015 1e-5
 
 # ---- many ----
 
@@ -72,6 +79,47 @@ nsd-gen 400 | nsd-step --small-steps 0.01 --until 1.5 --every 1000 -o "$tmp/pile
 ok "a pile of 400 comes to rest: less than 1e-5 m g d per ball" \
     eval 'nsd-info --last -p "$tmp/pile.h5" | jq -es "map(select(.id != null)) | (map(.v | map(. * .) | add) | add / length / 2)
         < 1e-5 * 9.81 * 2 * .[0].radius" >"$tmp/rest"'
+
+# ---- forces ----
+
+# m (v - v^-) = m g dt + the reactions of contacts, of each body and each step, over the largest reaction
+newton() # GRAVITY, of out.h5
+{
+    nsd-info -p -c "$tmp/out.h5" | jq -es --argjson g "$1" 'def plus($x; $s): [., $x] | transpose | map((.[0] // 0) + $s * .[1]);
+        group_by(.step) | map(select(.[0].step)) | [range(1; length) as $k | (.[$k - 1:$k + 1] | map(map(select(.id != null)))) as [$old, $new] |
+        map(.[] | select(.body)) as $all | [$all[] | select(.step == $new[0].step)] as $c |
+        (reduce $c[] as $c ({ most: 0 }; ([range(3) as $i | $c.r[0] * $c.n[$i] + $c.r[1] * $c.t1[$i] + $c.r[2] * $c.t2[$i]]) as $r |
+            .most = ([.most, $c.r[0]] | max) | .["\($c.body[0])"] |= plus($r; -1) | .["\($c.body[1])"] |= plus($r; 1))) as $f | select($f.most > 0) |
+        [range($new | length) as $i | $new[$i] | [.v, $old[$i].v, $f["\(.id)"] // [0, 0, 0], $g] | transpose[] as $x |
+            $new[$i].mass * ($x[0] - $x[1] - $x[3]) - $x[2] | fabs] | max / $f.most] | length > 1 and max < 1e-9' >"$tmp/newton"
+}
+nsd-gen 60 | nsd-step --small-steps 0.01 -n 300 --every 300 2>"$tmp/err" >"$tmp/in.h5"
+nsd-step --small-steps 0.01 -n 4 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "reactions of a heap are those of Newton's law" newton '[0, 0, -4.905e-4]' # of 5e-5 s
+# Balls that meet and part within a step, and fly past a plate with an edge
+scene 'dim: 3, dt: 2e-2, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.9,
+    walls: [{ rectangle: { center: [0.02, 0.02, 0], normal: [0, 0, 1], along: [1, 0, 0], sides: [0.03, 0.03] } }],
+    bodies: [range(5) as $i | range(5) as $j | range(3) as $k | { radius: 0.002, x: [$i, $j, $k] | map((. + 0.5) * 0.0083) } |
+        .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)]] | map(.v |= map(. * 0.5))'
+nsd-step --small-steps 0.01 -n 4 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "and of balls that have parted" newton '[0, 0, 0]'
+
+# ---- the error ----
+
+# In a pile at rest a sweep restores the 0.02 of the reactions that do not persist, and misses a part of that.
+ok "at rest an impulse of 0.005 to 0.02 of the load is missing" \
+    eval 'nsd-info --last -l "$tmp/pile.h5" | jq -es "map(select(.balance)) | last.balance.missing_impulse_mean | . > 0.005 and . < 0.02" >"$tmp/missing"'
+scene "$floor, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }]"
+small 20
+ok "of one ball on a floor nothing" near "$(last .balance.missing_impulse)" 0 1e-12
+jq -n "{ $floor, bodies: [range(10) | { x: [0, 0, (0.01 + 0.02 * .)], radius: 0.01 }] }" | nsd-gen - >"$tmp/in.h5"
+small 1
+first=$(last .balance.missing_impulse_mean)
+small 60
+ok "of a column whose reactions begin at 0 more than 0.04, at rest less than 0.01" \
+    near "($first > 0.04) and ($(last .balance.missing_impulse_mean) < 0.01) | if . then 0 else 1 end" 0 0
+nsd-step --small-steps 0.01 -n 5 --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+is "each line of a log has it" "$(jq -s 'map(select(.balance.missing_impulse > 0)) | length' "$tmp/log")" 5
 
 # ---- bytes, and words ----
 

@@ -1,0 +1,73 @@
+/* step/small_error.c: what is missing of the reactions of small steps [step/small_error.h]. */
+#include "step/small_error.h"
+
+#include "base/team.h"
+#include "step/small_point.h"
+#include "step/small_wall.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+int small_error_init(struct small_run *r, struct failure *failure)
+{
+    struct small *s = &r->l->s;
+    const size_t n = (size_t)r->p->n + 2;
+    s->missing = calloc(n, sizeof *s->missing), s->load = calloc(n, sizeof *s->load);
+    r->judged = true;
+    return s->missing && s->load ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for errors");
+}
+
+void small_error_free(struct small_run *r)
+{
+    struct small *s = &r->l->s;
+    free(s->missing), free(s->load);
+    s->missing = s->load = NULL, r->judged = false;
+}
+
+static void judge_touches(struct small_run *r, int64_t first, int64_t end)
+{
+    struct small *s = &r->l->s;
+    const int64_t last = small_list_touch(r->l, end, 0);
+    for (int64_t i = small_list_touch(r->l, first, 0); i < last; i++) {
+        const struct small_touch *t = &r->l->touch[i];
+        struct small_law l;
+        double df[3];
+        if (!t->near) continue;
+        small_touch_law(r, t, &l);
+        s->load[t->body] += norm3(l.f);
+        small_solve(&l, df);
+        s->missing[t->body] += norm3(df);
+    }
+}
+
+void small_error_step(struct small_run *r, int me, int threads)
+{
+    struct small *s = &r->l->s;
+    const int64_t n = s->bodies;
+    judge_touches(r, n * me / threads, n * (me + 1) / threads);
+    team_meet();
+    if (r->meets) small_points_judge(r, me, threads);
+    for (int64_t g = 0; g < s->serial; g++) {
+        const int64_t at = s->group[g], some = s->group[g + 1] - at;
+        r->kernel->judge(s, at + some * me / threads, at + some * (me + 1) / threads);
+        team_meet();
+    }
+    if (!me) r->kernel->judge(s, s->group[s->serial], s->bundles);
+    team_meet();
+}
+
+void small_error_give(const struct small_run *r, struct report *rep)
+{
+    const struct packing *p = r->p;
+    const struct small *s = &r->l->s;
+    const double fall = packing_most_fall(p) * (double)r->n;
+    double missing = 0, load = 0;
+    for (int64_t i = 0; r->judged && i < p->n; i++) {
+        const double carries = fmax(s->load[i], p->mass[i] * fall);
+        if (!(p->mass[i] > 0) || !(s->missing[i] > 0)) continue;
+        missing += s->missing[i], load += carries;
+        if (s->missing[i] > rep->missing * carries)
+            rep->missing = s->missing[i] / carries, rep->missing_id = p->id[i];
+    }
+    if (load > 0) rep->missing_mean = missing / load;
+}
