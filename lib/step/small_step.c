@@ -9,10 +9,12 @@
 #include "state/freedom.h"
 #include "state/placement.h"
 #include "state/rotation.h"
+#include "state/servo_box.h"
 #include "step/small_bonds.h"
 #include "step/small_cell.h"
 #include "step/small_error.h"
 #include "step/small_give.h"
+#include "step/small_load.h"
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -40,7 +42,10 @@ static const double ALLOWED[2] = { 1, 0.3 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (freedoms_in(p)) return "loads";
+    if (cell_yields(&p->cell)) return "a cell under a stress";
+    if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
+    if (freedoms_in(p) && (p->shape || p->mesh.elements))
+        return "loads, and grains with a shape or surfaces as walls";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
     if (p->sums.n && (p->shape || p->mesh.elements))
@@ -79,6 +84,8 @@ static void small_set_rates(struct small_run *r)
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
     const double change = fmax(fastest, UNSEEN * r->thin / r->h);
@@ -170,6 +177,7 @@ static struct small_energy small_energy_of(const struct packing *p)
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
+    e.kinetic += small_loads_energy(p);
     return e;
 }
 
@@ -184,7 +192,7 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
     const struct small_pull pulls = small_pull_sum(r);
-    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work;
+    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work;
     impulse = v3_add(impulse, small_vec(pulls.impulse));
     b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
@@ -273,10 +281,10 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
-             !small_sums_init(&r, failure))
+             !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
-    *made = !failure->status && !r.failed;
+    *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
     if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
@@ -296,6 +304,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
+    small_loads_free(&r, !*made);
     small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;

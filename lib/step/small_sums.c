@@ -1,6 +1,8 @@
 /* step/small_sums.c: sums of what bodies do to walls, in small steps [step/small_sums.h]. */
 #include "step/small_sums.h"
 
+#include "step/small_wall.h"
+
 #include <stdlib.h>
 
 int small_sums_init(struct small_run *r, struct failure *failure)
@@ -24,14 +26,15 @@ static void add_touch_sums(struct face_sums *to, const struct small_run *r,
     const vec3 push = small_vec(t->f), m = small_vec(t->m), spin = r->wall[t->wall].spin;
     const vec3 f = v3_axpy(push, -t->hold[HOLD_PULL], t->n);
     const vec3 x = v3_axpy(small_vec(s->place[t->body].x), -t->arm, t->n);
-    const vec3 w = small_mean(was->w, b->w), v = v3_sub(small_mean(was->v, b->v), t->v);
+    const vec3 w = small_mean(was->w, b->w), wall = v3_add(t->v, small_load_velocity(r, t));
+    const vec3 v = v3_sub(small_mean(was->v, b->v), wall);
     const vec3 u = v3_axpy(v, -t->arm, v3_cross(w, t->n));
     const vec3 ut = v3_axpy(u, -v3_dot(u, t->n), t->n);
     const double rn = v3_dot(f, t->n);
     to->impulse = v3_sub(to->impulse, f);
     to->moment = v3_sub(to->moment, v3_add(v3_cross(x, f), m));
     to->normal += rn, to->tangential += v3_norm(v3_axpy(f, -rn, t->n));
-    to->work -= v3_dot(f, t->v) + v3_dot(m, spin);
+    to->work -= v3_dot(f, wall) + v3_dot(m, spin);
     to->friction -= v3_dot(f, ut) + v3_dot(m, v3_sub(w, spin));
     if (rn > 0) to->rub += rn * v3_norm(ut);
 }
