@@ -260,6 +260,10 @@ void small_loop(void *arg, int me, int threads)
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();
         if (r->judged) small_error_step(r, me, threads);
+        if (r->cell.stress) {
+            small_cell_stress(r, me, threads);
+            team_meet();
+        }
         if (r->cell.moves && !me) small_cell_end(r);
         end_touches(r, first, end);
         team_meet();
@@ -267,6 +271,7 @@ void small_loop(void *arg, int me, int threads)
         if (r->loads.of && !me) small_loads_end(r);
         if (!me) finish_step(r);
         team_meet();
+        if (r->cell.stress) small_cell_follow(r, first, end);
         move_bodies(r, first, end);
         team_meet();
     }
