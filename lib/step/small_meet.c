@@ -109,12 +109,6 @@ static bool list_held(struct small_meetings *m, const struct packing *p)
     return true;
 }
 
-bool small_meetings_lay(struct small_meetings *m, const struct packing *p)
-{
-    if (m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
-    return group_meetings(m, p) && list_held(m, p);
-}
-
 /* ---- what they have ---- */
 
 struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key)
@@ -129,6 +123,36 @@ struct small_meeting *small_meetings_find(const struct small_meetings *m, struct
             hi = mid;
     }
     return lo < m->n && !contact_key_order(m->of[lo].key, key) ? &m->of[lo] : NULL;
+}
+
+static bool meeting_has_pushed(const struct small_meeting *m)
+{
+    for (int64_t i = 0; i < m->points; i++)
+        for (int k = 0; k < 3; k++)
+            if (m->point[i].f[k] != 0 || m->point[i].sum[k] != 0) return true;
+    return false;
+}
+
+/* In the order of keys; those that have pushed in this interval stay. */
+static bool sort_meetings(struct small_meetings *m, const struct packing *p,
+                          const struct small_meetings *from)
+{
+    struct small_meetings more = { 0 };
+    bool room = true;
+    if (m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    for (int64_t i = 0; room && i < from->n; i++)
+        if (meeting_has_pushed(&from->of[i]) && !small_meetings_find(m, from->of[i].key))
+            room = small_meetings_add(&more, p, from->of[i].key);
+    for (int64_t i = 0; room && i < more.n; i++) room = small_meetings_add(m, p, more.of[i].key);
+    if (more.n && m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    free(more.of);
+    return room;
+}
+
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p,
+                        const struct small_meetings *from)
+{
+    return sort_meetings(m, p, from) && group_meetings(m, p) && list_held(m, p);
 }
 
 void small_meetings_carry(struct small_meetings *to, struct small_meetings *from)

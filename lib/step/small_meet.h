@@ -60,8 +60,9 @@ static inline bool small_meets(const struct packing *p, int32_t a, int32_t b)
 void small_meetings_free(struct small_meetings *m);
 /* A meeting without points. False when memory is short, as all that follow. */
 bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key);
-/* Order, groups and held ones, when all have been added */
-bool small_meetings_lay(struct small_meetings *m, const struct packing *p);
+/* Order, groups and held ones, when all have been added; those of `from` that have pushed in this interval are added, too. */
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p,
+                        const struct small_meetings *from);
 /* NULL: none has this key, whatever its feature. */
 struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key);
 /* Points go over to the meetings of the same bodies. */
