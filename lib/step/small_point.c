@@ -7,6 +7,8 @@
 #include "contact/internal_edge.h"
 #include "solve/local_exact.h"
 #include "state/rotation.h"
+#include "step/small_pull.h"
+#include "step/small_tie.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -125,19 +127,25 @@ double small_point_speed(const struct small_run *r, int64_t i)
     return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
 }
 
-/* w^- follows as w does: what a step has added to it remains a moment's. */
+/* What has been added to the w of body i is a moment's, and remains so when the body turns to q. */
+static void keep_moment(const struct small_run *r, int64_t i, quat q, double w[3])
+{
+    const vec3 L = rotation_momentum(r->p, i, r->shapes.q[i], small_vec(w));
+    small_array(w, rotation_spin(r->p, i, q, L));
+}
+
 void small_points_place(struct small_run *r, int64_t first, int64_t end)
 {
     struct small_shapes *s = &r->shapes;
     for (int64_t i = first; i < end; i++) {
-        struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
+        struct body *b = &r->l->s.body[i];
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
         s->way[i] += r->h * small_point_speed(r, i);
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
-            const vec3 L = rotation_momentum(r->p, i, s->q[i], small_vec(was->w));
-            small_array(was->w, rotation_spin(r->p, i, q, L));
+            keep_moment(r, i, q, r->l->s.before[i].w);
+            if (r->pull) keep_moment(r, i, q, r->pull[i].dw);
             small_array(b->w, w);
         }
         s->q[i] = q;
@@ -403,6 +411,14 @@ static vec3 point_velocity(const struct small_meeting *m, const struct small_poi
     return v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
 }
 
+/* mu of the step, whose bodies slide with ut (m/s) before it */
+static double friction_at(const struct packing *p, const struct small_meeting *m, vec3 ut)
+{
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, packing_pair(p, m->key.a, m->key.b));
+    return mu[v3_norm(ut) > v_s];
+}
+
 /* The law in the first sweep of a step */
 static void begin_point(const struct small_run *r, const struct small_meeting *m,
                         struct small_point *t)
@@ -422,7 +438,9 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
     small_press(&l, o);
-    small_array(before, point_velocity(m, t, s->before));
+    const vec3 u = point_velocity(m, t, s->before);
+    if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
+    small_array(before, u);
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);

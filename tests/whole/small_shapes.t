@@ -96,6 +96,30 @@ q=$(body .q)
 nsd-step -n 2000 --every 2000 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "and tumbles as in large steps" near "[$q, $(body .q)] | transpose | map(.[0] * .[1]) | add" 1 1e-3
 
+
+# ---- laws ----
+
+block='shapes: { it: { box: [3, 2, 1] } }, bodies: [{ shape: "it", size: 0.1, x: [0, 0, 0.05], v: [1, 0, 0] }]' # m = 6 kg
+scene "gravity: [0, 0, 0], dt: 1e-3, density: 1000, $block, forces: [{ bodies: [0], about: [0, 0, 1], torque: 0.1 }]"
+ok "a torque on a box is made in small steps" small 100
+ok "a constant torque about a principal axis: w = T t/I" near "$(body '.w[2]')" "0.1 * 0.1 / (6 * 0.13 / 12)" 1e-9
+ok "its work is the kinetic energy: nothing is dissipated" near "$(last '.balance | .dissipation / .loads')" 0 1e-9
+sums() # JQ PROGRAM: of the sums that walls keep
+{
+    nsd-stat --last -m sums "$tmp/out.h5" 2>"$tmp/stat" | jq -c ".sums | $1"
+}
+scene "$floor, mu: 0.3, $block"
+ok "sums of walls are kept" small 400 --sums
+ok "a box that slides until it rests: friction takes its energy" near "$(sums '.friction[0]') / 3" 1 2e-3
+ok "and pushes the floor by its momentum" near "$(sums '.force[0][0] * 0.4') / 6" 1 2e-3
+ok "which carries m g" near "$(sums '.normal[0]') / (6 * 9.81)" 1 1e-3
+for mu in 0.45 0.55; do
+    scene "$(incline 0.5), mu: 0.3, mu_s: $mu, v_s: 1e-3, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0.05] }]"
+    small 300
+    ok "static friction of $mu $([ $mu = 0.55 ] && echo holds || echo releases) a cube on a slope of 0.5" \
+        eval "jq -en '($(body '.v[0]') > 0.3) == ($mu < 0.5)' >\"\$tmp/near\""
+done
+
 # ---- surfaces ----
 
 {
