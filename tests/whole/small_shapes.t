@@ -88,6 +88,12 @@ scene "$floor, gravity: [0, 0, 0], mu: 0, e_n: 0.5, $cube,
     bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0.08], v: [0, 0, -1], orientation: [0, 0.3926990817, 0] }]"
 small 20
 ok "a cube that strikes with an edge" near "$(body '.v[2]')" "-1 + 1.5 / (1 + 6 * (0.3926990817 | (cos - sin) * 0.5 | . * .))" 0.02
+# A rod at an angle whose tip reverses its slip: Newton's law with friction would give it 1.15 times its energy [Kane 1984].
+scene "$floor, gravity: [0, 0, 0], mu: 1.5, e_n: 1, shapes: { it: { capsule: { length: 1, radius: 0.02 } } },
+    bodies: [{ shape: \"it\", x: [0, 0, 0.365], v: [-0.3, 0, -0.5], orientation: [0, 0.7, 0] }]"
+before=$(nsd-info --last -l "$tmp/in.h5" | jq .kinetic_energy)
+small 120
+ok "a rod gains no energy from an impact" near "$(last .kinetic_energy) / $before" 0.995 0.005
 scene "gravity: [0, 0, 0], dt: 1e-3, shapes: { it: { box: [3, 2, 1] } }, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0], w: [0.1, 10, 0.1] }]"
 before=$(nsd-info --last -l "$tmp/in.h5" | jq .kinetic_energy)
 small 2000
@@ -175,7 +181,7 @@ small 300
 ok "a pour of several shapes: overlaps of at most 0.02 radii" near "$(last .account.overlap.value)" 0 0.02
 height=$(last .potential_energy) energy=$(last .kinetic_energy)
 nsd-step -n 300 --every 300 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
-ok "as high as the large step makes it" near "$height / $(last .potential_energy)" 1 0.03
+ok "as high as the large step makes it" near "$height / $(last .potential_energy)" 1 0.05
 ok "and nearly at rest" near "$energy / $height" 0 0.01
 ok "it has the same bytes for threads, lanes and resumed runs" same_bytes 60
 
