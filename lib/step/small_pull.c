@@ -1,6 +1,9 @@
 /* step/small_pull.c: forces on bodies in small steps [step/small_pull.h]. */
 #include "step/small_pull.h"
 
+#include "state/rotation.h"
+#include "step/small_point.h"
+
 #include <math.h>
 #include <stdlib.h>
 
@@ -32,8 +35,11 @@ static double half_work(const struct small_run *r, int64_t i)
     const struct body *b = &r->l->s.body[i];
     if (!(b->im > 0)) return 0;
     const vec3 pushed = v3_axpy(small_vec(y->dv), -r->h, p->g);
-    return 0.5 * (p->mass[i] * v3_dot(pushed, small_vec(b->v)) +
-                  p->inertia[i] * v3_dot(small_vec(y->dw), small_vec(b->w)));
+    const vec3 dw = small_vec(y->dw), w = small_vec(b->w);
+    const double turns = r->meets && rotation_is(p, i)
+                             ? v3_dot(rotation_momentum(p, i, r->shapes.q[i], dw), w)
+                             : p->inertia[i] * v3_dot(dw, w);
+    return 0.5 * (p->mass[i] * v3_dot(pushed, small_vec(b->v)) + turns);
 }
 
 /* The forces of the step that begins, in place of those of the last one */
@@ -46,7 +52,10 @@ static void next_forces(struct small_run *r, int64_t i)
     if (!(b->im > 0)) return;
     if (!r->begins) y->work += half_work(r, i);
     small_array(y->dv, v3_axpy(v3_scale(r->h, p->g), r->h * b->im, small_pull_on(p, i, t, false)));
-    small_array(y->dw, v3_scale(r->h * b->ii, small_pull_on(p, i, t, true)));
+    const vec3 torque = small_pull_on(p, i, t, true);
+    small_array(y->dw, r->meets && rotation_is(p, i)
+                           ? rotation_spin(p, i, r->shapes.q[i], v3_scale(r->h, torque))
+                           : v3_scale(r->h * b->ii, torque));
     y->work += half_work(r, i);
 }
 
@@ -64,7 +73,8 @@ double small_pull_bodies(struct small_run *r, int64_t first, int64_t end)
             b->w[k] += y->dw[k] + warm * (b->w[k] - was->w[k] - had.dw[k]);
         }
         small_array(was->v, v), small_array(was->w, w);
-        const double v2 = v3_dot(v, v);
+        double v2 = v3_dot(v, v);
+        if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
         most = v2 <= most ? most : v2; // not a number: it is the largest
     }
     return most;
