@@ -123,12 +123,6 @@ quat small_points_q(const struct small_run *r, int64_t i, vec3 *w)
     return turn_freely(r, i, -r->ahead, w);
 }
 
-double small_point_speed(const struct small_run *r, int64_t i)
-{
-    const struct body *b = &r->l->s.body[i];
-    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
-}
-
 /* What has been added to the w of body i is a moment's, and remains so when the body turns to q. */
 static void keep_moment(const struct small_run *r, int64_t i, quat q, double w[3])
 {
