@@ -1,6 +1,7 @@
 /* step/small_pull.c: forces on bodies in small steps [step/small_pull.h]. */
 #include "step/small_pull.h"
 
+#include "state/rotation.h"
 #include "step/small_cell.h"
 
 #include <math.h>
@@ -33,10 +34,13 @@ static void add_half_work(const struct small_run *r, int64_t i, struct small_pul
     const struct small_pull *y = &r->pull[i];
     const struct body *b = &r->l->s.body[i];
     if (!(b->im > 0)) return;
-    const vec3 v = small_vec(b->v), gain = small_vec(y->gain);
+    const vec3 v = small_vec(b->v), w = small_vec(b->w), gain = small_vec(y->gain);
     const vec3 pushed = v3_sub(v3_axpy(small_vec(y->dv), -r->h, p->g), gain);
-    to->work += 0.5 * (p->mass[i] * v3_dot(pushed, v) +
-                       p->inertia[i] * v3_dot(small_vec(y->dw), small_vec(b->w)));
+    const vec3 dw = small_vec(y->dw);
+    const double turns = r->meets && rotation_is(p, i)
+                             ? v3_dot(rotation_momentum(p, i, r->shapes.q[i], dw), w)
+                             : p->inertia[i] * v3_dot(dw, w);
+    to->work += 0.5 * (p->mass[i] * v3_dot(pushed, v) + turns);
     to->carried += 0.5 * p->mass[i] * v3_dot(gain, v);
 }
 
@@ -52,8 +56,11 @@ static void next_forces(struct small_run *r, int64_t i)
     vec3 gain = v3(0, 0, 0);
     if (r->cell.flow.changes) gain = cell_flow_gain(&r->cell.flow, small_vec(r->l->s.place[i].x));
     const vec3 dv = v3_axpy(v3_scale(r->h, p->g), r->h * b->im, small_pull_on(p, i, t, false));
+    const vec3 torque = small_pull_on(p, i, t, true);
     small_array(y->dv, v3_add(dv, gain)), small_array(y->gain, gain);
-    small_array(y->dw, v3_scale(r->h * b->ii, small_pull_on(p, i, t, true)));
+    small_array(y->dw, r->meets && rotation_is(p, i)
+                           ? rotation_spin(p, i, r->shapes.q[i], v3_scale(r->h, torque))
+                           : v3_scale(r->h * b->ii, torque));
     for (int k = 0; k < 3; k++) y->impulse[k] += p->mass[i] * y->gain[k];
     add_half_work(r, i, y);
 }
@@ -73,7 +80,8 @@ double small_pull_bodies(struct small_run *r, int64_t first, int64_t end)
         }
         small_array(was->v, v), small_array(was->w, w);
         const vec3 moves = small_cell_peculiar(r, small_vec(r->l->s.place[i].x), v);
-        const double v2 = v3_dot(moves, moves);
+        double v2 = v3_dot(moves, moves);
+        if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
         most = v2 <= most ? most : v2; // not a number: it is the largest
     }
     return most;

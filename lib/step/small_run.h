@@ -102,3 +102,10 @@ static inline bool small_is_loaded(const struct small_run *r, const struct small
 {
     return r->loads.of && r->loads.of[t->wall] >= 0;
 }
+
+/* m/s: at most, of a point of body i, which has a shape */
+static inline double small_point_speed(const struct small_run *r, int64_t i)
+{
+    const struct body *b = &r->l->s.body[i];
+    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+}

@@ -47,14 +47,12 @@ const char *small_lacks(const struct packing *p)
     if (freedoms_in(p) && (p->shape || p->mesh.elements))
         return "loads, and grains with a shape or surfaces as walls";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
-    if (p->sums.n && (p->shape || p->mesh.elements))
-        return "sums of what grains with a shape do to walls, or grains to surfaces";
+    if (p->sums.n && p->mesh.elements) return "sums of what grains do to surfaces";
     if (p->shape && small_cell_moves(p)) return "grains with a shape in a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
-    if ((p->shape || p->mesh.elements) && (small_tie_holds(p) || packing_sticks(p)))
-        return "attraction or static friction of grains with a shape, or on surfaces";
+    if ((p->shape || p->mesh.elements) && small_tie_holds(p))
+        return "attraction of grains with a shape, or on surfaces";
     return NULL;
 }
 
