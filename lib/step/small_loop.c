@@ -265,6 +265,7 @@ void small_loop(void *arg, int me, int threads)
             team_meet();
         }
         if (r->cell.moves && !me) small_cell_end(r);
+        if (r->cell.stress) team_meet(); // it reads the reactions of touches
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
