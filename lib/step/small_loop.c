@@ -71,8 +71,8 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
 {
     const struct small *s = &r->l->s;
     double before[3];
-    for (int k = 0; k < 3; k++)
-        t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM, t->m[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM;
     t->kept = dot3(l->n, l->f);
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
@@ -127,7 +127,8 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
     vec3 f = v3_scale(-1, persisting_force(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
     t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (!small_is_zero(t->f)) push_body(&r->l->s.body[t->body], t->n, t->arm, f, m);
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
 }
 
@@ -188,7 +189,7 @@ static void end_touches(struct small_run *r, int64_t first, int64_t end)
         if (rn <= most) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
-            t->sum[k] += back * t->f[k];
+            t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
             t->f[k] *= most / rn, t->m[k] *= most / rn;
         }
         push_body(&l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));
@@ -235,7 +236,7 @@ static void push_reactions(struct small_run *r, int me, int threads)
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
             memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
-                memset(t->sum, 0, sizeof t->sum);
+                memset(t->sum, 0, sizeof t->sum), memset(t->turned, 0, sizeof t->turned);
     }
 }
 
@@ -260,7 +261,7 @@ static void settle_slot(struct small *s, int64_t slot)
     if (s->turn) {
         struct small_turn *t = &s->turn[i];
         m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
-        for (int j = 0; j < 3; j++) t->m[j][k] *= left;
+        for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
     }
     push_body(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
     push_body(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),

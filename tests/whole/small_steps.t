@@ -103,6 +103,14 @@ scene 'dim: 3, dt: 2e-2, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.9,
         .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)]] | map(.v |= map(. * 0.5))'
 nsd-step --small-steps 0.01 -n 4 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "and of balls that have parted" newton '[0, 0, 0]'
+# A ball on a turntable: pivoting friction turns it, I dw = the moment of its contact
+scene 'dt: 1e-3, gravity: [0, 0, -10], density: 1000, mu: 0.5, rolling: { mu_p: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 5 }] }]'
+nsd-step --small-steps 0.002 -n 20 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "moments of a step are what turns a ball, and torques are those of the law" \
+    eval 'nsd-info -p -c "$tmp/out.h5" | jq -es "(4e-6 / 3 * 3.14159265358979 * 1000 * 0.4 * 1e-4) as \$I | map(select(.id == 0).w[2]) as \$w |
+        [[.[] | select(.moment).moment[0]][1:], [range(1; \$w | length) as \$k | \$I * (\$w[\$k] - \$w[\$k - 1])]] |
+        (transpose | length == 19 and all(.[0] - .[1] | fabs < 1e-15)) and (.[0] | add / length / 4.18879e-9 - 1 | fabs < 2e-3)" >"$tmp/moment"'
 
 # ---- the error ----
 
