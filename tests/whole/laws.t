@@ -23,7 +23,7 @@ whole()
     local group j m
     nsd-detect "$tmp/$1" | solve >"$tmp/solved.h5"
     nsd-move "$tmp/solved.h5" >"$tmp/parts.h5"
-    step -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
+    step --global auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
     for group in /particles /nsd/bonds /nsd/law /nsd/solver; do
         ok "$1: detect | solve | move and step give the same bits of $group" \
             cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/one.h5" $group)
