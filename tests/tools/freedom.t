@@ -41,7 +41,7 @@ is "the balances are in the document, and nsd-info shows them" \
 
 nsd-cat --last "$tmp/pressed.h5" >"$tmp/last.h5"
 nsd-detect "$tmp/last.h5" | solve | nsd-move >"$tmp/parts.h5"
-step -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
+step --global auto -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
 for group in /particles /observables; do
     ok "detect | solve | move and step give the same bits of $group" \
         cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/whole.h5" $group)
@@ -109,7 +109,7 @@ step -n $((2 * steps)) --every 100 --contacts --log "$tmp/cell.log" -o "$tmp/squ
 like "energy is balanced in a cell under pressure and shear stress" "$(misfit "$tmp/cell.log" | jq '. < 1e-13')" true
 nsd-cat --last "$tmp/squeezed.h5" >"$tmp/last-cell.h5"
 nsd-detect "$tmp/last-cell.h5" | solve | nsd-move >"$tmp/parts.h5"
-step -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
+step --global auto -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
 ok "detect | solve | move and step give the same bits" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 step -j 4 -n 20 "$tmp/last-cell.h5" >"$tmp/j4.h5"
 step -j 1 -n 20 "$tmp/last-cell.h5" >"$tmp/j1.h5"

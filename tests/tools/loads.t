@@ -102,7 +102,7 @@ ok "a part with a belt: v = mu g t" near "$(nsd-gen "$tmp/moved.json" | step -n 
 # a seam between two materials is no step: a ball rolls over it as over one surface
 strip '[{ "faces": [8, 15], "kind": "wall" }]'
 roll() { jq '.bodies = [{ x: [3.5, 0.3, 0.05], radius: 0.05, v: [1, 0, 0], w: [0, 20, 0] }]' "$1" >"$tmp/roll.json" && nsd-gen "$tmp/roll.json" |
-    step -n 900 --every 900 | nsd-info -p | jq -c '[.x[0], .v[2]] | map(. * 1e6 | round | fabs)'; }
+    step --global auto -n 900 --every 900 | nsd-info -p | jq -c '[.x[0], .v[2]] | map(. * 1e6 | round | fabs)'; }
 is "a ball rolls over the seam" "$(roll "$tmp/strip.json")" '[4400000,0]'
 strip '[{ "faces": [16, 16] }]' && cp "$tmp/strip.json" "$tmp/refused.json"
 ok "a face that is not there" says . 'no face 16: the surface has 16'

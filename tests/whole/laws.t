@@ -322,7 +322,7 @@ for g in anderson auto; do
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
 jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
-refuses 65 "nor are they solved with loads" nsd-step -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
+refuses 65 "nor are they solved with loads" nsd-step --global auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
 like "moments are within their limits" "$(nsd-info -c "$tmp/m.h5" | jq -s \
     'map(select(.mu_r) | (.moment[1] * .moment[1] + .moment[2] * .moment[2] | sqrt) <= 1e-4 * .r[0] * (1 + 1e-9) + 1e-30 and
         (.moment[0] | fabs) <= 5e-5 * .r[0] * (1 + 1e-9) + 1e-30) | length > 20 and all')" true
@@ -406,7 +406,7 @@ grains() # ADHESION
     jq -n --argjson a "$1" '{ dt: 2e-5, mu: 0.4, e_n: 0.2, walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
         bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] } +
         if $a then { adhesion: $a } else {} end' | nsd-gen - >"$tmp/grains.h5"
-    step -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
+    step --global auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
     nsd-cat --last "$tmp/some.h5" >"$tmp/bonded.h5"
     rm "$tmp/some.h5"
 }
