@@ -23,20 +23,11 @@ void small_meetings_free(struct small_meetings *m)
     *m = (struct small_meetings){ 0 };
 }
 
-/* A hull without rounding that moves, or a plane: no part of a surface that may have seams */
-static bool is_sharp(const struct packing *p, int32_t i)
-{
-    if (i < 0) return p->wall[-1 - i].shape == WALL_PLANE;
-    const struct shape *s = packing_shape(p, i);
-    return s && shape_has_faces(s) && s->round == 0 && p->mass[i] > 0;
-}
-
 bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key)
 {
     if (!array_grow(&m->of, &m->room, m->n + 1, sizeof *m->of)) return false;
     struct small_meeting *new = &m->of[m->n++];
     *new = (struct small_meeting){ .key = key };
-    new->follows = is_sharp(p, key.a) && is_sharp(p, key.b);
     contact_laws_rolling(p, key.a, key.b, &new->most[1], &new->most[0]);
     return true;
 }

@@ -26,14 +26,12 @@ struct small_point {
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
     vec3 v;        /* m/s: of the wall's material there */
-    vec3 on[2];    /* m: the places on a and b that meet there, in the axes of the bodies */
     double W[9];   /* 1/kg, in the basis */
 };
 
 struct small_meeting {
     struct contact_key key; /* without a feature */
     double most[2];         /* m: mu_p, mu_r */
-    bool follows; /* points may be followed for a while: those of sharp hulls, and with planes */
     bool looked;
     double wide, way; /* m: points were looked for to this gap; and what both had gone then */
     int64_t points, room;
