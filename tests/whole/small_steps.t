@@ -129,6 +129,60 @@ ok "of a column whose reactions begin at 0 more than 0.04, at rest less than 0.0
 nsd-step --small-steps 0.01 -n 5 --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 is "each line of a log has it" "$(jq -s 'map(select(.balance.missing_impulse > 0)) | length' "$tmp/log")" 5
 
+# ---- which runs make small steps ----
+
+nsd-gen 20 >"$tmp/in.h5"
+makes() # small|once OPTION ...: such steps, of in.h5
+{
+    nsd-step -n 1 "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" || return
+    if [ "$1" = small ]; then grep -q "1 steps were made in" "$tmp/err"; else ! grep -q small "$tmp/err"; fi
+}
+while read -ra option; do
+    ok "one solve per step: ${option[*]}" makes once "${option[@]}"
+done <<'END'
+--small-steps 0
+--global auto
+-m sbp
+-m auto
+--paper -m sbp
+--eps 1
+--criterion velocity
+--max-sweeps 100
+--max-seconds 100
+--alpha 1
+--newton plain
+--newton-max 10
+--relax 1
+--order colour
+--every-sweep
+--gap 0
+--overlap project
+--dt 5e-5
+--dt auto:0.01
+--substeps 1000
+--stiffness 1e3
+END
+while read -ra option; do
+    ok "small steps: ${option[*]-without options}" makes small "${option[@]}"
+done <<'END'
+
+--small-steps 0.02
+--small-steps 0.02 --global nlgs --eps 1e-3 --overlap keep
+--theta 0.7
+--cold
+--warm
+-j 2
+--contacts --sums
+END
+nsd-step --paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
+ok "one solve per step: a document with another rule of overlaps" makes once
+nsd-gen 20 | nsd-step --global auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
+ok "small steps: one with the default rule" makes small
+scene "$floor, bodies: [{ x: [0, 0, 0.0105], radius: 0.01, v: [0, 0, -1] }] } | .dt = \"auto\" | { walls, gravity, dt, bodies"
+ok "one solve per step: a scene with dt \"auto\"" makes once
+scene "$floor, stiffness: 1e5, bodies: [{ x: [0, 0, 0.02], radius: 0.01 }]"
+ok "and one with contacts that have a stiffness" makes once
+
 # ---- bytes, and words ----
 
 nsd-gen 400 | nsd-step --small-steps 0.02 -n 40 --every 20 -o "$tmp/one.h5" 2>"$tmp/err"
