@@ -54,7 +54,9 @@ ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s
     bodies_load(&y->a, s->body, y->c->a + y->k, &y->ma);
     bodies_load(&y->b, s->body, y->c->b + y->k, &y->mb);
     vd distance = root(y->d2), per = 1 / distance;
-    for (int j = 0; j < 3; j++) y->n[j] = y->d[j] * per;
+    const vm apart =
+        lt(splat(0), distance); // bodies in one place have the normal of small_normal()
+    for (int j = 0; j < 3; j++) y->n[j] = pick(apart, y->d[j] * per, splat(j == 1));
     y->gap = distance - (y->ra + y->rb);
     y->la = y->ra + 0.5 * y->gap, y->lb = y->rb + 0.5 * y->gap;
 }

@@ -19,7 +19,7 @@ static double slot_gap(const struct small *s, int64_t slot, vec3 *n)
     const int64_t a = body_index(c->a[slot % BUNDLE]), b = body_index(c->b[slot % BUNDLE]);
     const vec3 d = small_branch(s, slot);
     const double length = v3_norm(d);
-    *n = v3_scale(1 / length, d);
+    *n = small_normal(d);
     return length - s->place[a].r - s->place[b].r;
 }
 
@@ -109,7 +109,7 @@ static bool touch_gap(const struct small_run *r, struct small_touch *t, double *
 struct small_bonds small_bonds_account(struct small_run *r)
 {
     struct small_list *l = r->l;
-    struct small_bonds sum = { .joined = l->gone_joined };
+    struct small_bonds sum = { .joined = 0 };
     if (!l->s.hold) return sum;
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];

@@ -38,11 +38,11 @@ static bool give_touches(struct given *g)
     for (int64_t i = 0; room && i < l->touches; i++) {
         struct small_touch *t = by[i];
         const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-        if (!small_look_at_touch(r, t, l->margin)) continue;
+        const bool near = small_look_at_touch(r, t, l->margin);
         struct contact c = { .a = -1 - t->wall, .b = t->body, .n = t->n };
         c.gap = t->arm - l->s.place[t->body].r;
         c.x = v3_axpy(small_vec(l->s.place[t->body].x), -t->arm, t->n);
-        room = give_contact(g, &c, true, sum);
+        room = give_contact(g, &c, near, sum);
     }
     free(by);
     return room;
@@ -82,7 +82,7 @@ static bool give_pairs(struct given *g)
         const vec3 sum =
             v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k], b->sum[2][k] + b->f[2][k]);
         const double length = v3_norm(d);
-        struct contact c = { .a = q->a, .b = q->b, .n = v3_scale(1 / length, d) };
+        struct contact c = { .a = q->a, .b = q->b, .n = small_normal(d) };
         memcpy(c.shift, q->shift, sizeof c.shift);
         c.gap = length - touching;
         c.x = v3_axpy(small_vec(s->place[q->a].x), ra + 0.5 * c.gap, c.n);

@@ -273,15 +273,57 @@ struct contact_key small_pair_key(const struct pair *q)
     return (struct contact_key){ q->a, q->b, 0, { q->shift[0], q->shift[1], q->shift[2] } };
 }
 
-int64_t small_list_pair(const struct small_list *l, int64_t from, struct contact_key key,
-                        bool *found)
+/* small_list_pair() among the first `end` pairs */
+static int64_t find_pair(const struct small_list *l, int64_t from, int64_t end,
+                         struct contact_key key, bool *found)
 {
     int order = -1;
-    while (from < l->pairs.n &&
-           (order = contact_key_order(small_pair_key(&l->pairs.pair[from]), key)) < 0)
+    while (from < end && (order = contact_key_order(small_pair_key(&l->pairs.pair[from]), key)) < 0)
         from++;
     *found = order == 0;
     return from;
+}
+
+int64_t small_list_pair(const struct small_list *l, int64_t from, struct contact_key key,
+                        bool *found)
+{
+    return find_pair(l, from, l->pairs.n, key, found);
+}
+
+static bool has_pushed(const double f[3], const double sum[3], const double held[HOLD_COUNT])
+{
+    return !small_is_zero(f) || !small_is_zero(sum) || held[HOLD_JOINED] < 0;
+}
+
+static bool pair_has_pushed(const struct small_list *l, int64_t i)
+{
+    const struct small_past x = past_of(&l->s, l->slot[i]);
+    return has_pushed(x.f, x.sum, x.held);
+}
+
+static int pair_order(const void *x, const void *y)
+{
+    return contact_key_order(small_pair_key(x), small_pair_key(y));
+}
+
+/* Pairs that have pushed in this interval stay in the list, however far they are: the frame has them. */
+static bool keep_pairs(struct small_list *to, const struct small_list *from)
+{
+    struct pairs *p = &to->pairs;
+    const int64_t n = p->n;
+    int64_t k = 0, more = 0;
+    bool found;
+    for (int64_t i = 0; i < from->pairs.n; i++) more += pair_has_pushed(from, i);
+    struct pair *pair = realloc(p->pair, (size_t)(n + more + 1) * sizeof *pair);
+    if (!pair) return false;
+    p->pair = pair;
+    for (int64_t i = 0; i < from->pairs.n; i++) {
+        if (!pair_has_pushed(from, i)) continue;
+        k = find_pair(to, k, n, small_pair_key(&from->pairs.pair[i]), &found);
+        if (!found) p->pair[p->n++] = from->pairs.pair[i];
+    }
+    if (p->n > n) qsort(p->pair, (size_t)p->n, sizeof *p->pair, pair_order);
+    return true;
 }
 
 /* Pairs that were in the list before */
@@ -291,13 +333,10 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
-        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 || x.held[HOLD_JOINED] < 0;
-        if (small_is_zero(x.f) && small_is_zero(x.sum) && !holds) continue;
+        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0;
+        if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
-        if (found)
-            set_past(&to->s, to->slot[k], &x);
-        else
-            to->gone_joined += x.held[HOLD_JOINED];
+        if (found) set_past(&to->s, to->slot[k], &x);
     }
 }
 
@@ -342,28 +381,6 @@ static bool near_mesh(const struct small_list *l, const struct packing *p, const
     return surface_walk_next(&walk, s->box, c, most, &leaf);
 }
 
-static bool find_touches(struct small_list *l, const struct packing *p, const vec3 *x, double t)
-{
-    struct pose *pose = malloc(((size_t)p->walls + 1) * sizeof *pose);
-    bool room = pose != NULL;
-    for (int32_t w = 0; room && w < p->walls; w++) pose[w] = wall_pose(p, &p->wall[w], t);
-    for (int64_t i = 0; room && i < p->n; i++)
-        for (int32_t w = 0; room && w < p->walls; w++) {
-            vec3 n;
-            if (!wall_there(&p->wall[w], t) || !packing_may_meet(p, -1 - w, (int32_t)i)) continue;
-            const double most = p->radius[i] + l->margin;
-            const struct contact_key key = { .a = -1 - w, .b = (int32_t)i };
-            if (p->wall[w].shape == WALL_MESH
-                    ? !near_mesh(l, p, &pose[w], w, x[i], most)
-                    : !(small_wall_distance(p, &pose[w], w, x[i], most, &n) <= most))
-                continue;
-            room = small_meets(p, key.a, key.b) ? small_meetings_add(&l->meetings, p, key)
-                                                : add_touch(l, p, w, (int32_t)i);
-        }
-    free(pose);
-    return room;
-}
-
 int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall)
 {
     int64_t lo = 0, hi = l->touches;
@@ -385,28 +402,52 @@ struct small_touch *small_list_find_touch(const struct small_list *l, int32_t bo
                                                                                   : NULL;
 }
 
+/* Has body i pushed wall w in this interval? */
+static bool touch_has_pushed(const struct small_list *l, int32_t i, int32_t w)
+{
+    const struct small_touch *t = small_list_find_touch(l, i, w);
+    return t && has_pushed(t->f, t->sum, t->hold);
+}
+
+/* Is body i near wall w, where `pose` has brought it? */
+static bool near_wall(const struct small_list *l, const struct packing *p, const struct pose *pose,
+                      int32_t w, int32_t i, vec3 x)
+{
+    vec3 n;
+    const double most = p->radius[i] + l->margin;
+    if (!packing_may_meet(p, -1 - w, i)) return false;
+    if (p->wall[w].shape == WALL_MESH) return near_mesh(l, p, pose, w, x, most);
+    return small_wall_distance(p, pose, w, x, most, &n) <= most;
+}
+
+/* Touches and meetings with walls; those that have pushed in this interval stay, however far they are. */
+static bool find_touches(struct small_list *l, const struct small_list *from,
+                         const struct packing *p, const vec3 *x, double t)
+{
+    struct pose *pose = malloc(((size_t)p->walls + 1) * sizeof *pose);
+    bool room = pose != NULL;
+    for (int32_t w = 0; room && w < p->walls; w++) pose[w] = wall_pose(p, &p->wall[w], t);
+    for (int32_t i = 0; room && i < p->n; i++)
+        for (int32_t w = 0; room && w < p->walls; w++) {
+            const bool near = wall_there(&p->wall[w], t) && near_wall(l, p, &pose[w], w, i, x[i]);
+            if (small_meets(p, -1 - w, i)) {
+                if (near)
+                    room = small_meetings_add(&l->meetings, p,
+                                              (struct contact_key){ .a = -1 - w, .b = i });
+            } else if (near || touch_has_pushed(from, i, w)) {
+                room = add_touch(l, p, w, i);
+            }
+        }
+    free(pose);
+    return room;
+}
+
 static void carry_touches(struct small_list *to, const struct small_list *from)
 {
     for (int64_t i = 0; i < from->touches; i++) {
         const struct small_touch *t = &from->touch[i];
         struct small_touch *same = small_list_find_touch(to, t->body, t->wall);
-        if (same) {
-            *same = *t;
-        } else {
-            const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
-            to->gone_work += t->work, to->gone_joined += t->hold[HOLD_JOINED];
-            to->gone_impulse = v3_add(to->gone_impulse, sum);
-        }
-    }
-}
-
-static void carry_meetings(struct small_list *to, struct small_list *from)
-{
-    small_meetings_carry(&to->meetings, &from->meetings);
-    for (int64_t i = 0; i < from->meetings.n; i++) {
-        const struct small_meeting *m = &from->meetings.of[i];
-        to->gone_work += m->work;
-        to->gone_impulse = v3_add(to->gone_impulse, small_meeting_impulse(m, to->s.body));
+        if (same) *same = *t;
     }
 }
 
@@ -426,10 +467,12 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
     cell_predict(&p->cell, 0, edge);
     if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
-        room = (!p->shape || take_meetings(l, p)) && small_pairs_lay(l, p, x) &&
-               find_touches(l, p, x, t) &&
-               ((!p->shape && !p->mesh.elements) || small_meetings_lay(&l->meetings, p));
-        if (room) carry_pairs(l, &was), carry_touches(l, &was), carry_meetings(l, &was);
+        room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
+               small_pairs_lay(l, p, x) && find_touches(l, &was, p, x, t) &&
+               ((!p->shape && !p->mesh.elements) ||
+                small_meetings_lay(&l->meetings, p, &was.meetings));
+        if (room) carry_pairs(l, &was), carry_touches(l, &was);
+        if (room) small_meetings_carry(&l->meetings, &was.meetings);
     }
     if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     memcpy(l->listed, x, (size_t)p->n * sizeof *x);
@@ -447,6 +490,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         const struct recall *r = &p->memory.recall[i];
         struct small_past x = { 0 };
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
+        for (int k = 0; k < 3; k++) x.sum[k] = -x.f[k]; // the interval before has counted it
         struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
         if (m) {
             room = room && small_meeting_recall(m, r, part);
@@ -454,7 +498,9 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         }
         if (r->a < 0) {
             struct small_touch *t = small_list_find_touch(l, r->b, -1 - r->a);
-            if (t) memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
+            if (!t) continue;
+            memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
+            memcpy(t->sum, x.sum, sizeof t->sum);
             continue;
         }
         at = small_list_pair(l, at, recall_key(r), &found);

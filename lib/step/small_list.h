@@ -35,10 +35,6 @@ struct small_list {
     int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
-    /* Of this interval, by touches that are in the list no more */
-    double gone_work;   /* J */
-    double gone_joined; /* J: by bridges of pairs, too [solve/small_hold.h] */
-    vec3 gone_impulse;  /* N s */
 };
 
 void small_list_free(struct small_list *l);
@@ -69,6 +65,12 @@ struct contact_key small_pair_key(const struct pair *pair);
 
 /* m, from a to the image of b that it meets: of slot i */
 vec3 small_branch(const struct small *s, int64_t slot);
+/* Of a branch; of bodies in one place, that along y */
+static inline vec3 small_normal(vec3 branch)
+{
+    const double length = v3_norm(branch);
+    return length > 0 ? v3_scale(1 / length, branch) : v3(0, 1, 0);
+}
 /* m: how far the point x is from wall w, where `pose` has brought it, and the normal there; infinite where a ball of radius r
    has left it */
 double small_wall_distance(const struct packing *p, const struct pose *pose, int32_t w, vec3 x,

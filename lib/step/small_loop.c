@@ -234,7 +234,8 @@ static void push_reactions(struct small_run *r, int me, int threads)
             push_body(&s->body[t->body], t->n, t->arm, persisting_force(t),
                       v3_scale(SMALL_WARM, small_vec(t->m)));
         else
-            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m);
+            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
+                memset(t->sum, 0, sizeof t->sum);
     }
 }
 
@@ -248,7 +249,7 @@ static void settle_slot(struct small *s, int64_t slot)
     if (a >= s->bodies) return;
     const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const vec3 n = v3_scale(1 / length, d);
+    const vec3 n = small_normal(d);
     const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
     const double most = small_persists(&s->rate, held, w, rn);

@@ -23,20 +23,11 @@ void small_meetings_free(struct small_meetings *m)
     *m = (struct small_meetings){ 0 };
 }
 
-/* A hull without rounding that moves, or a plane: no part of a surface that may have seams */
-static bool is_sharp(const struct packing *p, int32_t i)
-{
-    if (i < 0) return p->wall[-1 - i].shape == WALL_PLANE;
-    const struct shape *s = packing_shape(p, i);
-    return s && shape_has_faces(s) && s->round == 0 && p->mass[i] > 0;
-}
-
 bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key)
 {
     if (!array_grow(&m->of, &m->room, m->n + 1, sizeof *m->of)) return false;
     struct small_meeting *new = &m->of[m->n++];
     *new = (struct small_meeting){ .key = key };
-    new->follows = is_sharp(p, key.a) && is_sharp(p, key.b);
     contact_laws_rolling(p, key.a, key.b, &new->most[1], &new->most[0]);
     return true;
 }
@@ -118,12 +109,6 @@ static bool list_held(struct small_meetings *m, const struct packing *p)
     return true;
 }
 
-bool small_meetings_lay(struct small_meetings *m, const struct packing *p)
-{
-    if (m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
-    return group_meetings(m, p) && list_held(m, p);
-}
-
 /* ---- what they have ---- */
 
 struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key)
@@ -138,6 +123,36 @@ struct small_meeting *small_meetings_find(const struct small_meetings *m, struct
             hi = mid;
     }
     return lo < m->n && !contact_key_order(m->of[lo].key, key) ? &m->of[lo] : NULL;
+}
+
+static bool meeting_has_pushed(const struct small_meeting *m)
+{
+    for (int64_t i = 0; i < m->points; i++)
+        for (int k = 0; k < 3; k++)
+            if (m->point[i].f[k] != 0 || m->point[i].sum[k] != 0) return true;
+    return false;
+}
+
+/* In the order of keys; those that have pushed in this interval stay. */
+static bool sort_meetings(struct small_meetings *m, const struct packing *p,
+                          const struct small_meetings *from)
+{
+    struct small_meetings more = { 0 };
+    bool room = true;
+    if (m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    for (int64_t i = 0; room && i < from->n; i++)
+        if (meeting_has_pushed(&from->of[i]) && !small_meetings_find(m, from->of[i].key))
+            room = small_meetings_add(&more, p, from->of[i].key);
+    for (int64_t i = 0; room && i < more.n; i++) room = small_meetings_add(m, p, more.of[i].key);
+    if (more.n && m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    free(more.of);
+    return room;
+}
+
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p,
+                        const struct small_meetings *from)
+{
+    return sort_meetings(m, p, from) && group_meetings(m, p) && list_held(m, p);
 }
 
 void small_meetings_carry(struct small_meetings *to, struct small_meetings *from)

@@ -26,14 +26,12 @@ struct small_point {
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
     vec3 v;        /* m/s: of the wall's material there */
-    vec3 on[2];    /* m: the places on a and b that meet there, in the axes of the bodies */
     double W[9];   /* 1/kg, in the basis */
 };
 
 struct small_meeting {
     struct contact_key key; /* without a feature */
     double most[2];         /* m: mu_p, mu_r */
-    bool follows; /* points may be followed for a while: those of sharp hulls, and with planes */
     bool looked;
     double wide, way; /* m: points were looked for to this gap; and what both had gone then */
     int64_t points, room;
@@ -62,8 +60,9 @@ static inline bool small_meets(const struct packing *p, int32_t a, int32_t b)
 void small_meetings_free(struct small_meetings *m);
 /* A meeting without points. False when memory is short, as all that follow. */
 bool small_meetings_add(struct small_meetings *m, const struct packing *p, struct contact_key key);
-/* Order, groups and held ones, when all have been added */
-bool small_meetings_lay(struct small_meetings *m, const struct packing *p);
+/* Order, groups and held ones, when all have been added; those of `from` that have pushed in this interval are added, too. */
+bool small_meetings_lay(struct small_meetings *m, const struct packing *p,
+                        const struct small_meetings *from);
 /* NULL: none has this key, whatever its feature. */
 struct small_meeting *small_meetings_find(const struct small_meetings *m, struct contact_key key);
 /* Points go over to the meetings of the same bodies. */

@@ -17,10 +17,9 @@
 #define BESIDE 0.2
 #define ALONG  0.9
 
-/* Of the smallest thickness: how much farther than in reach points are looked for, which serves until the bodies have gone as
-   far; and how far they may go while points are followed */
-#define WIDE    0.05
-#define FOLLOWS 0.005
+/* Of the smallest thickness: how much farther than in reach points are looked for. Where there is none, that serves until
+   the bodies have gone as far. */
+#define WIDE 0.05
 
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 30
@@ -188,10 +187,6 @@ static void set_point(const struct small_run *r, const struct small_meeting *m,
     for (int k = 0; k < 9; k++) t->W[k] = 0;
     add_block(r, t, b, t->b);
     if (a >= 0) add_block(r, t, a, t->a);
-    if (!m->follows) return;
-    const double half = a < 0 ? 0 : 0.5 * c->gap;
-    if (a >= 0) t->on[0] = quat_turn_back(r->shapes.q[a], v3_axpy(t->a, -half, c->n));
-    t->on[1] = quat_turn_back(r->shapes.q[b], v3_axpy(t->b, c->gap - half, c->n));
 }
 
 /* What a point has pushed is known no more, but for its sum. */
@@ -246,28 +241,6 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
     return true;
 }
 
-/* The places of the points follow their bodies, with the normals that they have. */
-static void follow_points(const struct small_run *r, struct small_meeting *m)
-{
-    const int32_t a = m->key.a, b = m->key.b;
-    const quat *q = r->shapes.q;
-    const vec3 xb = v3_add(r->x[b], image_of(r, m));
-    for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *t = &m->point[i];
-        if (!t->there) continue;
-        const vec3 on_b = v3_add(xb, quat_turn(q[b], t->on[1]));
-        if (a < 0) {
-            t->gap = v3_dot(t->n, v3_sub(on_b, r->wall[-1 - a].at));
-            t->x = v3_axpy(on_b, -t->gap, t->n);
-        } else {
-            const vec3 on_a = v3_add(r->x[a], quat_turn(q[a], t->on[0]));
-            t->gap = v3_dot(t->n, v3_sub(on_b, on_a));
-            t->x = v3_scale(0.5, v3_add(on_a, on_b));
-        }
-        set_arms(r, m, t);
-    }
-}
-
 /* Which points are in reach */
 static void choose_points(const struct small_run *r, struct small_meeting *m)
 {
@@ -299,12 +272,9 @@ static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
     const int32_t a = m->key.a, b = m->key.b;
     const double *way = r->shapes.way, reach = r->l->s.rate.reach;
     const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
-    const bool serves = m->looked && reach + gone - m->way <= m->wide;
     bool there = false;
     for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
-    if (serves && there && m->follows && gone - m->way <= FOLLOWS * r->thin) {
-        follow_points(r, m);
-    } else if (!serves || there) {
+    if (there || !m->looked || reach + gone - m->way > m->wide) {
         m->looked = true, m->way = gone, m->wide = reach + WIDE * r->thin;
         if (!find_points(r, m, m->wide, c)) return false;
     }
@@ -547,15 +517,16 @@ static bool is_hot(const struct small *s, const struct small_meeting *m)
 static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
 {
     int64_t near = 0;
-    bool hits = false;
+    bool hits = false, new = false;
     double first = 0;
     for (int64_t i = 0; i < m->points; i++) {
         if (!m->point[i].near) continue;
         if (!again) begin_point(r, m, &m->point[i]);
         hits |= m->point[i].soft == 0;
+        new |= m->point[i].kept <= 0;
         near++;
     }
-    const int rounds = hits ? ROUNDS_MOST : ROUNDS;
+    const int rounds = hits ? ROUNDS_MOST : new ? 6 : ROUNDS;
     for (int k = 0; near && k < rounds; k++) {
         double most = 0;
         for (int64_t i = 0; i < m->points; i++)

@@ -178,11 +178,11 @@ static void small_balance(struct balance *b, const struct small_energy *before,
 {
     const struct small_bonds ties = small_bonds_account(r);
     const struct small_list *l = r->l;
-    vec3 impulse = l->gone_impulse;
+    vec3 impulse = v3(0, 0, 0);
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = -l->gone_work, b->loads = small_pull_work(r);
+    b->drives = 0, b->loads = small_pull_work(r);
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
@@ -251,6 +251,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const struct packing whole = *p;
     const int64_t count = small_count(p, o->overlap);
     *made = false;
+    if (packing_check_clock(p, failure)) return failure->status;
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);

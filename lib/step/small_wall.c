@@ -34,8 +34,10 @@ bool small_look_at_touch(const struct small_run *r, struct small_touch *t, doubl
     const struct small_place *b = &r->l->s.place[t->body];
     const vec3 x = small_vec(b->x);
     if (!w->there) return false;
-    t->arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &t->n);
-    if (!(t->arm - b->r <= reach)) return false;
+    vec3 n;
+    const double arm = small_wall_distance(r->p, &w->pose, t->wall, x, b->r + reach, &n);
+    if (!(arm - b->r <= reach)) return false;
+    t->arm = arm, t->n = n;
     t->v = small_wall_velocity(w, v3_axpy(x, -t->arm, t->n), t->n);
     return true;
 }
