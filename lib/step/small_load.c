@@ -210,4 +210,6 @@ void small_loads_end(struct small_run *r)
         freedom_move(f, r->p, o->change[k], false);
     }
     freedoms_move_rates(&o->list, r->p, false);
+    struct failure failure = { 0 };
+    if (servo_box_check_growth(r->p, &failure)) r->failed = r->stop = true;
 }
