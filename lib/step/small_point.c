@@ -205,22 +205,32 @@ static bool point_lasts(const struct small_point *t)
     return !small_is_zero(t->f) || !small_is_zero(t->sum);
 }
 
-/* Points that are there no more leave their reactions to new ones beside them. */
+/* The nearest point of those in reach that is beside one that has gone, and, where `starts`, without a reaction; NULL */
+static struct small_point *point_beside(const struct small_run *r, struct small_meeting *m,
+                                        const struct small_point *gone, bool starts)
+{
+    struct small_point *next = NULL;
+    double least = BESIDE * r->thin;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        const double way = v3_norm(v3_sub(t->x, gone->x));
+        if (!t->near || (starts && !t->starts) || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
+            continue;
+        least = way, next = t;
+    }
+    return next;
+}
+
+/* Points that are in reach no more leave their reactions, and what they have pushed, to others beside them. */
 static void hand_over(const struct small_run *r, struct small_meeting *m)
 {
-    const double most = BESIDE * r->thin;
     for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *gone = &m->point[i], *next = NULL;
-        double least = most;
-        if (gone->near || gone->starts || small_is_zero(gone->f)) continue;
-        for (int64_t k = 0; k < m->points; k++) {
-            struct small_point *t = &m->point[k];
-            const double way = v3_norm(v3_sub(t->x, gone->x));
-            if (!t->near || !t->starts || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
-                continue;
-            least = way, next = t;
-        }
-        for (int k = 0; next && k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+        struct small_point *gone = &m->point[i], *next;
+        if (gone->near || gone->starts) continue;
+        if (!small_is_zero(gone->sum) && (next = point_beside(r, m, gone, false)))
+            for (int k = 0; k < 3; k++) next->sum[k] += gone->sum[k], gone->sum[k] = 0;
+        if (!small_is_zero(gone->f) && (next = point_beside(r, m, gone, true)))
+            for (int k = 0; k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
     }
 }
 
@@ -366,6 +376,7 @@ void small_points_last(struct small_run *r)
             if (t->starts && t->near)
                 for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j];
         }
+        hand_over(r, m);
     }
 }
 
