@@ -47,7 +47,7 @@ struct small_run {
     vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
     struct small_pull *pull; /* [n] NULL: no forces on bodies */
     double stored;           /* J: by attraction, where the interval begins */
-    struct face_sums *sums;  /* [walls] NULL: none are kept */
+    struct face_sums *sums;  /* [p->sums.n] NULL: none are kept */
     bool meets;              /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */

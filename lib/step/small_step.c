@@ -41,7 +41,6 @@ const char *small_lacks(const struct packing *p)
 {
     if (freedoms_in(p)) return "loads";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->sums.n && p->mesh.elements) return "sums of what grains do to surfaces";
     for (int k = 0; k < 3; k++)
         if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)

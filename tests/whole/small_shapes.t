@@ -147,6 +147,8 @@ scene "$mesh, mu: 0.3, bodies: [{ radius: 0.1, x: [-0.5, 0, 0.1], v: [1, 0.2, 0]
 small 700
 ok "a ball rolls over the edges of a surface" near "$(body '.v[0]')" "5 / 7" 1e-4
 ok "without a bump" near "$(body '.v[2]')" 0 1e-6
+small 700 --sums
+ok "friction on the triangles takes 2/7 of its energy" near "$(sums '.friction | add') / (1000 * 4 / 3 * 3.14159265 * 1e-3 * 1.04 / 7)" 1 1e-3
 ok "and straight" near "$(body '.v[1] / .v[0]')" 0.2 1e-5
 boxes='shapes: { it: { box: [2, 1, 0.5] } }, mu: 0.3, bodies: [{ shape: "it", size: 0.1, x: [-0.5, 0, 0.025], v: [1, 0.2, 0] }]'
 scene "$mesh, $boxes"
