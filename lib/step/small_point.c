@@ -123,12 +123,6 @@ quat small_points_q(const struct small_run *r, int64_t i, vec3 *w)
     return turn_freely(r, i, -r->ahead, w);
 }
 
-double small_point_speed(const struct small_run *r, int64_t i)
-{
-    const struct body *b = &r->l->s.body[i];
-    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
-}
-
 /* What has been added to the w of body i is a moment's, and remains so when the body turns to q. */
 static void keep_moment(const struct small_run *r, int64_t i, quat q, double w[3])
 {
@@ -334,8 +328,11 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
         struct small_meeting *m = &all->of[all->held[k]];
         for (int64_t l = 0; l < m->points; l++) {
             struct small_point *t = &m->point[l];
-            if (!t->near || !seams_drop_one(&c->found, &r->shapes.at, (int32_t)i, n++)) continue;
-            t->near = false;
+            if (!t->near) continue;
+            const struct contact *at = &c->found.c[n++];
+            if (seams_may(&r->shapes.at, at) &&
+                seams_has(&c->found, &r->shapes.at, (int32_t)i, at - c->found.c))
+                t->near = false;
         }
     }
     return true;

@@ -2,6 +2,7 @@
 #include "step/small_sums.h"
 
 #include "state/face_of.h"
+#include "step/small_wall.h"
 #include "step/sum_step.h"
 
 #include <stdlib.h>
@@ -43,12 +44,11 @@ static void add_touch_sums(struct face_sums *to, const struct small_run *r,
 {
     const struct small *s = &r->l->s;
     const struct body *was = &s->before[t->body], *b = &s->body[t->body];
-    struct small_push y = {
-        .m = small_vec(t->m), .n = t->n, .v = t->v, .w = small_mean(was->w, b->w)
-    };
+    struct small_push y = { .m = small_vec(t->m), .n = t->n, .w = small_mean(was->w, b->w) };
+    y.v = v3_add(t->v, small_load_velocity(r, t));
     y.f = v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n);
     y.x = v3_axpy(small_vec(s->place[t->body].x), -t->arm, t->n);
-    y.u = v3_axpy(v3_sub(small_mean(was->v, b->v), t->v), -t->arm, v3_cross(y.w, t->n));
+    y.u = v3_axpy(v3_sub(small_mean(was->v, b->v), y.v), -t->arm, v3_cross(y.w, t->n));
     add_push(to, &y, r->wall[t->wall].spin);
 }
 

@@ -158,6 +158,15 @@ scene "$floor, $boxes"
 small 500
 ok "a box slides over them as on a plane" near "$over" "$(body '.x[0]')" 1e-5
 
+tiles='walls: [-0.35, 1.65 | { rectangle: { center: [., 0, 0], normal: [0, 0, 1], along: [1, 0, 0], sides: [2, 2] } }]'
+scene "$tiles, gravity: [0, 0, -9.81], dt: 1e-3, mu: 0.3, bodies: [{ radius: 0.1, x: [0.3, 0, 0.1], v: [1, 0, 0] }]"
+small 600 # from one rectangle to the next at x = 0.65
+ok "a ball rolls from one rectangle to the next" near "$(body '.v[0]')" "5 / 7" 2e-5
+ok "without a bump, too" near "$(body '.v[2]')" 0 1e-6
+scene "$tiles, gravity: [0, 0, 9.81], dt: 1e-3, cohesion: { force: 30 }, bodies: [{ radius: 0.1, x: [0.65, 0, 0.1], density: 1000 }]"
+small 100
+ok "of which one alone attracts it at the seam: it falls" near "$(body '.v[2]')" "(9.81 - 30 / (4 / 3 * 3.14159265)) * 0.1" 0.02
+
 # ---- many ----
 
 scene "$floor, mu: 0.5, $cube, bodies: [range(5) | { shape: \"it\", size: 0.1, x: [0.01 * (. % 2), 0, 0.05 + 0.105 * .] }]"
