@@ -54,6 +54,7 @@ struct small_bundle {
 /* Rolling and pivoting friction of a bundle */
 struct small_turn {
     double m[3][BUNDLE];    /* N m s: on b */
+    double sum[3][BUNDLE];  /* N m s: of m, in the steps before this one */
     double most[2][BUNDLE]; /* m: mu_p, mu_r */
 };
 

@@ -129,11 +129,13 @@ ALWAYS_INLINE void small_turn_pairs(const struct small_pairs *y, const struct sm
                                     vd dm[3])
 {
     struct small_turn *t = &s->turn[y->i];
-    vd w[3], m[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
+    const double begins = warm < 1;
+    vd w[3], m[3], sum[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
     for (int j = 0, p = 1, q = 2; j < 3; p = q, q = j++)
         w[j] = y->mb.w[j] - y->ma.w[j] - turn * (y->n[p] * df[q] - y->n[q] * df[p]);
-    small_load(m, t->m, y->k);
-    for (int j = 0; j < 3; j++) m[j] *= warm;
+    small_load(m, t->m, y->k), small_load(sum, t->sum, y->k);
+    for (int j = 0; j < 3; j++) sum[j] += begins * m[j], m[j] *= warm;
+    small_store(t->sum, y->k, sum);
     for (int j = 0; j < 2; j++) most[j] = vload(t->most[j] + y->k);
     vd had[3] = { m[0], m[1], m[2] };
     small_roll(y->n, l->rn, w, y->a.ii + y->b.ii, most, m, dm);

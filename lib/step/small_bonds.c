@@ -174,16 +174,17 @@ int small_bonds_keep(struct small_run *r, struct failure *failure)
 int small_bonds_laws(struct contacts *s, const struct packing *p, struct failure *failure)
 {
     int64_t from = 0;
-    if (!small_tie_holds(p)) return 0;
+    if (!p->law) return 0;
     if (contacts_alloc_laws(s)) return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        const struct bond *bridge = bonds_find(&p->bonds, c, &from);
         double x[HOLD_COUNT];
+        contact_laws_rolling(p, c->a, c->b, &s->law[i].mu_r, &s->law[i].mu_p);
+        if (!small_tie_holds(p)) continue;
+        const struct bond *bridge = bonds_find(&p->bonds, c, &from);
         small_tie_set(x, p, c->a, c->b, 0);
         if (bridge) x[HOLD_WET] = 1, s->law[i].state = CONTACT_LAW_WET;
         s->law[i].pull = small_hold_force(x, c->gap), s->law[i].jump[0] = fmax(0, c->gap);
-        contact_laws_rolling(p, c->a, c->b, &s->law[i].mu_r, &s->law[i].mu_p);
     }
     return 0;
 }

@@ -220,7 +220,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 
 /* What a slot has of the past */
 struct small_past {
-    double f[3], m[3], sum[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
+    double f[3], m[3], sum[3], turned[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -231,6 +231,7 @@ static struct small_past past_of(const struct small *s, int64_t slot)
     for (int j = 0; j < 3; j++) {
         x.f[j] = c->f[j][k], x.sum[j] = c->sum[j][k];
         x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
+        x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
     }
     for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
     return x;
@@ -247,7 +248,8 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     struct small_bundle *c = &s->bundle[slot / BUNDLE];
     for (int j = 0; j < 3; j++) {
         c->f[j][k] = x->f[j], c->sum[j][k] = x->sum[j];
-        if (s->turn) s->turn[slot / BUNDLE].m[j][k] = x->m[j];
+        if (!s->turn) continue;
+        s->turn[slot / BUNDLE].m[j][k] = x->m[j], s->turn[slot / BUNDLE].sum[j][k] = x->turned[j];
     }
     for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
         s->hold[slot / BUNDLE].x[j][k] = x->held[j];
@@ -509,7 +511,8 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         const struct recall *r = &p->memory.recall[i];
         struct small_past x = { 0 };
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
-        for (int k = 0; k < 3; k++) x.sum[k] = -x.f[k]; // the interval before has counted it
+        for (int k = 0; k < 3; k++)
+            x.sum[k] = -x.f[k], x.turned[k] = -x.m[k]; // the interval before has counted it
         struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
         if (m) {
             room = room && small_meeting_recall(m, r, part);
@@ -519,7 +522,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
             struct small_touch *t = small_list_find_touch(l, r->b, -1 - r->a);
             if (!t) continue;
             memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
-            memcpy(t->sum, x.sum, sizeof t->sum);
+            memcpy(t->sum, x.sum, sizeof t->sum), memcpy(t->turned, x.turned, sizeof t->turned);
             continue;
         }
         at = small_list_pair(l, at, recall_key(r), &found);

@@ -132,7 +132,7 @@ static void push_reactions(struct small_run *r, int me, int threads)
             small_touch_push(r, t);
         else
             memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
-                memset(t->sum, 0, sizeof t->sum);
+                memset(t->sum, 0, sizeof t->sum), memset(t->turned, 0, sizeof t->turned);
     }
 }
 
@@ -157,7 +157,7 @@ static void settle_slot(struct small *s, int64_t slot)
     if (s->turn) {
         struct small_turn *t = &s->turn[i];
         m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
-        for (int j = 0; j < 3; j++) t->m[j][k] *= left;
+        for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
     }
     small_body_push(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
     small_body_push(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),

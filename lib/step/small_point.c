@@ -360,6 +360,13 @@ void small_points_look(struct small_run *r, int me, int threads)
     if (!me && r->shapes.failed) r->failed = r->stop = true;
 }
 
+/* What a point has pushed goes into its sums. */
+static void end_point(struct small_point *t)
+{
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
+}
+
 void small_points_last(struct small_run *r)
 {
     r->shapes.at.t = r->p->t + r->ahead;
@@ -368,10 +375,9 @@ void small_points_last(struct small_run *r)
         struct small_meeting *m = &r->l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++) {
             struct small_point *t = &m->point[k];
-            if (!t->starts && !t->near)
-                for (int j = 0; j < 3; j++) t->sum[j] += t->f[j], t->f[j] = t->m[j] = 0;
+            if (!t->starts && !t->near) end_point(t);
             if (t->starts && t->near)
-                for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j];
+                for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j], t->turned[j] -= t->m[j];
         }
         hand_over(r, m);
     }
@@ -441,7 +447,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
         .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
     };
     double before[3];
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
     t->kept = dot3(l.n, l.f), t->starts = false;
@@ -632,11 +638,10 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
         const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
         if (times != 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
-        for (int k = 0; k < 3; k++) {
-            if (t.starts) t.sum[k] -= t.near ? t.f[k] : 0; // the step adds it
-            if (!t.starts && !t.near) t.sum[k] += t.f[k];
-            if (!t.near) t.f[k] = t.m[k] = 0;
-        }
+        for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
+            t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
+        if (t.starts && !t.near) memset(t.f, 0, sizeof t.f), memset(t.m, 0, sizeof t.m);
+        if (!t.near) end_point(&t);
         t.starts = false;
         if (t.near || t.there || point_lasts(&t)) m->point[n++] = t;
     }
@@ -679,7 +684,7 @@ static void end_meeting(struct small_run *r, struct small_meeting *m)
         if (rn <= most) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
-            t->sum[k] += back * t->f[k];
+            t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
             t->f[k] *= most / rn, t->m[k] *= most / rn;
         }
         push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));

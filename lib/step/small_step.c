@@ -233,7 +233,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
-                            .tied = small_tie_holds(r->p),
+                            .tied = r->p->law != NULL,
                             .sheared = energy_has_peculiar(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };

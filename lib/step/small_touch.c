@@ -19,8 +19,8 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
 {
     const struct small *s = &r->l->s;
     double before[3];
-    for (int k = 0; k < 3; k++)
-        t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM, t->m[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM;
     t->kept = dot3(l->n, l->f);
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
@@ -76,7 +76,8 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
     t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (pushed) small_load_push(r, t, f);
     if (pushed) small_body_push(&r->l->s.body[t->body], t->n, t->arm, f, m);
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
 }
 
@@ -136,7 +137,7 @@ vec3 small_touch_end(struct small_run *r, struct small_touch *t)
     if (rn <= most) return none;
     const double back = 1 - most / rn;
     for (int k = 0; k < 3; k++) {
-        t->sum[k] += back * t->f[k];
+        t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
         t->f[k] *= most / rn, t->m[k] *= most / rn;
     }
     small_body_push(&r->l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));

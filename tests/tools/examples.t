@@ -40,7 +40,7 @@ ln -s "$repository/scenes" "$tmp/stock/scenes"
     cd "$tmp/stock"
     exec 2>/dev/null
     nsd-gen 500 >a.h5
-    nsd-step -n 1000 --every 10 --contacts a.h5 >out.h5
+    nsd-step --global auto -n 1000 --every 10 --contacts a.h5 >out.h5
     nsd-step -n 10 out.h5 >more.h5
     nsd-cat --last out.h5 >packing.h5
     nsd-export -o dump.liggghts --to lammps packing.h5
