@@ -56,7 +56,6 @@ struct small_shapes {
     double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
     double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
     double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
-    vec3 edge[3];         /* m */
     struct placed placed;
     struct situation at;
     int threads;

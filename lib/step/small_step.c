@@ -47,7 +47,6 @@ const char *small_lacks(const struct packing *p)
     if (freedoms_in(p) && (p->shape || p->mesh.elements))
         return "loads, and grains with a shape or surfaces as walls";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->shape && small_cell_moves(p)) return "grains with a shape in a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
     if ((p->shape || p->mesh.elements) && small_tie_holds(p))
