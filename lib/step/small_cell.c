@@ -1,8 +1,6 @@
 /* step/small_cell.c: a cell that moves, in small steps [step/small_cell.h]. */
 #include "step/small_cell.h"
 
-#include "step/small_pull.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -255,6 +253,13 @@ void small_cell_follow(struct small_run *r, int64_t first, int64_t end)
     }
 }
 
+/* J: what edges do by the image that has got f (N s) */
+static double image_work(const struct small_cell *c, const int8_t shift[3], vec3 f)
+{
+    const vec3 twice = v3_add(cell_shift(c->cell.rate, shift), cell_shift(c->next, shift));
+    return -0.5 * v3_dot(f, twice);
+}
+
 void small_cell_end(struct small_run *r)
 {
     vec3 gain[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
@@ -263,12 +268,14 @@ void small_cell_end(struct small_run *r)
     if (c->stress) yield_edges(r, gain);
     cell_flow_init(&c->yield, &c->cell, c->edge, gain);
     for (int k = 0; k < 3; k++) c->next[k] = v3_add(c->next[k], gain[k]);
+    for (int64_t i = 0; i < l->meetings.n; i++) {
+        const struct small_meeting *m = &l->meetings.of[i];
+        for (int64_t k = 0; m->key.a >= 0 && k < m->points; k++)
+            if (m->point[k].near) c->work += image_work(c, m->key.shift, small_vec(m->point[k].f));
+    }
     for (int64_t i = 0; i < l->images; i++) {
         const struct pair *q = &l->pairs.pair[l->image[i]];
-        const vec3 f = small_slot_force(&l->s, l->slot[l->image[i]]);
-        const vec3 twice =
-            v3_add(cell_shift(c->cell.rate, q->shift), cell_shift(c->next, q->shift));
-        c->work -= 0.5 * v3_dot(f, twice);
+        c->work += image_work(c, q->shift, small_slot_force(&l->s, l->slot[l->image[i]]));
     }
     cell_move(&c->cell, r->ahead, r->h - r->ahead, c->next);
     for (int k = 0; k < 3; k++)
