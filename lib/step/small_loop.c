@@ -154,7 +154,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     if (s->turn) roll_touch(r, t, &l, small_vec(df), dm);
     for (int k = 0; k < 3; k++) df[k] -= dp * l.n[k];
     push_body(b, t->n, t->arm, small_vec(df), small_vec(dm));
-    const double change = l.wn * norm3(df);
+    const double change = l.wn * norm3(df) + t->arm * b->ii * norm3(dm);
     if (!again && !(change > s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;
