@@ -93,7 +93,9 @@ static double opens_ahead(const struct small_run *r, int64_t slot, vec3 n)
     const struct small_bundle *c = &s->bundle[slot / BUNDLE];
     const struct body *a = &s->body[body_index(c->a[slot % BUNDLE])];
     const struct body *b = &s->body[body_index(c->b[slot % BUNDLE])];
-    return r->ahead * v3_dot(n, v3_sub(small_vec(b->v), small_vec(a->v)));
+    vec3 v = v3_sub(small_vec(b->v), small_vec(a->v));
+    if (s->moves) v = v3_add(v, small_image_velocity(s, slot));
+    return r->ahead * v3_dot(n, v);
 }
 
 /* m: the gap of a touch where the bodies are; false: it is not near. */

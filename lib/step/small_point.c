@@ -7,6 +7,8 @@
 #include "contact/internal_edge.h"
 #include "solve/local_exact.h"
 #include "state/rotation.h"
+#include "step/small_pull.h"
+#include "step/small_tie.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,11 +26,13 @@
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 30
 
-enum {
-    ROUNDS = 2,
-    ROUNDS_MOST = 20
-};                                 /* of the points of a meeting in one sweep; most in an impact */
+/* Rounds of the points of a meeting in one sweep: where some point is new, and in an impact, at most */
+enum { ROUNDS = 2, ROUNDS_NEW = 6, ROUNDS_MOST = 20 };
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
+
+/* Of the work of reactions before the impact: what of a gain may be an error of the rounds */
+#define GAIN 2e-3
+enum { BISECTIONS = 7 }; /* of a restitution that is reduced */
 
 /* ---- bodies ---- */
 
@@ -119,25 +123,25 @@ quat small_points_q(const struct small_run *r, int64_t i, vec3 *w)
     return turn_freely(r, i, -r->ahead, w);
 }
 
-double small_point_speed(const struct small_run *r, int64_t i)
+/* What has been added to the w of body i is a moment's, and remains so when the body turns to q. */
+static void keep_moment(const struct small_run *r, int64_t i, quat q, double w[3])
 {
-    const struct body *b = &r->l->s.body[i];
-    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+    const vec3 L = rotation_momentum(r->p, i, r->shapes.q[i], small_vec(w));
+    small_array(w, rotation_spin(r->p, i, q, L));
 }
 
-/* w^- follows as w does: what a step has added to it remains a moment's. */
 void small_points_place(struct small_run *r, int64_t first, int64_t end)
 {
     struct small_shapes *s = &r->shapes;
     for (int64_t i = first; i < end; i++) {
-        struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
+        struct body *b = &r->l->s.body[i];
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
         s->way[i] += r->h * small_point_speed(r, i);
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
-            const vec3 L = rotation_momentum(r->p, i, s->q[i], small_vec(was->w));
-            small_array(was->w, rotation_spin(r->p, i, q, L));
+            keep_moment(r, i, q, r->l->s.before[i].w);
+            if (r->pull) keep_moment(r, i, q, r->pull[i].dw);
             small_array(b->w, w);
         }
         s->q[i] = q;
@@ -409,6 +413,14 @@ static vec3 point_velocity(const struct small_meeting *m, const struct small_poi
     return v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
 }
 
+/* mu of the step, whose bodies slide with ut (m/s) before it */
+static double friction_at(const struct packing *p, const struct small_meeting *m, vec3 ut)
+{
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, packing_pair(p, m->key.a, m->key.b));
+    return mu[v3_norm(ut) > v_s];
+}
+
 /* The law in the first sweep of a step */
 static void begin_point(const struct small_run *r, const struct small_meeting *m,
                         struct small_point *t)
@@ -428,7 +440,9 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
     small_press(&l, o);
-    small_array(before, point_velocity(m, t, s->before));
+    const vec3 u = point_velocity(m, t, s->before);
+    if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
+    small_array(before, u);
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);
@@ -476,11 +490,18 @@ static void point_law(const struct small_run *r, const struct small_meeting *m,
     solve_local(r->p->dim, W, b, t->mu, is);
 }
 
+/* Of the reactions of a meeting in a sweep: what they do to the bodies, and against what */
+struct small_work {
+    double done, scale; /* J */
+};
+
 /* Returns by how much (m/s) the point's u changes. */
-static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
+                          struct small_work *work)
 {
     struct small *s = &r->l->s;
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
+    const vec3 u = point_velocity(m, t, s->body);
     double f[3], is[3], change2 = 0;
     point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
@@ -488,7 +509,12 @@ static double solve_point(struct small_run *r, const struct small_meeting *m, st
     push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
     if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, is[0]);
     for (int k = 0; k < 3; k++) f[k] = is[k] - f[k];
-    for (int k = 0; k < 3; k++) change2 += dot3(t->W + 3 * k, f) * dot3(t->W + 3 * k, f);
+    for (int k = 0; k < 3; k++) {
+        const double du = dot3(t->W + 3 * k, f);
+        const double does = f[k] * v3_dot(e[k], u);
+        change2 += du * du;
+        work->done += does + 0.5 * f[k] * du, work->scale += fabs(does);
+    }
     return sqrt(change2);
 }
 
@@ -520,26 +546,70 @@ static bool is_hot(const struct small *s, const struct small_meeting *m)
     return s->hot[b] >= last || (a >= 0 && s->hot[a] >= last);
 }
 
+/* The points in turn, until nothing changes. *first: m/s, the largest change of
+   the first round */
+static struct small_work solve_points(struct small_run *r, struct small_meeting *m, int rounds,
+                                      double *first)
+{
+    struct small_work work = { 0 };
+    double most = INFINITY;
+    for (int k = 0; k < rounds && most > (k ? ENOUGH * *first : 0); k++) {
+        most = 0;
+        for (int64_t i = 0; i < m->points; i++)
+            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i], &work));
+        if (!k) *first = most;
+    }
+    return work;
+}
+
+/* The same once more, as before, with `times` the restitution. Returns whether the reactions gain energy. */
+static bool solve_again(struct small_run *r, struct small_meeting *m, double times)
+{
+    double first;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        if (!t->near) continue;
+        push_point(r, r->l->s.body, m, t, v3_sub(t->had, small_vec(t->f)), v3(0, 0, 0));
+        small_array(t->f, t->had);
+        for (int k = 0; k < 3 && t->soft == 0; k++) t->q[k] *= times;
+    }
+    return solve_points(r, m, ROUNDS_MOST, &first).done > 0;
+}
+
+/* An impact that gains energy, as friction may make it [Kane 1984], has the largest restitution with which it does not, by
+   bisection [step/balance.h]. */
+static void bound_impact(struct small_run *r, struct small_meeting *m)
+{
+    double least = 0, most = 1, is = 1;
+    for (int k = 0; k < BISECTIONS; k++) {
+        const double next = 0.5 * (least + most);
+        const bool gains = solve_again(r, m, next / is);
+        is = next;
+        if (gains)
+            most = next;
+        else
+            least = next;
+    }
+    if (is > least) solve_again(r, m, least / is);
+}
+
 static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
 {
     int64_t near = 0;
-    bool hits = false, new = false;
+    bool hits = false, rebounds = false, new = false;
     double first = 0;
     for (int64_t i = 0; i < m->points; i++) {
-        if (!m->point[i].near) continue;
-        if (!again) begin_point(r, m, &m->point[i]);
-        hits |= m->point[i].soft == 0;
-        new |= m->point[i].kept <= 0;
-        near++;
+        struct small_point *t = &m->point[i];
+        if (!t->near) continue;
+        if (!again) begin_point(r, m, t);
+        t->had = small_vec(t->f), near++;
+        hits |= t->soft == 0, new |= t->kept <= 0;
+        rebounds |= t->soft == 0 && (t->e[0] > 0 || t->e[1] > 0);
     }
-    const int rounds = hits ? ROUNDS_MOST : new ? 6 : ROUNDS;
-    for (int k = 0; near && k < rounds; k++) {
-        double most = 0;
-        for (int64_t i = 0; i < m->points; i++)
-            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i]));
-        if (!k) first = most;
-        if (near == 1 || !(most > ENOUGH * first)) break;
-    }
+    if (!near) return;
+    const int rounds = hits ? ROUNDS_MOST : new ? ROUNDS_NEW : ROUNDS;
+    const struct small_work work = solve_points(r, m, near > 1 ? rounds : 1, &first);
+    if (rebounds && !again && work.done > GAIN * work.scale) bound_impact(r, m);
     mark_meeting(r, m, first, again);
 }
 

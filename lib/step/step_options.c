@@ -255,6 +255,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
         .substeps = o->substeps,
         .alpha = o->alpha,
         .order = order,
+        .as_is = o->paper,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,

@@ -1,0 +1,104 @@
+/* step/small_cell.c: a cell that moves, in small steps [step/small_cell.h]. */
+#include "step/small_cell.h"
+
+#include <math.h>
+
+bool small_cell_moves(const struct packing *p)
+{
+    bool any = false;
+    for (int k = 0; k < 3; k++) any = any || (p->cell.repeats[k] && cell_moves(&p->cell, k));
+    return any;
+}
+
+/* 1/s: of edges with these rates (m/s) */
+static double strain_of(const vec3 edge[3], const vec3 rate[3])
+{
+    double sum = 0;
+    vec3 inverse[3];
+    cell_inverse(edge, inverse);
+    for (int k = 0; k < 3; k++) sum += v3_norm(rate[k]) * v3_norm(inverse[k]);
+    return sum;
+}
+
+double small_cell_strain(const struct packing *p)
+{
+    return small_cell_moves(p) ? strain_of(p->cell.edge, p->cell.rate) : 0;
+}
+
+double small_cell_speed(const struct packing *p)
+{
+    struct cell_flow flow;
+    double most = 0;
+    if (p->walls || !small_cell_moves(p)) return packing_whole(p).speed;
+    cell_flow_init(&flow, &p->cell, p->cell.edge, p->cell.rate);
+    for (int64_t i = 0; i < p->n; i++) {
+        vec3 v = p->v[i];
+        if (flow.changes) v = v3_sub(v, cell_flow_gain(&flow, p->x[i]));
+        most = fmax(most, v3_norm(v));
+    }
+    return most + small_cell_strain(p) * packing_whole(p).large;
+}
+
+void small_cell_init(struct small_run *r)
+{
+    struct small_cell *c = &r->cell;
+    c->moves = small_cell_moves(r->p), c->relative = c->moves && !r->p->walls;
+    c->cell = r->p->cell;
+    cell_predict(&c->cell, r->ahead, c->edge);
+}
+
+void small_cell_begin(struct small_run *r)
+{
+    struct small_cell *c = &r->cell;
+    const double after = r->h - r->ahead;
+    vec3 gain[3];
+    cell_predict(&c->cell, r->ahead, c->edge);
+    cell_next_rate(&c->cell, r->p->t + r->h, r->ahead, after, c->next);
+    for (int k = 0; k < 3; k++) gain[k] = v3_sub(c->next[k], c->cell.rate[k]);
+    cell_flow_init(&c->flow, &c->cell, c->edge, gain);
+    cell_flow_init(&c->peculiar, &c->cell, c->edge, c->cell.rate);
+    c->strain = strain_of(c->edge, c->next);
+}
+
+void small_cell_images(struct small_run *r, int me, int threads)
+{
+    const struct small_list *l = r->l;
+    const struct small_cell *c = &r->cell;
+    for (int64_t i = l->images * me / threads; i < l->images * (me + 1) / threads; i++) {
+        const struct pair *q = &l->pairs.pair[l->image[i]];
+        const int64_t slot = l->slot[l->image[i]];
+        small_shift_set(&l->s.shift[slot / BUNDLE], (int)(slot % BUNDLE),
+                        cell_shift(c->edge, q->shift), cell_shift(c->next, q->shift));
+    }
+}
+
+vec3 small_cell_peculiar(const struct small_run *r, vec3 x, vec3 v)
+{
+    const struct small_cell *c = &r->cell;
+    return c->relative && c->peculiar.changes ? v3_sub(v, cell_flow_gain(&c->peculiar, x)) : v;
+}
+
+double small_cell_stretch(const struct small_run *r)
+{
+    const struct small_cell *c = &r->cell;
+    double rate = 0;
+    if (!c->moves) return 0;
+    if (c->relative) return c->strain * (packing_whole(r->p).large + 0.5 * r->l->margin);
+    for (int k = 0; k < 3; k++) rate += v3_norm(c->next[k]);
+    return 0.5 * rate;
+}
+
+void small_cell_end(struct small_run *r)
+{
+    const struct small_list *l = r->l;
+    struct small_cell *c = &r->cell;
+    for (int64_t i = 0; i < l->images; i++) {
+        const struct pair *q = &l->pairs.pair[l->image[i]];
+        const vec3 f = small_slot_force(&l->s, l->slot[l->image[i]]);
+        const vec3 twice =
+            v3_add(cell_shift(c->cell.rate, q->shift), cell_shift(c->next, q->shift));
+        c->work -= 0.5 * v3_dot(f, twice);
+    }
+    cell_move(&c->cell, r->ahead, r->h - r->ahead, c->next);
+    cell_predict(&c->cell, r->ahead, c->edge);
+}

@@ -1,0 +1,28 @@
+/*
+ * step/small_cell.h: a cell that moves, in small steps. Its edges go through each small step as through a step of the
+ * theta method [shape/cell.h]; images of bodies move with the edges, and where their rates change bodies follow the flow.
+ * Ways of bodies, on which the number of small steps and lists depend, are those relative to the flow.
+ */
+#pragma once
+
+#include "step/small_run.h"
+
+/* May any edge move in the step that begins where the packing is? */
+bool small_cell_moves(const struct packing *p);
+/* 1/s: how fast the flow of the cell stretches at most */
+double small_cell_strain(const struct packing *p);
+/* m/s: of a body relative to the flow, the fastest; where there are walls, the fastest of all */
+double small_cell_speed(const struct packing *p);
+
+/* r->cell: where the packing's is */
+void small_cell_init(struct small_run *r);
+/* A small step begins: edges where contacts act, rates and flow; by one thread */
+void small_cell_begin(struct small_run *r);
+/* Thread `me` of `threads` moves the images of pairs. */
+void small_cell_images(struct small_run *r, int me, int threads);
+/* m/s: v of a body at x relative to the flow */
+vec3 small_cell_peculiar(const struct small_run *r, vec3 x, vec3 v);
+/* m/s: half of how fast the flow moves two bodies that are near each other */
+double small_cell_stretch(const struct small_run *r);
+/* After the sweeps of a small step, before reactions are settled: what edges do by images, and their motion; by one thread */
+void small_cell_end(struct small_run *r);
