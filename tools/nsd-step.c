@@ -547,8 +547,8 @@ static void begin(struct run *r)
     struct failure failure = { 0 };
     struct frame *f = &r->f;
     r->driver.o = options_step(f->packing.dt, false);
-    if (processes_size() == 1 || cli_given(&options.small))
-        r->driver.o.small = total.radii = options_small_of(&options, &f->packing);
+    total.radii = options_small_of(&options, &f->packing);
+    if (processes_size() == 1) r->driver.o.small = total.radii;
     warn_small(f, r->driver.o.order);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
     if (!steps) return;

@@ -76,7 +76,7 @@ ALWAYS_INLINE void small_velocity_image(const struct small_pairs *y, const struc
                                         const struct twist *a, const struct twist *b, vd u[3])
 {
     small_velocity(y, a, b, u);
-    for (int j = 0; j < 3 && s->moves; j++) u[j] += vload(s->shift[y->i].v[j] + y->k);
+    for (int j = 0; j < 3 && s->moves && s->shift; j++) u[j] += vload(s->shift[y->i].v[j] + y->k);
 }
 
 /* Both bodies get df at their arms, and a moment dm where it is not NULL. */

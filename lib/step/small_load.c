@@ -74,7 +74,8 @@ bool small_loads_heavy(const struct packing *p)
         if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, &p->wall[w], p->t), 2);
     }
     if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3);
-    return n > 0 && most > HEAVY * mass / cbrt(n); // one layer is n^2/3 of n grains
+    const double layers = p->dim == 2 ? sqrt(n) : cbrt(n);
+    return n > 0 && most > HEAVY * mass / layers;
 }
 
 double small_loads_energy(const struct packing *p)
@@ -204,6 +205,7 @@ void small_loads_end(struct small_run *r)
     }
     for (int32_t k = 0; k < o->list.n; k++) {
         const struct freedom *f = &o->list.f[k];
+        if (freedom_of_cell(f)) continue; // [step/small_cell.c]
         o->work += r->h * f->force * (f->speed + 0.5 * o->change[k]);
         freedom_move(f, r->p, o->change[k], false);
     }

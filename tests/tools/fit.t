@@ -65,6 +65,15 @@ sed -i 's/^5\t/6\t/' killed/table.tsv
 refuses 65 "a damaged table" nsd-fit known.json -o killed
 refuses 65 "a table of another problem" nsd-fit ridge.json -o once
 
+# -n ends a run earlier, also within a batch; the same points come when it is continued, and none is lost
+problem 0.5 0.9 3 >stops.json
+nsd-fit --quiet -n 29 stops.json >/dev/null 2>&1 || true
+cp stops.fit/table.tsv stops.29
+for n in 9 25 29; do nsd-fit --quiet -n $n -o parts stops.json >/dev/null 2>&1 || true; done
+ok "-n 9, 25 and 29 make the table of -n 29" cmp stops.29 parts/table.tsv
+nsd-fit --quiet -n 9 -o parts stops.json >/dev/null 2>&1 || true
+ok "a smaller -n removes no evaluation" cmp stops.29 parts/table.tsv
+
 # ---- a real pipeline: the way of a sliding ball over the plane tells the friction ----
 
 cat >slide.json <<'EOF'

@@ -19,12 +19,12 @@ LEAST_GOOD = 0.5  # of a batch
 REPEATS = 4  # of the middle of the ranges, with other seeds: else a process could follow the scatter as if it were an effect
 
 
-def points_of(problem: Problem, table: Table, first: int, n: int, start: int) -> dict[int, list[float]]:
-    """Those with the numbers first .. first + n - 1. The first `start` are Sobol points and repeats."""
+def points_of(problem: Problem, table: Table, first: int, n: int) -> dict[int, list[float]]:
+    """Those with the numbers first .. first + n - 1, a batch. The first batch has Sobol points and repeats."""
     d = len(problem.parameters)
-    if first < start:
-        middle = np.full((REPEATS if start > 2 * REPEATS else 0, d), 0.5)
-        x = np.concatenate([surrogate.sobol(d, start - len(middle), problem.seed), middle])[first:first + n]
+    if first == 0:
+        middle = np.full((REPEATS if n > 2 * REPEATS else 0, d), 0.5)
+        x = np.concatenate([surrogate.sobol(d, n - len(middle), problem.seed), middle])
     else:
         model, known, _, _ = report.fitted(problem, table, first)
         x = surrogate.next_points(surrogate.posterior(model, d), known, n, problem.seed + first)
@@ -70,7 +70,7 @@ def fit(problem: Problem, folder: str, a: argparse.Namespace) -> int:
     table = Table(os.path.join(folder, "table.tsv"), problem)
     table.write()
     d, most = len(problem.parameters), a.evaluations or problem.evaluations
-    start = min(max(6 * (d + 1) + REPEATS, problem.batch), most)
+    start = min(max(6 * (d + 1) + REPEATS, problem.batch), problem.evaluations)
     runner, progress = Runner(problem, a.jobs, a.timeout), Progress(a.quiet, most, len(table.rows))
 
     def stop(number: int, _: object) -> NoReturn:
@@ -87,22 +87,20 @@ def fit(problem: Problem, folder: str, a: argparse.Namespace) -> int:
 
     n, results, calm, points = 0, [], 0, {}
     while n < most and calm < 2:
-        size = start if n == 0 else min(problem.batch, most - n)
-        points = points_of(problem, table, n, size, start)
+        batch = points_of(problem, table, n, start if n == 0 else problem.batch)
+        points = {k: batch[k] for k in batch if k < most}  # -n may end a batch, and does not change it
         for k in points:  # those of a table that was cut short
             if k in table.rows and table.rows[k].values != points[k]:
                 raise Invalid(f"{table.path}: evaluation {k} has other parameters than this version of nsd-fit chooses")
         runner.run({k: v for k, v in points.items() if k not in table.rows}, done)
-        if failures(table, points) >= LEAST_GOOD * size:
+        if failures(table, points) >= LEAST_GOOD * len(points):
             why = next(table.rows[k].failed for k in points if k in table.rows and table.rows[k].failed)
-            raise Invalid(f"half of {size} evaluations failed, the first one: {why}", 1)
-        n += size
+            raise Invalid(f"half of {len(points)} evaluations failed, the first one: {why}", 1)
+        n += len(points)
         model, _, values, measures = report.fitted(problem, table, n)
         p = surrogate.posterior(model, d)
         results.append(report.judge(problem, model, p, table, n))
         calm = calm + 1 if len(results) > 1 and steady(results[-2], results[-1], problem) else 0
-    for k in [k for k in table.rows if k >= n]:
-        del table.rows[k]
     table.write()
     result = dict(results[-1], finished=calm >= 2)
     if not result["finished"]:
