@@ -109,7 +109,8 @@ void small_touch_give(struct small_run *r, struct small_touch *t, const struct s
     if (s->turn) roll_touch(r, t, l, small_vec(df), dm);
     for (int k = 0; k < 3; k++) df[k] -= dp * l->n[k];
     small_body_push(&s->body[t->body], t->n, t->arm, small_vec(df), small_vec(dm));
-    const double change = heavy * l->wn * norm3(df);
+    const double turn = t->arm * s->body[t->body].ii * norm3(dm);
+    const double change = heavy * (l->wn * norm3(df) + turn);
     if (!again && !(change > s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;
