@@ -43,8 +43,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "dt", &options.dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
-      .help = "make steps in small ones that move bodies by R radii; 0: one solve per step",
-      .usual = options_usual },
+      .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -547,8 +546,8 @@ static void begin(struct run *r)
     struct failure failure = { 0 };
     struct frame *f = &r->f;
     r->driver.o = options_step(f->packing.dt, false);
-    if (processes_size() == 1 || cli_given(&options.small))
-        r->driver.o.small = total.radii = options_small_of(&options, &f->packing);
+    total.radii = options_small_of(&options, &f->packing);
+    if (processes_size() == 1) r->driver.o.small = total.radii;
     warn_small(f, r->driver.o.order);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
     if (!steps) return;

@@ -279,7 +279,9 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
     for (int j = 0; j < 3 && rich; j++) df[j] -= dp * l.n[j];
     small_give(&y, s, df, rolls ? dm : NULL);
-    return small_mark(&y, s, l.wn * norm3(df), hot);
+    vd change = l.wn * norm3(df);
+    if (rolls) change = change + (y.a.ii * y.la + y.b.ii * y.lb) * norm3(dm);
+    return small_mark(&y, s, change, hot);
 }
 
 ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bool again,

@@ -88,16 +88,25 @@ double small_cell_stretch(const struct small_run *r)
     return 0.5 * rate;
 }
 
+/* J: what edges do by the image that has got f (N s) */
+static double image_work(const struct small_cell *c, const int8_t shift[3], vec3 f)
+{
+    const vec3 twice = v3_add(cell_shift(c->cell.rate, shift), cell_shift(c->next, shift));
+    return -0.5 * v3_dot(f, twice);
+}
+
 void small_cell_end(struct small_run *r)
 {
     const struct small_list *l = r->l;
     struct small_cell *c = &r->cell;
+    for (int64_t i = 0; i < l->meetings.n; i++) {
+        const struct small_meeting *m = &l->meetings.of[i];
+        for (int64_t k = 0; m->key.a >= 0 && k < m->points; k++)
+            if (m->point[k].near) c->work += image_work(c, m->key.shift, small_vec(m->point[k].f));
+    }
     for (int64_t i = 0; i < l->images; i++) {
         const struct pair *q = &l->pairs.pair[l->image[i]];
-        const vec3 f = small_slot_force(&l->s, l->slot[l->image[i]]);
-        const vec3 twice =
-            v3_add(cell_shift(c->cell.rate, q->shift), cell_shift(c->next, q->shift));
-        c->work -= 0.5 * v3_dot(f, twice);
+        c->work += image_work(c, q->shift, small_slot_force(&l->s, l->slot[l->image[i]]));
     }
     cell_move(&c->cell, r->ahead, r->h - r->ahead, c->next);
     cell_predict(&c->cell, r->ahead, c->edge);

@@ -7,6 +7,7 @@
 #include "step/small_load.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_seam.h"
 #include "step/small_sums.h"
 #include "step/small_touch.h"
 #include "step/small_wall.h"

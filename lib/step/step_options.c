@@ -100,7 +100,7 @@ const char *options_usual(const void *to)
     if (to == &options.newton_max) snprintf(text, room, "%d", u->newton_max);
     if (to == &options.overlap)
         snprintf(text, room, "the document's; %s", overlap_name[u->overlap]);
-    if (to == &options.small) snprintf(text, room, "%g; 0 with options of one solve", u->small);
+    if (to == &options.small) snprintf(text, room, "%g; see the manual", u->small);
     return text;
 }
 

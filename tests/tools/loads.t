@@ -34,7 +34,7 @@ block() # ANGLE V0: gravity is turned by the angle
         shapes: { block: { polygon: [[-1, -0.5], [1, -0.5], [1, 0.5], [-1, 0.5]] } },
         bodies: [{ x: [0, 0.05], shape: "block", size: 0.1, v: [$v, 0] }] }'
 }
-block 0.5354 0 | nsd-gen - | step -n 400 --every 400 >"$tmp/block.h5" # tan^-1 0.6 = 0.5404
+block 0.5354 0 | nsd-gen - | step --global auto -n 400 --every 400 >"$tmp/block.h5" # tan^-1 0.6 = 0.5404
 ok "below tan^-1 mu_s a block stays" near "$(last "$tmp/block.h5" '.[0].x[0]')" 0 1e-7
 block 0.5454 0 | nsd-gen - | step -n 500 --every 500 >"$tmp/block.h5"
 # g (sin a - mu_s cos a) up to v_s, then g (sin a - mu cos a)
