@@ -25,17 +25,17 @@ set xlabel "step"
 set key top left
 set origin 0.53, 0.5
 set size 0.47, 0.5
-set title "the error when each solve ended"
+set title "the errors of each step"
 set logscale y
 set format y "10^{%T}"
-set yrange [1e-10:1e-1]
-set ylabel "natural map, penetration"
+set yrange [1e-6:1e1]
+set ylabel "overlap, impulse"
 plot dir."/steps.tsv" using 1:($4 > 0 ? $4 : NaN) with points pt 7 ps 0.3 lc rgb 0x1b6ca8 \
-         title "natural map", \
+         title "largest overlap, smallest radii", \
      dir."/steps.tsv" using 1:($5 > 0 ? $5 : NaN) with points pt 7 ps 0.3 lc rgb 0xd1495b \
-         title "largest true penetration, m/s"
+         title "impulse missing to the laws, over the load"
 set origin 0.53, 0
-set title "contacts and sweeps"
+set title "contacts, and sweeps of the small steps"
 set yrange [1:10000]
 set ylabel "number"
 plot dir."/steps.tsv" using 1:2 with lines lw 2 lc rgb 0x3a7d44 title "contacts", \

@@ -15,14 +15,14 @@ view=(nsd-view --bare --size 560x1300 '--box=-0.0032,0.0032,-0.0032,0.0032,0,0.0
 "${view[@]}" "$dir/out.h5" > "$dir/end.png"
 nsd-info "$dir/out.h5" |
     jq -r 'select(.step != null)
-           | [.step, .contacts, .sweeps, .natural, .max_penetration_true] | @tsv' > "$dir/steps.tsv"
+           | [.step, .contacts, .sweeps, .max_overlap / 2.5e-4, .balance.missing_impulse_mean] | @tsv' > "$dir/steps.tsv"
 gnuplot -e "dir='${dir//\'/\'\'}'" scripts/demo.gp
 
 nsd-web --title "500 balls fall into a box" --every 5 -o "$dir/out.html" "$dir/out.h5"
 
 echo
 echo "the last steps:"
-printf 'step\tcontacts\tsweeps\tnatural map\tmax_penetration_true\n'
+printf 'step\tcontacts\tsweeps\toverlap, smallest radii\tmissing impulse, of the load\n'
 tail -n 5 "$dir/steps.tsv"
 echo
 echo "look at    $dir/demo.png, and in a browser $dir/out.html, which plays it"

@@ -13,7 +13,9 @@ const struct cli_tool tool = {
     "Computes eps_glob and its four terms, the true penetration and the natural-map errors of\n"
     "solutions, from the problem and the reactions alone. Reads documents, writes one line of\n"
     "JSON for each solution.",
-    tables, "  nsd-err solved.h5 | jq .natural\n  nsd-step --contacts -n 10 out.h5 | nsd-err\n"
+    tables,
+    "  nsd-err solved.h5 | jq .natural\n  nsd-step --global auto --contacts -n 10 out.h5 | "
+    "nsd-err\n"
 };
 
 /* The problem that the reactions of a packing solve, with the reactions in it. */

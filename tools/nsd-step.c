@@ -34,17 +34,16 @@ static struct cli_every every = { 1, 0 };
 static double until, lines; /* s: of the motion; of real time */
 static bool contacts, forces, sums, in_place;
 static const char *output, *save;
-static const char *dt; /* as it is given: a number, or auto:TOL */
-static double tol;     /* radii: TOL; 0: dt does not adapt */
+static double tol; /* radii: TOL; 0: dt does not adapt */
 
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
     { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
       .max = 1e300 },
-    { CLI_TEXT, 0, "dt", &dt, "DT|auto:TOL",
+    { CLI_TEXT, 0, "dt", &options.dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
-      .help = "make each step in small ones that move bodies by R radii at most" },
+      .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -101,6 +100,7 @@ static struct {
     double missing, missing_mean; /* impulse, of the steps whose errors are known: the largest */
     int64_t missing_step, missing_id;
     int64_t limited; /* of those the ones that ended at the limit of their sweeps */
+    double radii;    /* of small steps; 0: there are none */
     bool lacks;      /* small steps do not have all of the packing */
     double seconds;
     struct account account; /* of this run */
@@ -118,12 +118,13 @@ static bool words_are_output(void)
 /* What to do about it, but for what is done already */
 static const char *cure(enum account_row row, const struct report *r)
 {
+    if (row == ACCOUNT_OVERLAP && r->small) return "a smaller R of --small-steps leaves less";
     if (row == ACCOUNT_OVERLAP && tol > 0)
         return "a smaller TOL of --dt auto leaves less, unless walls press bodies together";
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_PASSED && options.substeps == 1)
+    if (row == ACCOUNT_PASSED && options.substeps == 1 && !r->small)
         return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
@@ -210,7 +211,7 @@ static void summary(int64_t made)
              (long long)total.missing_id);
     if (total.limited)
         warn("%lld small steps have ended at the limit of their sweeps", (long long)total.limited);
-    if (options.small > 0 && !total.lacks && total.small < made)
+    if (total.radii > 0 && !total.lacks && total.small < made)
         warn(
             "%lld steps were made at once: sweeps of small steps carry reactions too slowly there, "
             "or bodies are too fast for them",
@@ -423,12 +424,12 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
            floor((before + driver_slack(p, before)) / every.seconds);
 }
 
-/* What small steps are asked for and cannot do */
+/* What small steps cannot do */
 static void say_lacks(const struct packing *p)
 {
     const char *lacks = processes_size() > 1 ? "several processes" : small_lacks(p);
-    if (!(options.small > 0) || !lacks || total.lacks) return;
-    warn("--small-steps: no small steps with %s yet: such steps are made at once", lacks);
+    if (!(total.radii > 0) || !lacks || total.lacks) return;
+    warn("no small steps with %s yet: such steps are made at once", lacks);
     total.lacks = true;
 }
 
@@ -545,6 +546,8 @@ static void begin(struct run *r)
     struct failure failure = { 0 };
     struct frame *f = &r->f;
     r->driver.o = options_step(f->packing.dt, false);
+    total.radii = options_small_of(&options, &f->packing);
+    if (processes_size() == 1) r->driver.o.small = total.radii;
     warn_small(f, r->driver.o.order);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
     if (!steps) return;
@@ -623,12 +626,12 @@ static double read_dt(void)
 {
     bool adapts;
     double x;
-    if (!dt) return 0;
-    if (!driver_read_dt(dt, &adapts, &x))
+    if (!options.dt) return 0;
+    if (!driver_read_dt(options.dt, &adapts, &x))
         die_usage(
             "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
             "radius above 0 and at most 1",
-            dt);
+            options.dt);
     if (adapts) tol = x;
     return adapts ? 0 : x;
 }
@@ -637,7 +640,7 @@ static double read_dt(void)
 static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct failure failure = { 0 };
-    if (!dt && p->tolerance > 0) tol = p->tolerance;
+    if (!options.dt && p->tolerance > 0) tol = p->tolerance;
     if (path && tol > 0 && !p->adapts)
         die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
     if (tol > 0) p->adapts = true;
@@ -738,7 +741,7 @@ int tool_main(int argc, char **argv)
     reader_copies(in);
     // a program in the loop needs all bodies, and their contacts, in one place; and --dt auto all bodies
     struct distributed *others =
-        processes_take_bodies(contacts || forces || sums || loop_asks(), !dt);
+        processes_take_bodies(contacts || forces || sums || loop_asks(), !options.dt);
     reader_hands_over(in, loop_asks() || tol > 0 ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);

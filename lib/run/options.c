@@ -47,7 +47,8 @@ static void mark_given(void)
     for (int t = 0; t < 2; t++)
         for (const struct cli_option *o = t ? options_detect : options_solve; o->kind; o++)
             if (cli_given(o->to)) options_give(&options, o->to);
-    if (cli_given(&options.warm)) options_give(&options, &options.warm);
+    for (const void *const *other = options_others; *other; other++)
+        if (cli_given(*other)) options_give(&options, *other);
 }
 
 void options_check(void)

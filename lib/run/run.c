@@ -251,9 +251,11 @@ static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failu
             text);
     if (r->out)
         return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
-    if (adapts) return r->tol = x, p->adapts = true, 0;
-    if (driver_set_dt(p, x, failure)) return failure->status;
-    r->tol = 0, p->adapts = false, p->tolerance = 0;
+    if (!adapts && driver_set_dt(p, x, failure)) return failure->status;
+    options_give(&r->options, &options.dt);
+    r->chosen = false;
+    r->tol = adapts ? x : 0, p->adapts = adapts;
+    if (!adapts) p->tolerance = 0;
     return 0;
 }
 
@@ -318,6 +320,7 @@ int run_choose(struct nsd_run *r, struct failure *failure)
     if (r->chosen) return 0;
     if (options_names(&r->options, failure)) return failure->status;
     struct step_opt o = options_step_of(&r->options, p->dt, false);
+    o.small = options_small_of(&r->options, p);
     char *text = options_json_of(&r->options, &o);
     if (!text) return failure_set(failure, NSD_SOFTWARE, "no memory for the options");
     if (options_has(&r->options, &options.theta)) p->theta = r->options.theta;

@@ -67,6 +67,13 @@ static double sweep_there(const struct round *r)
     return r->p->device->lost.status ? NAN : change;
 }
 
+/* omega of the last sweep that may be made: 1, for the iterate is kept, and an over-relaxed one may have more energy than
+   the step began with. */
+static double last_omega(const struct solve *s, double omega, int32_t n)
+{
+    return n >= s->o->max_sweeps && !(s->o->relax > 0) ? 1 : omega;
+}
+
 /* `unjudged` sweeps and one more, which stores u if `keep`. Counts them in the report; returns the
    largest change of a normal velocity in the last one, m/s. */
 static double nlgs_sweep_once(struct solve *s, double omega, int32_t unjudged, bool keep)
@@ -75,7 +82,8 @@ static double nlgs_sweep_once(struct solve *s, double omega, int32_t unjudged, b
     struct round r = { .p = s->p,
                        .text = backend_widest()->sweep->sweep[o->method->id][s->p->kind.id],
                        .quiet = { o->local, omega, false },
-                       .last = { o->local, omega, keep },
+                       .last = { o->local, last_omega(s, omega, s->rep->sweeps + unjudged + 1),
+                                 keep },
                        .sweeps = unjudged + 1,
                        .lock = PTHREAD_MUTEX_INITIALIZER,
                        .rep = s->rep };

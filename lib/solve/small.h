@@ -54,6 +54,7 @@ struct small_bundle {
 /* Rolling and pivoting friction of a bundle */
 struct small_turn {
     double m[3][BUNDLE];    /* N m s: on b */
+    double sum[3][BUNDLE];  /* N m s: of m, in the steps before this one */
     double most[2][BUNDLE]; /* m: mu_p, mu_r */
 };
 
@@ -68,8 +69,10 @@ struct small_stick {
     double v_s[BUNDLE];   /* m/s */
 };
 
+/* The image of b that a meets */
 struct small_shift {
-    double d[3][BUNDLE]; /* m: the image of b that a meets is so far from b */
+    double d[3][BUNDLE]; /* m: it is so far from b, */
+    double v[3][BUNDLE]; /* m/s: and so much faster, where the cell moves */
 };
 
 /* What a step is made with */
@@ -98,6 +101,7 @@ struct small {
     struct small_bundle *bundle;
     struct small_turn *turn;   /* NULL: nothing rolls */
     struct small_shift *shift; /* NULL: no images */
+    bool moves;                /* images do not move as their bodies */
     struct small_holds *hold;  /* NULL: nothing attracts */
     struct small_stick *stick; /* NULL: no static friction */
     uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */

@@ -71,6 +71,14 @@ ALWAYS_INLINE void small_velocity(const struct small_pairs *y, const struct twis
         u[i] = b->v[i] - a->v[i] - (m[j] * y->n[k] - m[k] * y->n[j]);
 }
 
+/* The same of images that move with the cell */
+ALWAYS_INLINE void small_velocity_image(const struct small_pairs *y, const struct small *s,
+                                        const struct twist *a, const struct twist *b, vd u[3])
+{
+    small_velocity(y, a, b, u);
+    for (int j = 0; j < 3 && s->moves && s->shift; j++) u[j] += vload(s->shift[y->i].v[j] + y->k);
+}
+
 /* Both bodies get df at their arms, and a moment dm where it is not NULL. */
 ALWAYS_INLINE void small_give(const struct small_pairs *y, struct small *s, const vd df[3],
                               const vd *dm)
@@ -109,7 +117,7 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
         struct twist ma, mb;
         vd before[3];
         bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
-        small_velocity(y, &ma, &mb, before);
+        small_velocity_image(y, s, &ma, &mb, before);
         small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
     }
     small_store(c->q, k, l->q);
@@ -121,11 +129,13 @@ ALWAYS_INLINE void small_turn_pairs(const struct small_pairs *y, const struct sm
                                     vd dm[3])
 {
     struct small_turn *t = &s->turn[y->i];
-    vd w[3], m[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
+    const double begins = warm < 1;
+    vd w[3], m[3], sum[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
     for (int j = 0, p = 1, q = 2; j < 3; p = q, q = j++)
         w[j] = y->mb.w[j] - y->ma.w[j] - turn * (y->n[p] * df[q] - y->n[q] * df[p]);
-    small_load(m, t->m, y->k);
-    for (int j = 0; j < 3; j++) m[j] *= warm;
+    small_load(m, t->m, y->k), small_load(sum, t->sum, y->k);
+    for (int j = 0; j < 3; j++) sum[j] += begins * m[j], m[j] *= warm;
+    small_store(t->sum, y->k, sum);
     for (int j = 0; j < 2; j++) most[j] = vload(t->most[j] + y->k);
     vd had[3] = { m[0], m[1], m[2] };
     small_roll(y->n, l->rn, w, y->a.ii + y->b.ii, most, m, dm);
@@ -226,7 +236,7 @@ ALWAYS_INLINE void small_stick_pairs(const struct small_pairs *y, const struct s
     vd u[3], un, ut[3];
     bodies_load(&a, s->before, y->c->a + y->k, &ma);
     bodies_load(&b, s->before, y->c->b + y->k, &mb);
-    small_velocity(y, &ma, &mb, u), small_split(l->n, u, &un, ut);
+    small_velocity_image(y, s, &ma, &mb, u), small_split(l->n, u, &un, ut);
     vm sticks = le(norm3(ut), vload(t->v_s + y->k));
     l->mu = pick(sticks, vload(t->mu[0] + y->k), vload(t->mu[1] + y->k));
     vstore(y->c->mu + y->k, l->mu);
@@ -245,7 +255,10 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     vm near = le(y.d2, most * most);
     if (!s->live[BUNDLE * i + k] && !any(near)) return false;
     small_pairs_load(&y, s);
-    small_velocity(&y, &y.ma, &y.mb, l.u);
+    if (rich)
+        small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
+    else
+        small_velocity(&y, &y.ma, &y.mb, l.u);
     small_set_law(&l, &y, s);
     l.calm = splat(s->rate.calm);
     small_load(l.f, y.c->f, k);
@@ -266,7 +279,9 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
     for (int j = 0; j < 3 && rich; j++) df[j] -= dp * l.n[j];
     small_give(&y, s, df, rolls ? dm : NULL);
-    return small_mark(&y, s, l.wn * norm3(df), hot);
+    vd change = l.wn * norm3(df);
+    if (rolls) change = change + (y.a.ii * y.la + y.b.ii * y.lb) * norm3(dm);
+    return small_mark(&y, s, change, hot);
 }
 
 ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bool again,
@@ -284,7 +299,7 @@ ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bo
 
 static bool small_sweep_bundles(struct small *s, int64_t first, int64_t end, bool again)
 {
-    if (s->hold || s->stick)
+    if (s->hold || s->stick || s->moves)
         return again ? small_bundles(s, first, end, true, s->turn, true)
                      : small_bundles(s, first, end, false, s->turn, true);
     if (s->turn)
@@ -322,7 +337,7 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     vm near = le(y.d2, most * most);
     if (!s->live[BUNDLE * i + k] && !any(near)) return;
     small_pairs_load(&y, s);
-    small_velocity(&y, &y.ma, &y.mb, l.u);
+    small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
     small_load(had, y.c->f, k), small_load(l.q, y.c->q, k);
     small_set_law(&l, &y, s);
     for (int j = 0; j < 3; j++) l.f[j] = had[j];

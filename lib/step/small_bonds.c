@@ -93,7 +93,9 @@ static double opens_ahead(const struct small_run *r, int64_t slot, vec3 n)
     const struct small_bundle *c = &s->bundle[slot / BUNDLE];
     const struct body *a = &s->body[body_index(c->a[slot % BUNDLE])];
     const struct body *b = &s->body[body_index(c->b[slot % BUNDLE])];
-    return r->ahead * v3_dot(n, v3_sub(small_vec(b->v), small_vec(a->v)));
+    vec3 v = v3_sub(small_vec(b->v), small_vec(a->v));
+    if (s->moves) v = v3_add(v, small_image_velocity(s, slot));
+    return r->ahead * v3_dot(n, v);
 }
 
 /* m: the gap of a touch where the bodies are; false: it is not near. */
@@ -172,16 +174,17 @@ int small_bonds_keep(struct small_run *r, struct failure *failure)
 int small_bonds_laws(struct contacts *s, const struct packing *p, struct failure *failure)
 {
     int64_t from = 0;
-    if (!small_tie_holds(p)) return 0;
+    if (!p->law) return 0;
     if (contacts_alloc_laws(s)) return failure_set(failure, EX_SOFTWARE, "no memory for the ties");
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        const struct bond *bridge = bonds_find(&p->bonds, c, &from);
         double x[HOLD_COUNT];
+        contact_laws_rolling(p, c->a, c->b, &s->law[i].mu_r, &s->law[i].mu_p);
+        if (!small_tie_holds(p)) continue;
+        const struct bond *bridge = bonds_find(&p->bonds, c, &from);
         small_tie_set(x, p, c->a, c->b, 0);
         if (bridge) x[HOLD_WET] = 1, s->law[i].state = CONTACT_LAW_WET;
         s->law[i].pull = small_hold_force(x, c->gap), s->law[i].jump[0] = fmax(0, c->gap);
-        contact_laws_rolling(p, c->a, c->b, &s->law[i].mu_r, &s->law[i].mu_p);
     }
     return 0;
 }

@@ -64,7 +64,7 @@ void small_error_give(const struct small_run *r, struct report *rep)
     double missing = 0, load = 0;
     for (int64_t i = 0; r->judged && i < p->n; i++) {
         const double carries = fmax(s->load[i], p->mass[i] * fall);
-        if (!(p->mass[i] > 0) || !(s->missing[i] > 0)) continue;
+        if (!(p->mass[i] > 0) || !(s->missing[i] > 0) || !(carries > 0)) continue;
         missing += s->missing[i], load += carries;
         if (s->missing[i] > rep->missing * carries)
             rep->missing = s->missing[i] / carries, rep->missing_id = p->id[i];

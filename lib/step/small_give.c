@@ -6,18 +6,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Of a contact in the interval: on b */
+struct small_sum {
+    vec3 f, m; /* N s, N m s */
+};
+
 /* Contacts as they are given: with what they have pushed, or, where nobody reads that, those alone that overlap */
 struct given {
     const struct small_run *r;
     struct contacts *out;
-    vec3 *sum; /* [out->n] N s; NULL: nobody reads them */
+    struct small_sum *sum; /* [out->n]; NULL: nobody reads them */
 };
 
 /* False when memory is short, as all that give. */
-static bool give_contact(struct given *g, const struct contact *at, bool near, vec3 sum)
+static bool give_contact(struct given *g, const struct contact *at, bool near, struct small_sum sum)
 {
     const struct packing *p = g->r->p;
-    if (!(near && at->gap <= 0) && !(g->sum && v3_dot(sum, sum) > 0)) return true;
+    if (!(near && at->gap <= 0) && !(g->sum && v3_dot(sum.f, sum.f) > 0)) return true;
     struct contact *c = contacts_add(g->out, at->a, at->b);
     if (!c) return false;
     memcpy(c->shift, at->shift, sizeof c->shift);
@@ -37,7 +42,8 @@ static bool give_touches(struct given *g)
     bool room = by != NULL;
     for (int64_t i = 0; room && i < l->touches; i++) {
         struct small_touch *t = by[i];
-        const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
+        const struct small_sum sum = { v3_add(small_vec(t->sum), small_vec(t->f)),
+                                       v3_add(small_vec(t->turned), small_vec(t->m)) };
         const bool near = small_look_at_touch(r, t, l->margin);
         struct contact c = { .a = -1 - t->wall, .b = t->body, .n = t->n };
         c.gap = t->arm - l->s.place[t->body].r;
@@ -58,7 +64,8 @@ static bool give_points(struct given *g)
         memcpy(c.shift, m->key.shift, sizeof c.shift);
         for (int64_t k = 0; room && k < m->points; k++) {
             const struct small_point *t = &m->point[k];
-            const vec3 sum = v3_add(small_vec(t->sum), small_vec(t->f));
+            const struct small_sum sum = { v3_add(small_vec(t->sum), small_vec(t->f)),
+                                           v3_add(small_vec(t->turned), small_vec(t->m)) };
             c.feature = t->feature, c.n = t->n, c.gap = t->gap, c.x = t->x;
             room = give_contact(g, &c, t->near, sum);
         }
@@ -79,8 +86,13 @@ static bool give_pairs(struct given *g)
         const vec3 d = small_branch(s, slot);
         const double ra = s->place[q->a].r, touching = ra + s->place[q->b].r;
         if (!g->sum && v3_dot(d, d) > touching * touching) continue;
-        const vec3 sum =
-            v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k], b->sum[2][k] + b->f[2][k]);
+        struct small_sum sum = { v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k],
+                                    b->sum[2][k] + b->f[2][k]),
+                                 v3(0, 0, 0) };
+        const struct small_turn *t = s->turn ? &s->turn[slot / BUNDLE] : NULL;
+        if (t)
+            sum.m =
+                v3(t->sum[0][k] + t->m[0][k], t->sum[1][k] + t->m[1][k], t->sum[2][k] + t->m[2][k]);
         const double length = v3_norm(d);
         struct contact c = { .a = q->a, .b = q->b, .n = small_normal(d) };
         memcpy(c.shift, q->shift, sizeof c.shift);
@@ -93,7 +105,7 @@ static bool give_pairs(struct given *g)
 
 struct small_given {
     struct contact c;
-    vec3 sum;
+    struct small_sum sum;
 };
 static int by_key(const void *x, const void *y)
 {
@@ -102,7 +114,7 @@ static int by_key(const void *x, const void *y)
 }
 
 /* Contacts and their sums in the order of keys; false when memory is short. */
-static bool sort_given(struct contacts *out, vec3 *sum)
+static bool sort_given(struct contacts *out, struct small_sum *sum)
 {
     struct small_given *all = malloc((size_t)(out->n + 1) * sizeof *all);
     for (int64_t i = 0; all && i < out->n; i++) all[i] = (struct small_given){ out->c[i], sum[i] };
@@ -112,15 +124,19 @@ static bool sort_given(struct contacts *out, vec3 *sum)
     return all != NULL;
 }
 
-/* Their reactions are their sums. */
-static bool set_sums(struct contacts *out, const vec3 *sum)
+/* r: x in the basis of c */
+static void set_along(double r[3], const struct contact *c, vec3 x)
 {
-    if (contacts_alloc_found(out)) return false;
+    r[0] = v3_dot(x, c->n), r[1] = v3_dot(x, c->t1), r[2] = v3_dot(x, contact_t2(c));
+}
+
+/* Their reactions and moments are their sums. */
+static bool set_sums(struct contacts *out, const struct small_sum *sum, bool rolls)
+{
+    if (contacts_alloc_found(out) || (rolls && contacts_alloc_moment(out))) return false;
     for (int64_t i = 0; i < out->n; i++) {
-        const struct contact *c = &out->c[i];
-        struct found *f = &out->found[i];
-        f->r[0] = v3_dot(sum[i], c->n), f->r[1] = v3_dot(sum[i], c->t1);
-        f->r[2] = v3_dot(sum[i], contact_t2(c)), f->status = STATUS_SUMMED;
+        set_along(out->found[i].r, &out->c[i], sum[i].f), out->found[i].status = STATUS_SUMMED;
+        if (rolls) set_along(out->moment[i], &out->c[i], sum[i].m);
     }
     return true;
 }
@@ -133,7 +149,7 @@ int small_give_contacts(const struct small_run *r, struct contacts *out, bool ba
     out->n = 0, contacts_free_found(out), contacts_free_tie(out);
     bool room = (bare || g.sum) && give_touches(&g) && give_pairs(&g) && give_points(&g);
     if (room && !bare && r->l->meetings.n) room = sort_given(out, g.sum);
-    if (room && !bare) room = set_sums(out, g.sum);
+    if (room && !bare) room = set_sums(out, g.sum, packing_rolls(r->p));
     free(g.sum);
     return room ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts");
 }

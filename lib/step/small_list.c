@@ -19,7 +19,7 @@ static void small_arrays_free(struct small_list *l)
     struct small *s = &l->s;
     free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->live),
         free(s->late), free(s->group);
-    free(l->slot), free(l->touch), free(l->pairs.pair);
+    free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
 
@@ -30,7 +30,7 @@ static void small_forget(struct small_list *l)
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
     s->live = s->late = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
-    l->slot = NULL, l->touch = NULL, l->touches = l->room = 0;
+    l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
 }
 
@@ -160,8 +160,8 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
     c->mu[k] = p->mu[m], c->e[0][k] = p->en[m], c->e[1][k] = p->et[m];
     if (l->s.shift) {
         vec3 d = cell_shift(edge, pair->shift);
-        struct small_shift *to = &l->s.shift[l->slot[i] / BUNDLE];
-        to->d[0][k] = d.x, to->d[1][k] = d.y, to->d[2][k] = d.z;
+        small_shift_set(&l->s.shift[l->slot[i] / BUNDLE], k, d,
+                        cell_shift(p->cell.rate, pair->shift));
     }
     if (l->s.hold) {
         double x[HOLD_COUNT];
@@ -195,11 +195,10 @@ static bool take_meetings(struct small_list *l, const struct packing *p)
     return room;
 }
 
-static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x)
+static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x,
+                            const vec3 edge[3])
 {
     struct small *s = &l->s;
-    vec3 edge[3] = { { 0, 0, 0 }, { 0, 0, 0 }, { 0, 0, 0 } };
-    if (cell_repeats(&p->cell)) cell_predict(&p->cell, 0, edge);
     if (!small_colour(l, p, x, edge)) return false;
     s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
     if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
@@ -221,7 +220,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 
 /* What a slot has of the past */
 struct small_past {
-    double f[3], m[3], sum[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
+    double f[3], m[3], sum[3], turned[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -232,6 +231,7 @@ static struct small_past past_of(const struct small *s, int64_t slot)
     for (int j = 0; j < 3; j++) {
         x.f[j] = c->f[j][k], x.sum[j] = c->sum[j][k];
         x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
+        x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
     }
     for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
     return x;
@@ -248,12 +248,35 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     struct small_bundle *c = &s->bundle[slot / BUNDLE];
     for (int j = 0; j < 3; j++) {
         c->f[j][k] = x->f[j], c->sum[j][k] = x->sum[j];
-        if (s->turn) s->turn[slot / BUNDLE].m[j][k] = x->m[j];
+        if (!s->turn) continue;
+        s->turn[slot / BUNDLE].m[j][k] = x->m[j], s->turn[slot / BUNDLE].sum[j][k] = x->turned[j];
     }
     for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
         s->hold[slot / BUNDLE].x[j][k] = x->held[j];
     if (!small_is_zero(x->f) || x->held[HOLD_WET] > 0 || x->held[HOLD_PULL] > 0)
         small_list_wake(s, slot);
+}
+
+/* Pairs of images that move; false when memory is short. */
+static bool list_images(struct small_list *l)
+{
+    if (!l->s.moves) return true;
+    l->image = malloc((size_t)(l->pairs.n + 1) * sizeof *l->image);
+    for (int64_t i = 0; l->image && i < l->pairs.n; i++) {
+        const int8_t *k = l->pairs.pair[i].shift;
+        if (k[0] || k[1] || k[2]) l->image[l->images++] = i;
+    }
+    return l->image != NULL;
+}
+
+vec3 small_slot_force(const struct small *s, int64_t slot)
+{
+    const int k = (int)(slot % BUNDLE);
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
+    if (!s->hold) return f;
+    const vec3 d = small_branch(s, slot);
+    return v3_axpy(f, -s->hold[slot / BUNDLE].x[HOLD_PULL][k] / v3_norm(d), d);
 }
 
 vec3 small_branch(const struct small *s, int64_t slot)
@@ -453,11 +476,10 @@ static void carry_touches(struct small_list *to, const struct small_list *from)
 
 /* ---- the list ---- */
 
-int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
-                    struct failure *failure)
+int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x,
+                    const vec3 edge[3], double t, struct failure *failure)
 {
     struct small_list was;
-    vec3 edge[3];
     bool room = true;
     if (small_bodies(l, p, failure)) return failure->status;
     was = *l;
@@ -465,10 +487,9 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     l->spare = MARGIN * packing_whole(p).small, l->way = 0;
     l->margin = l->spare + small_tie_reach(p);
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
-    cell_predict(&p->cell, 0, edge);
     if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
         room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
-               small_pairs_lay(l, p, x) && find_touches(l, &was, p, x, t) &&
+               small_pairs_lay(l, p, x, edge) && list_images(l) && find_touches(l, &was, p, x, t) &&
                ((!p->shape && !p->mesh.elements) ||
                 small_meetings_lay(&l->meetings, p, &was.meetings));
         if (room) carry_pairs(l, &was), carry_touches(l, &was);
@@ -490,7 +511,8 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         const struct recall *r = &p->memory.recall[i];
         struct small_past x = { 0 };
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
-        for (int k = 0; k < 3; k++) x.sum[k] = -x.f[k]; // the interval before has counted it
+        for (int k = 0; k < 3; k++)
+            x.sum[k] = -x.f[k], x.turned[k] = -x.m[k]; // the interval before has counted it
         struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
         if (m) {
             room = room && small_meeting_recall(m, r, part);
@@ -500,7 +522,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
             struct small_touch *t = small_list_find_touch(l, r->b, -1 - r->a);
             if (!t) continue;
             memcpy(t->f, x.f, sizeof t->f), memcpy(t->m, x.m, sizeof t->m);
-            memcpy(t->sum, x.sum, sizeof t->sum);
+            memcpy(t->sum, x.sum, sizeof t->sum), memcpy(t->turned, x.turned, sizeof t->turned);
             continue;
         }
         at = small_list_pair(l, at, recall_key(r), &found);

@@ -14,7 +14,7 @@
 struct small_touch {
     int32_t wall, body;
     double f[3], kept, q[3], sum[3];
-    double m[3], most[2];
+    double m[3], turned[3], most[2]; /* turned: the sum of m */
     double mu, e[2];
     double hold[HOLD_COUNT]; /* where something attracts */
     /* Of the step in hand */
@@ -33,17 +33,18 @@ struct small_list {
     struct small_meetings meetings; /* of others */
     const struct surface *surface;  /* [walls] of meshes; borrowed */
     int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
+    int64_t images, *image;         /* [images] pairs whose b is an image */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
 };
 
 void small_list_free(struct small_list *l);
 /*
- * Finds the pairs of bodies at x (m), and of these with walls at time t (s). What pairs and touches of the list before
+ * Finds the pairs of bodies at x (m) in a cell with these edges (m), and of these with walls at time t (s). What pairs and touches of the list before
  * have is kept. Returns 0, EX_SOFTWARE or EX_DATAERR.
  */
-int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x, double t,
-                    struct failure *failure);
+int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x,
+                    const vec3 edge[3], double t, struct failure *failure);
 /* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
 bool small_list_recall(struct small_list *l, const struct packing *p, double part);
 /* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
@@ -63,6 +64,22 @@ struct small_touch *small_list_find_touch(const struct small_list *l, int32_t bo
 void small_list_wake(struct small *s, int64_t slot);
 struct contact_key small_pair_key(const struct pair *pair);
 
+/* The image of b in lane k is so far from b (m), and moves against it (m/s) */
+static inline void small_shift_set(struct small_shift *to, int k, vec3 d, vec3 v)
+{
+    to->d[0][k] = d.x, to->d[1][k] = d.y, to->d[2][k] = d.z;
+    to->v[0][k] = v.x, to->v[1][k] = v.y, to->v[2][k] = v.z;
+}
+
+/* m/s: of the image in a slot against its body */
+static inline vec3 small_image_velocity(const struct small *s, int64_t slot)
+{
+    const struct small_shift *h = &s->shift[slot / BUNDLE];
+    const int k = (int)(slot % BUNDLE);
+    return v3(h->v[0][k], h->v[1][k], h->v[2][k]);
+}
+/* N s: what both bodies of slot i feel, on b, in the step in hand */
+vec3 small_slot_force(const struct small *s, int64_t slot);
 /* m, from a to the image of b that it meets: of slot i */
 vec3 small_branch(const struct small *s, int64_t slot);
 /* Of a branch; of bodies in one place, that along y */

@@ -2,10 +2,14 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_cell.h"
 #include "step/small_error.h"
+#include "step/small_load.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_seam.h"
 #include "step/small_sums.h"
+#include "step/small_touch.h"
 #include "step/small_wall.h"
 
 #include <math.h>
@@ -56,109 +60,17 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
     if (r->meets) small_points_place(r, first, end);
 }
 
-/* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
-static void push_body(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
-{
-    vec3 w = v3_axpy(m, -arm, v3_cross(n, f));
-    b->v[0] += b->im * f.x, b->v[1] += b->im * f.y, b->v[2] += b->im * f.z;
-    b->w[0] += b->ii * w.x, b->w[1] += b->ii * w.y, b->w[2] += b->ii * w.z;
-}
-
 /* ---- walls ---- */
-
-/* The law in the first sweep of a step */
-static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
-{
-    const struct small *s = &r->l->s;
-    double before[3];
-    for (int k = 0; k < 3; k++)
-        t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM, t->m[k] *= SMALL_WARM;
-    t->kept = dot3(l->n, l->f);
-    vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
-    l->spin = 0.5 * r->h * v3_dot(w, t->n);
-    small_press(l, &s->rate);
-    small_array(before, small_touch_velocity(t, &s->before[t->body]));
-    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
-    memcpy(t->q, l->q, sizeof t->q);
-}
-
-static void roll_touch(const struct small_run *r, struct small_touch *t, const struct small_law *l,
-                       vec3 df, double dm[3])
-{
-    const struct body *b = &r->l->s.body[t->body];
-    double w[3];
-    vec3 spin = v3_axpy(small_vec(b->w), -b->ii * t->arm, v3_cross(t->n, df));
-    small_array(w, v3_sub(spin, r->wall[t->wall].spin));
-    small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
-}
-
-/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
-   0.98 persists (N s). */
-static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
-{
-    const double had = t->hold[HOLD_PULL];
-    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
-    const double dp = pull - SMALL_WARM * had;
-    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
-    l->calm += 2 * l->wn * pull;
-    return dp;
-}
-
-/* mu of the step, by the velocities before it */
-static void stick_touch(const struct small_run *r, struct small_touch *t)
-{
-    const struct packing *p = r->p;
-    const int32_t pair = packing_pair(p, -1 - t->wall, t->body);
-    const vec3 u = small_touch_velocity(t, &r->l->s.before[t->body]);
-    double mu[2], v_s;
-    small_tie_stick(mu, &v_s, p, pair);
-    t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
-}
-
-/* What persists of the reaction and the pull of the last step: on the body */
-static vec3 persisting_force(const struct small_touch *t)
-{
-    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
-}
-
-/* A touch whose body has left gives its reaction back. */
-static void leave_touch(struct small_run *r, struct small_touch *t)
-{
-    vec3 f = v3_scale(-1, persisting_force(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
-    t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
-    if (!small_is_zero(t->f)) push_body(&r->l->s.body[t->body], t->n, t->arm, f, m);
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->f[k] = t->m[k] = 0;
-    t->kept = 0, t->near = false;
-}
 
 static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
-    struct small *s = &r->l->s;
-    struct body *b = &s->body[t->body];
     struct small_law l;
-    double df[3], dm[3] = { 0, 0, 0 }, dp = 0;
-    if (!again && !small_look_at_touch(r, t, s->hold ? r->l->margin : s->rate.reach)) {
-        leave_touch(r, t);
-        return;
-    }
-    if (again && !t->near) return;
-    t->near = true;
+    double df[3], dp = 0;
+    if (again ? !t->near : !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
-    if (!again && s->hold) dp = hold_touch(r, t, &l);
-    if (!again && s->stick) stick_touch(r, t);
-    l.mu = t->mu;
-    if (!again) begin_touch(r, t, &l);
+    if (!again) dp = small_touch_begin(r, t, &l);
     small_solve(&l, df);
-    memcpy(t->f, l.f, sizeof t->f);
-    if (s->turn) roll_touch(r, t, &l, small_vec(df), dm);
-    for (int k = 0; k < 3; k++) df[k] -= dp * l.n[k];
-    push_body(b, t->n, t->arm, small_vec(df), small_vec(dm));
-    const double change = l.wn * norm3(df);
-    if (!again && !(change > s->rate.allowed[0])) return;
-    s->change[t->body] += change;
-    if (!(s->change[t->body] > s->rate.allowed[again])) return;
-    s->change[t->body] = 0, s->hot[t->body] = s->sweep;
-    r->far = true;
+    small_touch_give(r, t, &l, df, dp, 1, again);
 }
 
 /* Of bodies first .. end-1 */
@@ -167,7 +79,8 @@ static void sweep_touches(struct small_run *r, int64_t first, int64_t end, bool 
     struct small_list *l = r->l;
     const int64_t last = small_list_touch(l, end, 0);
     for (int64_t i = small_list_touch(l, first, 0); i < last; i++)
-        if (!again || l->s.hot[l->touch[i].body] >= l->s.sweep - 1)
+        if (!small_is_loaded(r, &l->touch[i]) &&
+            (!again || l->s.hot[l->touch[i].body] >= l->s.sweep - 1))
             solve_touch(r, &l->touch[i], again);
 }
 
@@ -176,23 +89,8 @@ static void end_touches(struct small_run *r, int64_t first, int64_t end)
 {
     struct small_list *l = r->l;
     const int64_t last = small_list_touch(l, end, 0);
-    for (int64_t i = small_list_touch(l, first, 0); i < last; i++) {
-        struct small_touch *t = &l->touch[i];
-        const vec3 f = small_vec(t->f), m = small_vec(t->m);
-        if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
-        if (small_is_zero(t->f)) continue;
-        t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
-        const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
-        const double held = t->kept + 2 * t->hold[HOLD_PULL];
-        const double most = small_persists(&l->s.rate, held, w, rn);
-        if (rn <= most) continue;
-        const double back = 1 - most / rn;
-        for (int k = 0; k < 3; k++) {
-            t->sum[k] += back * t->f[k];
-            t->f[k] *= most / rn, t->m[k] *= most / rn;
-        }
-        push_body(&l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));
-    }
+    for (int64_t i = small_list_touch(l, first, 0); i < last; i++)
+        if (!small_is_loaded(r, &l->touch[i])) small_touch_end(r, &l->touch[i]);
 }
 
 /* ---- pairs ---- */
@@ -231,11 +129,10 @@ static void push_reactions(struct small_run *r, int me, int threads)
         struct small_touch *t = &l->touch[i];
         if (small_is_zero(t->f) && !(t->hold[HOLD_PULL] > 0)) continue;
         if (small_look_at_touch(r, t, l->margin))
-            push_body(&s->body[t->body], t->n, t->arm, persisting_force(t),
-                      v3_scale(SMALL_WARM, small_vec(t->m)));
+            small_touch_push(r, t);
         else
             memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
-                memset(t->sum, 0, sizeof t->sum);
+                memset(t->sum, 0, sizeof t->sum), memset(t->turned, 0, sizeof t->turned);
     }
 }
 
@@ -260,11 +157,11 @@ static void settle_slot(struct small *s, int64_t slot)
     if (s->turn) {
         struct small_turn *t = &s->turn[i];
         m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
-        for (int j = 0; j < 3; j++) t->m[j][k] *= left;
+        for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
     }
-    push_body(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
-    push_body(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),
-              v3_scale(-back, m));
+    small_body_push(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
+    small_body_push(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),
+                    v3_scale(-back, m));
 }
 
 static void settle_pairs(struct small *s)
@@ -295,10 +192,11 @@ static double farthest(const struct small_run *r)
 static void prepare_step(struct small_run *r)
 {
     struct small_list *l = r->l;
-    const double wall = small_wall_speed(r->p), way = r->h * fmax(sqrt(r->fastest), wall);
+    const double wall = small_wall_speed(r->p),
+                 way = r->h * (fmax(sqrt(r->fastest), wall) + small_cell_stretch(r));
     if (!isfinite(way)) r->failed = r->stop = true;
     l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
-    if (wall == 0 && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
+    if (wall == 0 && !r->cell.moves && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
     l->way += way;
     r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;
@@ -313,6 +211,10 @@ static void small_sweeps(struct small_run *r, int me, int threads, int64_t first
         team_meet();
         sweep_touches(r, first, end, k > 0);
         team_meet();
+        if (r->loads.of) {
+            if (!me) small_loads_sweep(r, k > 0);
+            team_meet();
+        }
         if (r->meets) small_points_sweep(r, me, threads, k > 0);
         sweep_pairs(r, me, threads, k > 0);
         team_meet();
@@ -340,10 +242,16 @@ void small_loop(void *arg, int me, int threads)
     int64_t first, end;
     small_share(r->l->s.bodies, me, threads, &first, &end);
     while (r->made < r->n && !r->stop) {
+        if (r->cell.moves) {
+            if (!me) small_cell_begin(r);
+            team_meet();
+            small_cell_images(r, me, threads);
+        }
         const double fastest = begin_bodies(r, first, end);
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
         pthread_mutex_unlock(&r->lock);
+        if (r->loads.of && !me) small_loads_begin(r);
         if (!me) small_walls_set(r);
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
@@ -353,11 +261,19 @@ void small_loop(void *arg, int me, int threads)
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();
         if (r->judged) small_error_step(r, me, threads);
+        if (r->cell.stress) {
+            small_cell_stress(r, me, threads);
+            team_meet();
+        }
+        if (r->cell.moves && !me) small_cell_end(r);
+        if (r->cell.stress) team_meet(); // it reads the reactions of touches
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
+        if (r->loads.of && !me) small_loads_end(r);
         if (!me) finish_step(r);
         team_meet();
+        if (r->cell.stress) small_cell_follow(r, first, end);
         move_bodies(r, first, end);
         team_meet();
     }

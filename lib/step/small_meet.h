@@ -18,9 +18,10 @@ struct small_point {
     bool there;  /* the narrow phase has found it when it last looked */
     bool near;   /* its gap is in reach in the step in hand */
     bool starts; /* its bodies do not have its f yet */
-    double f[3], kept, q[3], sum[3], m[3];
+    double f[3], kept, q[3], sum[3], m[3], turned[3]; /* turned: the sum of m */
     double mu, e[2];
     double soft; /* C over W in the step in hand; 0: an impact */
+    vec3 had;    /* N s: f before the sweep of an impact */
     /* Where it is, or was last */
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */

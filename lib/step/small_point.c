@@ -7,6 +7,7 @@
 #include "contact/internal_edge.h"
 #include "solve/local_exact.h"
 #include "state/rotation.h"
+#include "step/small_tie.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,11 +25,13 @@
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 30
 
-enum {
-    ROUNDS = 2,
-    ROUNDS_MOST = 20
-};                                 /* of the points of a meeting in one sweep; most in an impact */
+/* Rounds of the points of a meeting in one sweep: where some point is new, and in an impact, at most */
+enum { ROUNDS = 2, ROUNDS_NEW = 6, ROUNDS_MOST = 20 };
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
+
+/* Of the work of reactions before the impact: what of a gain may be an error of the rounds */
+#define GAIN 2e-3
+enum { BISECTIONS = 7 }; /* of a restitution that is reduced */
 
 /* ---- bodies ---- */
 
@@ -86,7 +89,6 @@ int small_points_init(struct small_run *r, const struct surface *surface, int th
     s->scratch = calloc((size_t)threads, sizeof *s->scratch);
     if (!s->q || !s->inverse || !s->spread || !s->way || !s->scratch)
         return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    cell_predict(&p->cell, 0, s->edge);
     for (int64_t i = 0; i < p->n; i++) {
         const vec3 m = rotation_moments(p, i);
         s->q[i] = rotation_predict(p, i);
@@ -95,7 +97,7 @@ int small_points_init(struct small_run *r, const struct surface *surface, int th
         set_inverse(r, i);
     }
     s->at = (struct situation){ .p = p, .x = r->x, .surface = surface };
-    if (cell_repeats(&p->cell)) s->at.edge = s->edge;
+    if (cell_repeats(&p->cell)) s->at.edge = r->cell.edge;
     if (!p->shape) return 0;
     const struct positions at = { .x = r->x, .q = s->q };
     s->at.shaped = &s->placed;
@@ -119,25 +121,25 @@ quat small_points_q(const struct small_run *r, int64_t i, vec3 *w)
     return turn_freely(r, i, -r->ahead, w);
 }
 
-double small_point_speed(const struct small_run *r, int64_t i)
+/* What has been added to the w of body i is a moment's, and remains so when the body turns to q. */
+static void keep_moment(const struct small_run *r, int64_t i, quat q, double w[3])
 {
-    const struct body *b = &r->l->s.body[i];
-    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+    const vec3 L = rotation_momentum(r->p, i, r->shapes.q[i], small_vec(w));
+    small_array(w, rotation_spin(r->p, i, q, L));
 }
 
-/* w^- follows as w does: what a step has added to it remains a moment's. */
 void small_points_place(struct small_run *r, int64_t first, int64_t end)
 {
     struct small_shapes *s = &r->shapes;
     for (int64_t i = first; i < end; i++) {
-        struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
+        struct body *b = &r->l->s.body[i];
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
         s->way[i] += r->h * small_point_speed(r, i);
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
-            const vec3 L = rotation_momentum(r->p, i, s->q[i], small_vec(was->w));
-            small_array(was->w, rotation_spin(r->p, i, q, L));
+            keep_moment(r, i, q, r->l->s.before[i].w);
+            if (r->pull) keep_moment(r, i, q, r->pull[i].dw);
             small_array(b->w, w);
         }
         s->q[i] = q;
@@ -150,7 +152,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
 
 static vec3 image_of(const struct small_run *r, const struct small_meeting *m)
 {
-    return r->shapes.at.edge ? cell_shift(r->shapes.edge, m->key.shift) : v3(0, 0, 0);
+    return r->shapes.at.edge ? cell_shift(r->cell.edge, m->key.shift) : v3(0, 0, 0);
 }
 
 /* Adds to W what body i has of it, with this arm (m). */
@@ -195,22 +197,35 @@ static bool point_lasts(const struct small_point *t)
     return !small_is_zero(t->f) || !small_is_zero(t->sum);
 }
 
-/* Points that are there no more leave their reactions to new ones beside them. */
+/* The nearest point of those in reach that is beside one that has gone, and, where `starts`, without a reaction; NULL */
+static struct small_point *point_beside(const struct small_run *r, struct small_meeting *m,
+                                        const struct small_point *gone, bool starts)
+{
+    struct small_point *next = NULL;
+    double least = BESIDE * r->thin;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        const double way = v3_norm(v3_sub(t->x, gone->x));
+        if (!t->near || (starts && !t->starts) || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
+            continue;
+        least = way, next = t;
+    }
+    return next;
+}
+
+/* Points that are in reach no more leave their reactions, and what they have pushed, to others beside them. */
 static void hand_over(const struct small_run *r, struct small_meeting *m)
 {
-    const double most = BESIDE * r->thin;
     for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *gone = &m->point[i], *next = NULL;
-        double least = most;
-        if (gone->near || gone->starts || small_is_zero(gone->f)) continue;
-        for (int64_t k = 0; k < m->points; k++) {
-            struct small_point *t = &m->point[k];
-            const double way = v3_norm(v3_sub(t->x, gone->x));
-            if (!t->near || !t->starts || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
-                continue;
-            least = way, next = t;
-        }
-        for (int k = 0; next && k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+        struct small_point *gone = &m->point[i], *next;
+        if (gone->near || gone->starts) continue;
+        if (!small_is_zero(gone->sum) && (next = point_beside(r, m, gone, false)))
+            for (int k = 0; k < 3; k++) {
+                next->sum[k] += gone->sum[k], next->turned[k] += gone->turned[k];
+                gone->sum[k] = gone->turned[k] = 0;
+            }
+        if (!small_is_zero(gone->f) && (next = point_beside(r, m, gone, true)))
+            for (int k = 0; k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
     }
 }
 
@@ -274,7 +289,7 @@ static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
     const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
     bool there = false;
     for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
-    if (there || !m->looked || reach + gone - m->way > m->wide) {
+    if (there || !m->looked || r->cell.moves || reach + gone - m->way > m->wide) {
         m->looked = true, m->way = gone, m->wide = reach + WIDE * r->thin;
         if (!find_points(r, m, m->wide, c)) return false;
     }
@@ -314,8 +329,11 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
         struct small_meeting *m = &all->of[all->held[k]];
         for (int64_t l = 0; l < m->points; l++) {
             struct small_point *t = &m->point[l];
-            if (!t->near || !seams_drop_one(&c->found, &r->shapes.at, (int32_t)i, n++)) continue;
-            t->near = false;
+            if (!t->near) continue;
+            const struct contact *at = &c->found.c[n++];
+            if (seams_may(&r->shapes.at, at) &&
+                seams_has(&c->found, &r->shapes.at, (int32_t)i, at - c->found.c))
+                t->near = false;
         }
     }
     return true;
@@ -343,6 +361,13 @@ void small_points_look(struct small_run *r, int me, int threads)
     if (!me && r->shapes.failed) r->failed = r->stop = true;
 }
 
+/* What a point has pushed goes into its sums. */
+static void end_point(struct small_point *t)
+{
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
+}
+
 void small_points_last(struct small_run *r)
 {
     r->shapes.at.t = r->p->t + r->ahead;
@@ -351,11 +376,11 @@ void small_points_last(struct small_run *r)
         struct small_meeting *m = &r->l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++) {
             struct small_point *t = &m->point[k];
-            if (!t->starts && !t->near)
-                for (int j = 0; j < 3; j++) t->sum[j] += t->f[j], t->f[j] = t->m[j] = 0;
+            if (!t->starts && !t->near) end_point(t);
             if (t->starts && t->near)
-                for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j];
+                for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j], t->turned[j] -= t->m[j];
         }
+        hand_over(r, m);
     }
 }
 
@@ -397,10 +422,20 @@ static vec3 velocity_at_b(const struct small_meeting *m, const struct small_poin
     return v3_add(small_vec(b->v), v3_cross(small_vec(b->w), t->b));
 }
 
-static vec3 point_velocity(const struct small_meeting *m, const struct small_point *t,
-                           const struct body *of)
+/* m/s: of the image of b that a meets */
+static vec3 point_velocity(const struct small_run *r, const struct small_meeting *m,
+                           const struct small_point *t, const struct body *of)
 {
-    return v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    const vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    return r->cell.moves ? v3_add(u, cell_shift(r->cell.next, m->key.shift)) : u;
+}
+
+/* mu of the step, whose bodies slide with ut (m/s) before it */
+static double friction_at(const struct packing *p, const struct small_meeting *m, vec3 ut)
+{
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, packing_pair(p, m->key.a, m->key.b));
+    return mu[v3_norm(ut) > v_s];
 }
 
 /* The law in the first sweep of a step */
@@ -415,14 +450,16 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
         .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
     };
     double before[3];
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k];
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
     t->kept = dot3(l.n, l.f), t->starts = false;
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
     small_press(&l, o);
-    small_array(before, point_velocity(m, t, s->before));
+    const vec3 u = point_velocity(r, m, t, s->before);
+    if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
+    small_array(before, u);
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);
@@ -460,7 +497,7 @@ static void roll_point(const struct small_run *r, const struct small_meeting *y,
 static void point_law(const struct small_run *r, const struct small_meeting *m,
                       const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
-    const vec3 u = v3_add(point_velocity(m, t, r->l->s.body), small_vec(t->q));
+    const vec3 u = v3_add(point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
     double W[9], b[3];
     for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
@@ -470,11 +507,18 @@ static void point_law(const struct small_run *r, const struct small_meeting *m,
     solve_local(r->p->dim, W, b, t->mu, is);
 }
 
+/* Of the reactions of a meeting in a sweep: what they do to the bodies, and against what */
+struct small_work {
+    double done, scale; /* J */
+};
+
 /* Returns by how much (m/s) the point's u changes. */
-static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t)
+static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
+                          struct small_work *work)
 {
     struct small *s = &r->l->s;
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
+    const vec3 u = point_velocity(r, m, t, s->body);
     double f[3], is[3], change2 = 0;
     point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
@@ -482,7 +526,12 @@ static double solve_point(struct small_run *r, const struct small_meeting *m, st
     push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
     if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, is[0]);
     for (int k = 0; k < 3; k++) f[k] = is[k] - f[k];
-    for (int k = 0; k < 3; k++) change2 += dot3(t->W + 3 * k, f) * dot3(t->W + 3 * k, f);
+    for (int k = 0; k < 3; k++) {
+        const double du = dot3(t->W + 3 * k, f);
+        const double does = f[k] * v3_dot(e[k], u);
+        change2 += du * du;
+        work->done += does + 0.5 * f[k] * du, work->scale += fabs(does);
+    }
     return sqrt(change2);
 }
 
@@ -514,26 +563,70 @@ static bool is_hot(const struct small *s, const struct small_meeting *m)
     return s->hot[b] >= last || (a >= 0 && s->hot[a] >= last);
 }
 
+/* The points in turn, until nothing changes. *first: m/s, the largest change of
+   the first round */
+static struct small_work solve_points(struct small_run *r, struct small_meeting *m, int rounds,
+                                      double *first)
+{
+    struct small_work work = { 0 };
+    double most = INFINITY;
+    for (int k = 0; k < rounds && most > (k ? ENOUGH * *first : 0); k++) {
+        most = 0;
+        for (int64_t i = 0; i < m->points; i++)
+            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i], &work));
+        if (!k) *first = most;
+    }
+    return work;
+}
+
+/* The same once more, as before, with `times` the restitution. Returns whether the reactions gain energy. */
+static bool solve_again(struct small_run *r, struct small_meeting *m, double times)
+{
+    double first;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        if (!t->near) continue;
+        push_point(r, r->l->s.body, m, t, v3_sub(t->had, small_vec(t->f)), v3(0, 0, 0));
+        small_array(t->f, t->had);
+        for (int k = 0; k < 3 && t->soft == 0; k++) t->q[k] *= times;
+    }
+    return solve_points(r, m, ROUNDS_MOST, &first).done > 0;
+}
+
+/* An impact that gains energy, as friction may make it [Kane 1984], has the largest restitution with which it does not, by
+   bisection [step/balance.h]. */
+static void bound_impact(struct small_run *r, struct small_meeting *m)
+{
+    double least = 0, most = 1, is = 1;
+    for (int k = 0; k < BISECTIONS; k++) {
+        const double next = 0.5 * (least + most);
+        const bool gains = solve_again(r, m, next / is);
+        is = next;
+        if (gains)
+            most = next;
+        else
+            least = next;
+    }
+    if (is > least) solve_again(r, m, least / is);
+}
+
 static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
 {
     int64_t near = 0;
-    bool hits = false, new = false;
+    bool hits = false, rebounds = false, new = false;
     double first = 0;
     for (int64_t i = 0; i < m->points; i++) {
-        if (!m->point[i].near) continue;
-        if (!again) begin_point(r, m, &m->point[i]);
-        hits |= m->point[i].soft == 0;
-        new |= m->point[i].kept <= 0;
-        near++;
+        struct small_point *t = &m->point[i];
+        if (!t->near) continue;
+        if (!again) begin_point(r, m, t);
+        t->had = small_vec(t->f), near++;
+        hits |= t->soft == 0, new |= t->kept <= 0;
+        rebounds |= t->soft == 0 && (t->e[0] > 0 || t->e[1] > 0);
     }
-    const int rounds = hits ? ROUNDS_MOST : new ? 6 : ROUNDS;
-    for (int k = 0; near && k < rounds; k++) {
-        double most = 0;
-        for (int64_t i = 0; i < m->points; i++)
-            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i]));
-        if (!k) first = most;
-        if (near == 1 || !(most > ENOUGH * first)) break;
-    }
+    if (!near) return;
+    const int rounds = hits ? ROUNDS_MOST : new ? ROUNDS_NEW : ROUNDS;
+    const struct small_work work = solve_points(r, m, near > 1 ? rounds : 1, &first);
+    if (rebounds && !again && work.done > GAIN * work.scale) bound_impact(r, m);
     mark_meeting(r, m, first, again);
 }
 
@@ -548,11 +641,10 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
         const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
         if (times != 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
-        for (int k = 0; k < 3; k++) {
-            if (t.starts) t.sum[k] -= t.near ? t.f[k] : 0; // the step adds it
-            if (!t.starts && !t.near) t.sum[k] += t.f[k];
-            if (!t.near) t.f[k] = t.m[k] = 0;
-        }
+        for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
+            t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
+        if (t.starts && !t.near) memset(t.f, 0, sizeof t.f), memset(t.m, 0, sizeof t.m);
+        if (!t.near) end_point(&t);
         t.starts = false;
         if (t.near || t.there || point_lasts(&t)) m->point[n++] = t;
     }
@@ -595,7 +687,7 @@ static void end_meeting(struct small_run *r, struct small_meeting *m)
         if (rn <= most) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
-            t->sum[k] += back * t->f[k];
+            t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
             t->f[k] *= most / rn, t->m[k] *= most / rn;
         }
         push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));

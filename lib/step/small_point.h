@@ -22,8 +22,6 @@ void small_points_free(struct small_run *r);
 /* The orientation and the angular velocity (rad/s) of body i when the small steps end */
 quat small_points_q(const struct small_run *r, int64_t i, vec3 *w);
 
-/* m/s: the speed of the fastest point of body i */
-double small_point_speed(const struct small_run *r, int64_t i);
 /* Bodies first .. end-1 have moved by a small step, and turn. */
 void small_points_place(struct small_run *r, int64_t first, int64_t end);
 

@@ -3,6 +3,7 @@
  */
 #pragma once
 
+#include "state/freedom.h"
 #include "state/placement.h"
 #include "step/small_list.h"
 
@@ -13,8 +14,38 @@ struct small_wall {
     bool there;
     struct pose pose;
     vec3 at, v, spin; /* m; m/s, rad/s: of its material at that point */
+    vec3 held;        /* rad/s: of the spin, what is prescribed */
     vec3 belt;        /* m/s */
     double way;       /* m: that its fastest point has gone in the interval */
+};
+
+enum { CELL_PARTS = 64 };
+/* The cell in a small step [step/small_cell.h] */
+struct small_cell {
+    bool moves, relative;      /* ways of bodies are those relative to the flow */
+    struct cell cell;          /* where the small step begins; its arrays are borrowed */
+    vec3 edge[3], next[3];     /* m: where contacts act; m/s: rates at the end of the step */
+    struct cell_flow flow;     /* what the rates gain in the step; */
+    struct cell_flow peculiar; /* and their flow where it begins */
+    struct cell_flow yield;    /* what a stress makes of them, once the reactions are known */
+    double strain;             /* 1/s */
+    double (
+        *stress)[3]
+                [3]; /* [CELL_PARTS] N m s: sums of f (x) d over parts of pairs; NULL: no stress */
+    double work;     /* J: of the edges in the interval, by images */
+};
+
+/* What loads move in a small step [step/small_load.h] */
+struct small_loads {
+    struct freedoms list; /* of the step in hand */
+    int32_t *of; /* [walls] the freedom that moves a wall; -1: none. NULL: nothing is loaded */
+    /* [list.n] m/s, rad/s, 1/s: by how much the step changes the speed; of that, without reactions; what persists of the
+       last step's reactions */
+    double *change, *free, *kept;
+    struct load *had; /* [walls] loads where the interval begins */
+    double work;      /* J: of the loads in the interval */
+    int64_t room;
+    struct small_loaded *touch; /* of the freedom in hand */
 };
 
 /* What a thread looks for points with */
@@ -30,12 +61,20 @@ struct small_shapes {
     double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
     double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
     double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
-    vec3 edge[3];         /* m */
     struct placed placed;
     struct situation at;
     int threads;
     struct small_scratch *scratch; /* [threads] */
     _Atomic bool failed;           /* memory was short */
+};
+
+/* Forces on a body in the small step in hand [step/small_pull.h] */
+struct small_pull {
+    double dv[3], dw[3]; /* m/s, rad/s: its free motion, with gravity and the flow of the cell; */
+    double gain[3];      /* m/s: that of the flow */
+    /* In the interval, before this step and half of it */
+    double work, carried; /* J: of the forces, and of the flow */
+    double impulse[3];    /* N s: of the flow, with all of this step */
 };
 
 /* The small steps of an interval */
@@ -45,10 +84,12 @@ struct small_run {
     const struct small_kernels *kernel;
     struct small_wall *wall; /* [walls] */
     vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
-    struct small_pull *pull; /* [n] NULL: no forces on bodies */
-    double stored;           /* J: by attraction, where the interval begins */
-    struct face_sums *sums;  /* [walls] NULL: none are kept */
-    bool meets;              /* there may be meetings: a body with a shape, or a mesh */
+    struct small_pull *pull; /* [n] NULL: no forces on bodies, and no cell that moves */
+    struct small_cell cell;
+    struct small_loads loads;
+    double stored;          /* J: by attraction, where the interval begins */
+    struct face_sums *sums; /* [p->sums.n] NULL: none are kept */
+    bool meets;             /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */
@@ -63,3 +104,16 @@ struct small_run {
     pthread_mutex_t lock;    /* of what follows */
     double fastest;          /* m^2/s^2: of bodies */
 };
+
+/* Does a load move the wall of a touch? */
+static inline bool small_is_loaded(const struct small_run *r, const struct small_touch *t)
+{
+    return r->loads.of && r->loads.of[t->wall] >= 0;
+}
+
+/* m/s: at most, of a point of body i, which has a shape */
+static inline double small_point_speed(const struct small_run *r, int64_t i)
+{
+    const struct body *b = &r->l->s.body[i];
+    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+}

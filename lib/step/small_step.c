@@ -9,9 +9,12 @@
 #include "state/freedom.h"
 #include "state/placement.h"
 #include "state/rotation.h"
+#include "state/servo_box.h"
 #include "step/small_bonds.h"
+#include "step/small_cell.h"
 #include "step/small_error.h"
 #include "step/small_give.h"
+#include "step/small_load.h"
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -39,17 +42,15 @@ static const double ALLOWED[2] = { 1, 0.3 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (freedoms_in(p)) return "loads";
+    if (small_cell_lacks(p)) return small_cell_lacks(p);
+    if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
+    if (freedoms_in(p) && (p->shape || p->mesh.elements))
+        return "loads, and grains with a shape or surfaces as walls";
     if (packing_has_springs(p)) return "contacts with a stiffness";
-    if (p->shape && (p->outside.torque || p->pulls.n)) return "torques on grains with a shape";
-    if (p->sums.n && (p->shape || p->mesh.elements))
-        return "sums of what grains with a shape do to walls, or grains to surfaces";
-    for (int k = 0; k < 3; k++)
-        if (cell_repeats(&p->cell) && v3_norm(p->cell.rate[k]) > 0) return "a cell that moves";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
-    if ((p->shape || p->mesh.elements) && (small_tie_holds(p) || packing_sticks(p)))
-        return "attraction or static friction of grains with a shape, or on surfaces";
+    if ((p->shape || p->mesh.elements) && small_tie_holds(p))
+        return "attraction of grains with a shape, or on surfaces";
     return NULL;
 }
 
@@ -59,15 +60,23 @@ const char *small_lacks(const struct packing *p)
 static double small_fastest(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
-    return fmax(p->shape ? all.rotation_speed : all.speed, small_wall_speed(p));
+    return fmax(p->shape ? all.rotation_speed : small_cell_speed(p), small_wall_speed(p));
 }
 
-/* m: half the least thickness of a body; the smallest radius of balls */
-static double small_thickness(const struct packing *p)
+/* m: half the thickness of the thinnest body and of the thickest; of balls the radius */
+struct small_sizes {
+    double least, most;
+};
+static struct small_sizes small_sizes(const struct packing *p)
 {
-    double least = packing_whole(p).small;
-    for (int64_t i = 0; p->shape && i < p->n; i++) least = fmin(least, tunnelling_thickness(p, i));
-    return least;
+    const struct whole all = packing_whole(p);
+    if (!p->shape) return (struct small_sizes){ all.small, all.large };
+    struct small_sizes s = { INFINITY, 0 };
+    for (int64_t i = 0; i < p->n; i++) {
+        const double half = tunnelling_thickness(p, i);
+        s.least = fmin(s.least, half), s.most = fmax(s.most, half);
+    }
+    return s;
 }
 
 static void small_set_rates(struct small_run *r)
@@ -79,6 +88,8 @@ static void small_set_rates(struct small_run *r)
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
+    for (int32_t w = 0; w < p->walls; w++)
+        if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
     const double change = fmax(fastest, UNSEEN * r->thin / r->h);
@@ -125,11 +136,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
 {
     for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
     small_list_free(r->l);
-    r->l->surface = o->near->surface;
+    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
-        if (small_list_make(r->l, r->p, r->x, r->p->t + r->ahead, failure)) break;
+        if (small_list_make(r->l, r->p, r->x, r->cell.edge, r->p->t + r->ahead, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_set_rates(r), take_bodies(r), small_walls_set(r);
@@ -148,19 +159,20 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
     small_walls_set(r);
+    if (r->cell.moves) small_cell_images(r, 0, 1);
     return failure->status;
 }
 
 /* ---- its report ---- */
 
 struct small_energy {
-    double kinetic, potential;
+    double kinetic, potential, peculiar;
     vec3 momentum;
 };
 
 static struct small_energy small_energy_of(const struct packing *p)
 {
-    struct small_energy e = { 0 };
+    struct small_energy e = { .peculiar = energy_has_peculiar(p) ? energy_peculiar(p, NULL) : 0 };
     for (int64_t i = 0; i < p->n; i++) {
         const double m = p->mass[i];
         if (!(m > 0)) continue;
@@ -169,6 +181,7 @@ static struct small_energy small_energy_of(const struct packing *p)
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
+    e.kinetic += small_loads_energy(p) + small_cell_energy(p);
     return e;
 }
 
@@ -182,7 +195,10 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     *b = (struct balance){ .kinetic = after->kinetic, .potential = after->potential };
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
-    b->drives = 0, b->loads = small_pull_work(r);
+    const struct small_pull pulls = small_pull_sum(r);
+    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work;
+    impulse = v3_add(impulse, small_vec(pulls.impulse));
+    b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         b->drives -= t->work;
@@ -216,7 +232,8 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
-                            .tied = small_tie_holds(r->p),
+                            .tied = r->p->law != NULL,
+                            .sheared = energy_has_peculiar(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };
 }
@@ -226,20 +243,22 @@ static void small_report(struct report *rep, const struct small_run *r, const st
 #define STEADY 1e-3
 static double small_steady(const struct packing *p)
 {
-    const double g = v3_norm(p->g), least = packing_whole(p).small;
+    const double g = v3_norm(p->g);
+    const struct small_sizes size = small_sizes(p);
     double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
+    pressed += small_cell_presses(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
     }
-    if (g > 0 && hi >= lo) pressed += g * (1 + (hi - lo) / g / (2 * packing_whole(p).large));
-    return pressed > 0 ? sqrt(STEADY * least / pressed) : INFINITY;
+    if (g > 0 && hi >= lo) pressed += g * (1 + (hi - lo) / g / (2 * size.most));
+    return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
 }
 
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double n = fmax(way / (overlap * small_thickness(p)), p->dt / small_steady(p));
+    const double n = fmax(way / (overlap * small_sizes(p).least), p->dt / small_steady(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
@@ -256,6 +275,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
     if (touching_bond(p, failure)) return failure->status;
+    const struct cell cell = p->cell;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
@@ -263,14 +283,15 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
-    r.meets = p->shape || p->mesh.elements, r.thin = small_thickness(p);
+    r.meets = p->shape || p->mesh.elements, r.thin = small_sizes(p).least;
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
-             !small_sums_init(&r, failure))
+    else if (!neighbours_surfaces(o->near, p, failure) && !small_cell_init(&r, failure) &&
+             !small_pull_init(&r, failure) && !small_sums_init(&r, failure) &&
+             !small_loads_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
-    *made = !failure->status && !r.failed;
+    *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
     if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
@@ -284,10 +305,11 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {
-        p->t = whole.t;
+        p->t = whole.t, p->cell = cell;
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
+    small_loads_free(&r, !*made), small_cell_free(&r);
     small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;

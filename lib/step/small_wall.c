@@ -4,6 +4,13 @@
 #include <math.h>
 #include <string.h>
 
+/* rad/s: what is prescribed */
+static vec3 small_spin_held(const struct packing *p, const struct wall *w)
+{
+    const vec3 spin = wall_spin(p, w);
+    return w->load.way == LOAD_TURNS ? v3_axpy(spin, -w->load.speed, w->load.axis) : spin;
+}
+
 void small_walls_set(struct small_run *r)
 {
     const struct packing *p = r->p;
@@ -17,6 +24,7 @@ void small_walls_set(struct small_run *r)
                                           .at = at,
                                           .v = wall_held(p, wall, at),
                                           .spin = wall_spin(p, wall),
+                                          .held = small_spin_held(p, wall),
                                           .way = way };
         r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
     }
@@ -24,7 +32,7 @@ void small_walls_set(struct small_run *r)
 
 vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n)
 {
-    const vec3 v = v3_add(w->v, v3_cross(w->spin, v3_sub(x, w->at)));
+    const vec3 v = v3_add(w->v, v3_cross(w->held, v3_sub(x, w->at)));
     return v3_add(v, v3_axpy(w->belt, -v3_dot(w->belt, n), n));
 }
 
@@ -48,6 +56,37 @@ vec3 small_touch_velocity(const struct small_touch *t, const struct body *b)
     return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
 }
 
+vec3 small_load_direction(const struct small_run *r, const struct small_touch *t)
+{
+    const vec3 x = v3_axpy(small_vec(r->l->s.place[t->body].x), -t->arm, t->n);
+    const struct contact c = { .a = -1 - t->wall, .b = t->body, .x = x };
+    const struct freedom *f = &r->loads.list.f[r->loads.of[t->wall]];
+    return v3_scale(-1, freedom_direction(f, r->p, &c, r->ahead, r->cell.edge));
+}
+
+void small_load_push(struct small_run *r, const struct small_touch *t, vec3 f)
+{
+    if (!small_is_loaded(r, t)) return;
+    const int32_t k = r->loads.of[t->wall];
+    r->loads.change[k] -= v3_dot(small_load_direction(r, t), f) / r->loads.list.f[k].mass;
+}
+
+vec3 small_load_velocity(const struct small_run *r, const struct small_touch *t)
+{
+    if (!small_is_loaded(r, t)) return v3(0, 0, 0);
+    const int32_t k = r->loads.of[t->wall];
+    const double s = r->loads.list.f[k].speed + 0.5 * r->loads.change[k];
+    return v3_scale(s, small_load_direction(r, t));
+}
+
+vec3 small_touch_before(const struct small_run *r, const struct small_touch *t)
+{
+    const vec3 u = small_touch_velocity(t, &r->l->s.before[t->body]);
+    if (!small_is_loaded(r, t)) return u;
+    const double s = r->loads.list.f[r->loads.of[t->wall]].speed;
+    return v3_axpy(u, -s, small_load_direction(r, t));
+}
+
 void small_touch_law(const struct small_run *r, const struct small_touch *t, struct small_law *l)
 {
     const struct small *s = &r->l->s;
@@ -55,7 +94,13 @@ void small_touch_law(const struct small_run *r, const struct small_touch *t, str
     *l = (struct small_law){ .mu = t->mu,
                              .calm = s->rate.calm,
                              .gap = t->arm - s->place[t->body].r };
-    small_array(l->n, t->n), small_array(l->u, small_touch_velocity(t, b));
+    vec3 u = small_touch_velocity(t, b);
+    if (small_is_loaded(r, t)) {
+        const int32_t k = r->loads.of[t->wall];
+        const double speed = r->loads.list.f[k].speed + r->loads.change[k];
+        u = v3_axpy(u, -speed, small_load_direction(r, t));
+    }
+    small_array(l->n, t->n), small_array(l->u, u);
     l->wn = b->im, l->wt = b->im + t->arm * t->arm * b->ii;
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt;
     memcpy(l->f, t->f, sizeof l->f), memcpy(l->q, t->q, sizeof l->q);

@@ -11,7 +11,15 @@ double small_wall_speed(const struct packing *p);
 vec3 small_wall_velocity(const struct small_wall *w, vec3 x, vec3 n);
 /* Where the body of t is against its wall: n, v, arm. False: it is farther than `reach` (m). */
 bool small_look_at_touch(const struct small_run *r, struct small_touch *t, double reach);
-/* m/s: of the body b against the wall at the contact */
+/* m/s: of the body b against the wall at the contact, without its load */
 vec3 small_touch_velocity(const struct small_touch *t, const struct body *b);
+/* The same before the small step in hand, with the load */
+vec3 small_touch_before(const struct small_run *r, const struct small_touch *t);
+/* m/s, m: of the material of a wall that a load moves, per unit of its speed, where the body touches it */
+vec3 small_load_direction(const struct small_run *r, const struct small_touch *t);
+/* The load, if there is one, gets the reaction f (N s) that the body of t has been given. */
+void small_load_push(struct small_run *r, const struct small_touch *t, vec3 f);
+/* m/s: by the load, the mean over the small step in hand */
+vec3 small_load_velocity(const struct small_run *r, const struct small_touch *t);
 /* The law of a touch that is near, from where it is; but for rn */
 void small_touch_law(const struct small_run *r, const struct small_touch *t, struct small_law *l);

@@ -16,6 +16,7 @@
 #include "step/project.h"
 #include "step/small_step.h"
 #include "step/sum_step.h"
+#include "step/work_bound.h"
 
 #include <stdlib.h>
 
@@ -60,6 +61,20 @@ static int solve_again(const struct packing *pack, struct contacts *s, struct pl
     return 0;
 }
 
+/* The reactions of a solve that has not converged, reduced where they would give energy */
+static int bound_work(const struct packing *pack, struct contacts *s, struct plan **kept,
+                      const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct step_opt none = *o;
+    const char *why = rep->given_up;
+    bool again;
+    none.solve.max_sweeps = 0; // u and the errors alone
+    if (work_reduce(pack, s, &again, failure) || !again) return failure->status;
+    solve_again(pack, s, kept, &none, rep, failure);
+    rep->given_up = why;
+    return failure->status;
+}
+
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct failure *failure)
 {
@@ -72,6 +87,8 @@ int step_bound_impacts(const struct packing *pack, struct contacts *s, struct pl
     while (!failure->status && !rebound_reduce(&search, pack, s, &again, failure) && again)
         if (solve_again(pack, s, kept, o, rep, failure)) break;
     rebound_free(search);
+    if (!failure->status && !rep->converged && !o->as_is && !o->solve.history)
+        bound_work(pack, s, kept, o, rep, failure);
     return failure->status;
 }
 

@@ -21,7 +21,8 @@ struct step_opt {
     bool
         warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
     int64_t substeps; /* of a step, at most: 1: it is never divided */
-    bool bare;        /* nobody reads the report's balance of this step: it is left out */
+    bool as_is; /* reactions that have not converged act whatever they give: the paper's protocol */
+    bool bare;  /* nobody reads the report's balance of this step: it is left out */
     double
         small; /* radii: a step is made in small ones, of which each moves a body by so much at most
                       [step/small_step.h]; 0: at once */

@@ -27,6 +27,7 @@ struct step_options_usual {
     double newton_eps; /* of |(r, rho b)| */
     int newton_max;    /* steps for a contact in a sweep */
     enum overlap overlap;
+    double small; /* radii: small steps; 0: each step is one solve */
 };
 
 /* nsd's own choice. --help shows it from here; nsd-solve(1) and nsd-step(1) repeat it. */
@@ -50,6 +51,7 @@ static const struct step_options_usual usual = {
     .newton_eps = 1e-13,         // about a thousand roundings: as if it were exact
     .newton_max = 100,           // after which the exact solution stands in
     .overlap = OVERLAP_PROJECT,  // bounds overlap, adds no velocity, costs nothing [nsd-methods(7)]
+    .small = 0.01,               // a tenth of the overlap at which a step fails [nsd-methods(7)]
 };
 
 /* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
@@ -98,6 +100,7 @@ const char *options_usual(const void *to)
     if (to == &options.newton_max) snprintf(text, room, "%d", u->newton_max);
     if (to == &options.overlap)
         snprintf(text, room, "the document's; %s", overlap_name[u->overlap]);
+    if (to == &options.small) snprintf(text, room, "%g; see the manual", u->small);
     return text;
 }
 
@@ -189,7 +192,11 @@ const struct cli_option options_detect[] = {
 
 /* ---- which of them are given ---- */
 
-/* One bit for each row of both tables, and one for `warm`, of which tools have two options */
+/* Members of which tools have options of their own */
+const void *const options_others[] = { &options.warm,     &options.small,  &options.dt,
+                                       &options.substeps, &options.device, NULL };
+
+/* One bit for each row of both tables, and for each of the others */
 static uint64_t bit_of(const void *to)
 {
     uint64_t bit = 1;
@@ -197,7 +204,9 @@ static uint64_t bit_of(const void *to)
         for (const struct cli_option *o = t ? options_detect : options_solve; o->kind;
              o++, bit <<= 1)
             if (o->to == to) return bit;
-    return to == &options.warm ? bit : 0;
+    for (const void *const *other = options_others; *other; other++, bit <<= 1)
+        if (*other == to) return bit;
+    return 0;
 }
 
 void options_give(struct options *o, const void *to)
@@ -244,9 +253,9 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
     return (struct step_opt){
         .gap = o->gap,
         .substeps = o->substeps,
-        .small = o->small,
         .alpha = o->alpha,
         .order = order,
+        .as_is = o->paper,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->method ? methods[o->method - 1] : &local_exact,
@@ -296,11 +305,31 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     return text;
 }
 
+/* What a step does about the overlaps of a packing for which nobody has asked for a rule */
+static enum overlap overlap_usual(const struct packing *p)
+{
+    return p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
+}
+
+/* Is an option given that chooses how a step is solved? Those that small steps have, too, do not. */
+static bool options_solve_once(const struct options *o)
+{
+    const uint64_t both = bit_of(&options.theta) | bit_of(&options.warm) | bit_of(&options.small);
+    return o->given & ~both;
+}
+
+double options_small_of(const struct options *o, const struct packing *p)
+{
+    if (options_has(o, &options.small)) return o->small;
+    const bool asks = p->overlap && p->overlap != overlap_usual(p);
+    const bool once = asks || p->tolerance > 0 || packing_has_springs(p) || options_solve_once(o);
+    return once ? 0 : usual.small;
+}
+
 enum overlap options_overlap_of(const struct options *o, const struct packing *p, bool detected)
 {
     enum overlap now = p->overlap;
-    if (!now && !detected)
-        now = p->shape ? OVERLAP_GAP_PROJECT : usual.overlap; // corners that open
+    if (!now && !detected) now = overlap_usual(p);
     if (o->paper) now = paper.overlap;
     return OPTION(overlap, (int)now - 1) + 1;
 }

@@ -20,6 +20,7 @@ struct options {
     double small;     /* radii: small steps; 0: none */
     bool warm, every_sweep, history, strict, keep_going;
     const char *log;    /* or NULL */
+    const char *dt;     /* s, or auto:TOL; or NULL */
     const char *device; /* that makes the sweeps, as device_open() has it; NULL: the CPU */
     uint64_t given;     /* which of them were, by options_give() */
 };
@@ -28,6 +29,8 @@ struct options {
 extern struct options options;
 extern const struct cli_option options_solve[];  /* the solver's own */
 extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap */
+extern const void
+    *const options_others[]; /* members of which tools have options of their own; NULL at the end */
 
 /* `to` is a member of `options`, as the tables have it: the same member of o, */
 void *options_member(struct options *o, const void *to);
@@ -45,6 +48,9 @@ int options_names(const struct options *o, struct failure *failure);
 
 /* Options and defaults for a packing with this dt, or for an FCLIB problem (foreign, dt = 1). */
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign);
+/* Radii: how far small steps move bodies; 0: each step is one solve. That is so where an option chooses how a step is solved, or the
+   packing has a rule of overlaps that is not the default, an adapted time step or contacts with a stiffness. */
+double options_small_of(const struct options *o, const struct packing *p);
 /* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
 char *options_json_of(const struct options *asked, const struct step_opt *step);
 /* What is to be done about overlap: --overlap, keep with --paper, else what the document says, else nsd's choice */

@@ -24,8 +24,8 @@ scene()
 }
 
 # Status 1: a step had no solution, or the run ended early. The frames that there are are used; an experiment that needs a later
-# one fails in its measure.
-nsd-step() { command nsd-step "$@" || [ $? = 1 ]; }
+# one fails in its measure. The figures of docs/gallery are those of one solve per step.
+nsd-step() { command nsd-step --small-steps 0 "$@" || [ $? = 1 ]; }
 
 # step FILE.h5 [arguments of nsd-step]: what comes in makes steps, and the trajectory is in the folder. What
 # it says goes to FILE.log, and is shown where it fails.

@@ -8,7 +8,7 @@ demo() # DIR: the end of make demo
 {
     scripts/demo.sh "$1/demo" 2>/dev/null | sed -n '/^the last steps/,$p' | sed "s|$1/||g"
 }
-drum() { nsd-gen cookbook/drum/scene.json | nsd-step --until 1.2 --every 0.2s 2>/dev/null | nsd-stat -m surface | jq -c '[.time, .surface.angle]'; }
+drum() { nsd-gen cookbook/drum/scene.json | nsd-step -e --until 1.2 --every 0.2s 2>/dev/null | nsd-stat -m surface | jq -c '[.time, .surface.angle]'; }
 
 case ${1-} in
 demo | drum)

@@ -40,7 +40,7 @@ ln -s "$repository/scenes" "$tmp/stock/scenes"
     cd "$tmp/stock"
     exec 2>/dev/null
     nsd-gen 500 >a.h5
-    nsd-step -n 1000 --every 10 --contacts a.h5 >out.h5
+    nsd-step --global auto -n 1000 --every 10 --contacts a.h5 >out.h5
     nsd-step -n 10 out.h5 >more.h5
     nsd-cat --last out.h5 >packing.h5
     nsd-export -o dump.liggghts --to lammps packing.h5
@@ -168,7 +168,7 @@ claim()
         output "length == $2 and (map(.[1]) | max > 0) and all(.[2] <= 1)" ;;
     *'--contacts | nsd-err | '*'[.step, .velocity, .max_overlap]'*) output "length == $2 and all(.[1] <= 1) and (map(.[2]) | max > 0)" ;;
     *'--contacts | nsd-err | jq .velocity') output "length == $2 and all(. <= 1)" ;;
-    'nsd-step --contacts -n 10 out.h5 | nsd-err') output 'length == 10 and all(.contacts > 0 and .velocity <= 1)' ;;
+    'nsd-step --global auto --contacts -n 10 out.h5 | nsd-err') output 'length == 10 and all(.contacts > 0 and .velocity <= 1)' ;;
     # what there is in documents
     *'[.step, .contacts, .sweeps, .natural, .max_penetration]'*) table 5 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;
     *'[.step, .sweeps, .natural]'*) table 3 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;

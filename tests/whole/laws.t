@@ -23,7 +23,7 @@ whole()
     local group j m
     nsd-detect "$tmp/$1" | solve >"$tmp/solved.h5"
     nsd-move "$tmp/solved.h5" >"$tmp/parts.h5"
-    step -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
+    step --global auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
     for group in /particles /nsd/bonds /nsd/law /nsd/solver; do
         ok "$1: detect | solve | move and step give the same bits of $group" \
             cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/one.h5" $group)
@@ -92,7 +92,7 @@ is "no bridge is made over a gap" "$(nsd-detect "$tmp/apart.h5" | nsd-info | tai
 jq -n '{ dt: 1e-6, gravity: [0, 0, 0], overlap: true, capillary: { volume: 1e-10, tension: 0.072, wetting: 0.3 },
     bodies: [{ x: [1e-6, 0, 0], radius: 1e-3, density: 1e5, v: [-0.5, 0, 0] }, { x: [0.003, 0, 0], radius: 2e-3, density: 1e5, v: [0.5, 0, 0] }] }' |
     nsd-gen - >"$tmp/parting.h5" # the first step finds them touching
-step -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
+step --global auto -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
 nsd-info -c "$tmp/parted.h5" >"$tmp/parted"
 like "a bridge pulls with the closed form of its length" \
     "$(jq -s 'map(select(.gap > 0) | (4e-3 / 3) as $R | (2e-10 / (3.141592653589793 * $R)) as $c2 |
@@ -107,7 +107,7 @@ jq -n '{ dt: 2e-5, mu: 0.4, e_n: 0.2, capillary: { volume: 1e-11, tension: 0.072
     walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
     bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] }' |
     nsd-gen - >"$tmp/grains.h5"
-step -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
+step --global auto -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
 nsd-cat --last "$tmp/wetted.h5" >"$tmp/wet.h5"
 like "wet grains: energy is balanced in every step" "$(misfit "$tmp/wet.log" | jq '. < 1e-13')" true
 like "wet grains: nothing dissipates less than nothing" "$(jq -s 'map(.balance.dissipation) | min > -1e-12' "$tmp/wet.log")" true
@@ -322,7 +322,7 @@ for g in anderson auto; do
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
 jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
-refuses 65 "nor are they solved with loads" nsd-step -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
+refuses 65 "nor are they solved with loads" nsd-step --global auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
 like "moments are within their limits" "$(nsd-info -c "$tmp/m.h5" | jq -s \
     'map(select(.mu_r) | (.moment[1] * .moment[1] + .moment[2] * .moment[2] | sqrt) <= 1e-4 * .r[0] * (1 + 1e-9) + 1e-30 and
         (.moment[0] | fabs) <= 5e-5 * .r[0] * (1 + 1e-9) + 1e-30) | length > 20 and all')" true
@@ -406,7 +406,7 @@ grains() # ADHESION
     jq -n --argjson a "$1" '{ dt: 2e-5, mu: 0.4, e_n: 0.2, walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
         bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] } +
         if $a then { adhesion: $a } else {} end' | nsd-gen - >"$tmp/grains.h5"
-    step -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
+    step --global auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
     nsd-cat --last "$tmp/some.h5" >"$tmp/bonded.h5"
     rm "$tmp/some.h5"
 }

@@ -22,7 +22,7 @@ ranks() # K ARGUMENT ...: nsd-step by K processes
     local k=$1
     [ -z "$thin" ] || [ -n "${three-}" ] || k=2
     shift
-    timeout 300 mpirun --oversubscribe --bind-to none -n "$k" nsd-step "$@" </dev/null # or mpirun reads on where a test does
+    timeout 300 mpirun --oversubscribe --bind-to none -n "$k" nsd-step --small-steps 0 "$@" </dev/null # or mpirun reads on where a test does
 }
 
 by_first() # how many steps the first process has solved alone, as $tmp/said says
@@ -34,7 +34,7 @@ same() # FILE "K ..." ARGUMENT ...: the bytes of one process; $alone [0] steps a
     local file=$1 many=$2 k
     shift 2
     rm -f "$tmp"/one.h5 "$tmp"/many.h5
-    nsd-step "$@" -o "$tmp/one.h5" "$file" || return 1
+    nsd-step --small-steps 0 "$@" -o "$tmp/one.h5" "$file" || return 1
     for k in $many; do
         rm -f "$tmp/many.h5"
         ranks "$k" "$@" -o "$tmp/many.h5" "$file" 2>"$tmp/said" || { cat "$tmp/said"; return 1; }
@@ -45,18 +45,18 @@ same() # FILE "K ..." ARGUMENT ...: the bytes of one process; $alone [0] steps a
 
 after() # STEPS SCENE: its packing then, into $tmp/NAME.h5
 {
-    nsd-gen "$2" | nsd-step -n "$1" --every "$1" 2>/dev/null | nsd-cat --last >"$tmp/$(basename "$2" .json).h5"
+    nsd-gen "$2" | nsd-step --small-steps 0 -n "$1" --every "$1" 2>/dev/null | nsd-cat --last >"$tmp/$(basename "$2" .json).h5"
 }
 
 # ---- the order of all contacts ----
 
-nsd-gen 300 | nsd-step -n 900 --every 900 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+nsd-gen 300 | nsd-step --small-steps 0 -n 900 --every 900 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
 three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
 ok "with a stiffness of contacts" same "$tmp/heap.h5" 3 -n 5 --stiffness auto --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
 ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step --small-steps 0 -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
 alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap keep --eps 1e-10
 
 while read -r before scene ranks steps alone name; do
@@ -111,7 +111,7 @@ ok "bonds of clumps, capsules, hulls, with liquid and rolling friction" same "$t
 on_others() # a run on 2, then 3, against one process
 {
     rm -f "$tmp"/[ab].h5
-    nsd-step -n 4 -o "$tmp/a.h5" "$tmp/heap.h5" && nsd-step -n 4 -i "$tmp/a.h5" &&
+    nsd-step --small-steps 0 -n 4 -o "$tmp/a.h5" "$tmp/heap.h5" && nsd-step --small-steps 0 -n 4 -i "$tmp/a.h5" &&
         ranks 2 -n 4 -o "$tmp/b.h5" "$tmp/heap.h5" && ranks 3 -n 4 -i "$tmp/b.h5" && cmp "$tmp/a.h5" "$tmp/b.h5"
 }
 ok "a run goes on on another number of processes" on_others
@@ -126,7 +126,7 @@ blocks() # FILE K EPS ARGUMENT ...: to the criterion, and moving as the order of
     shift 3
     rm -f "$tmp"/one.h5 "$tmp"/block.h5
     set -- --criterion natural "$@"
-    nsd-step "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
+    nsd-step --small-steps 0 "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
         ranks "$k" "$@" --eps "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
     jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '($e | type) == "number" and $e <= $eps' && /usr/bin/python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'
 import io, sys, h5py
@@ -142,7 +142,7 @@ sys.exit(not (off < 100 * float(sys.argv[1]) * top and far < 1e-7))
 EOF
 }
 # grains that still move: a pile at rest has several solutions, and each order of sweeps finds its own
-nsd-gen 300 | nsd-step -n 400 --every 400 2>/dev/null | nsd-cat --last >"$tmp/moving.h5"
+nsd-gen 300 | nsd-step --small-steps 0 -n 400 --every 400 2>/dev/null | nsd-cat --last >"$tmp/moving.h5"
 # positions that overlap are moved apart by ten sweeps, which end where they end: so without, or one step
 ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/moving.h5" 2 1e-8 -n 5 --overlap keep
 [ -n "$thin" ] || ok "on 8" blocks "$tmp/moving.h5" 8 1e-8 -n 5 --overlap keep
@@ -152,7 +152,7 @@ ok "in a cell that is sheared" blocks "$tmp/shear.h5" 3 1e-8 -n 2 --overlap keep
 ok "with clumps, capsules, hulls" blocks "$tmp/rubble.h5" 2 1e-8 -n 1 --overlap gap
 ok "with cohesion" blocks "$tmp/cohesive.h5" 3 1e-8 -n 2 --overlap keep
 after 300 scenes/rolling.json
-nsd-step -n 1 -o "$tmp/solved.h5" --contacts "$tmp/rolling.h5" 2>/dev/null
+nsd-step --small-steps 0 -n 1 -o "$tmp/solved.h5" --contacts "$tmp/rolling.h5" 2>/dev/null
 ok "with bonds of clumps, capsules, hulls" blocks "$tmp/glued.h5" 3 1e-6 -n 1 --overlap keep
 ok "with rolling friction" blocks "$tmp/rolling.h5" 3 1e-6 -n 1 --overlap keep
 ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --global anderson --overlap keep
@@ -167,7 +167,7 @@ overlaps() # FILE: m, the largest of the last frames
 moved_apart() # after as many steps overlaps are as small as those of one process
 {
     rm -f "$tmp"/[ab].h5
-    nsd-step -n 60 -o "$tmp/a.h5" "$tmp/heap.h5" && ranks 4 -n 60 --order block -o "$tmp/b.h5" "$tmp/heap.h5" &&
+    nsd-step --small-steps 0 -n 60 -o "$tmp/a.h5" "$tmp/heap.h5" && ranks 4 -n 60 --order block -o "$tmp/b.h5" "$tmp/heap.h5" &&
         jq -n --argjson a "$(overlaps "$tmp/a.h5")" --argjson b "$(overlaps "$tmp/b.h5")" -e '($b | type) == "number" and $b <= 1.5 * $a'
 }
 [ -n "$thin" ] || ok "and their overlaps do not grow" moved_apart
@@ -234,7 +234,7 @@ gas() # in each step a frame; and on from it, on another number of processes
 {
     local k
     rm -f "$tmp"/gas-*
-    nsd-step -n 20 --every 5 -o "$tmp/gas-1" "$tmp/gas.h5" && nsd-step -n 4 -i "$tmp/gas-1" || return 1
+    nsd-step --small-steps 0 -n 20 --every 5 -o "$tmp/gas-1" "$tmp/gas.h5" && nsd-step --small-steps 0 -n 4 -i "$tmp/gas-1" || return 1
     for k in $all; do
         ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-$k" "$tmp/gas.h5" && ranks $((k / 2 + 1)) -n 4 --order block -i "$tmp/gas-$k" &&
             NSD_GATHER=1 ranks "$k" -n 20 --every 5 --order block -o "$tmp/gas-first-$k" "$tmp/gas.h5" &&
@@ -246,7 +246,7 @@ ok "bodies that do not touch: the bytes of one process on $all, in both forms, a
 none_of_all() # more processes than bodies; no step; a stream, which is no file that all can open
 {
     nsd-gen 3 >"$tmp/three.h5" && rm -f "$tmp"/[ab].h5 && mkfifo "$tmp/pipe" && ranks 5 -n 3 --order block -o "$tmp/a.h5" "$tmp/three.h5" &&
-        nsd-step -n 3 -o "$tmp/b.h5" "$tmp/three.h5" && [ "$(last_of "$tmp/a.h5")" = "$(last_of "$tmp/b.h5")" ] || return 1
+        nsd-step --small-steps 0 -n 3 -o "$tmp/b.h5" "$tmp/three.h5" && [ "$(last_of "$tmp/a.h5")" = "$(last_of "$tmp/b.h5")" ] || return 1
     cat "$tmp/pipe" >"$tmp/streamed.h5" &
     rm -f "$tmp"/[ab].h5
     ranks 3 -n 2 --order block -o "$tmp/pipe" "$tmp/heap.h5" && wait $! && ranks 3 -n 2 --order block -o "$tmp/a.h5" "$tmp/heap.h5" &&
@@ -275,7 +275,7 @@ refused() # the same status, and the same line, as in one process, and no file i
     local name s
     for name in nan missing $([ -n "$thin" ] || echo kind shape image large short text); do
         s=0
-        nsd-step -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/single" && return 1
+        nsd-step --small-steps 0 -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/single" && return 1
         ranks 3 --order block -o "$tmp/refused.h5" "$tmp/$name.h5" 2>"$tmp/said" || s=$?
         if [ "$s" != 65 ] || ! grep -qxF "$(cat "$tmp/single")" "$tmp/said" || [ -e "$tmp/refused.h5" ]; then
             echo "$name: $s" && cat "$tmp/single" "$tmp/said"
@@ -338,7 +338,7 @@ even() # MEAN MOST CUTS: in the run of $tmp/said the fullest had less than these
     [ -n "$cuts" ] && awk "BEGIN { exit !($mean >= 1 && $mean < $1 && $most < $2 && $cuts > $3) }"
 }
 # a heap is kept between two boundaries until it is settled; then it slides out of where it was cut
-nsd-gen - 2>/dev/null <<'EOF' | nsd-step -n 250 --every 250 2>/dev/null | nsd-cat --last >"$tmp/slide.h5"
+nsd-gen - 2>/dev/null <<'EOF' | nsd-step --small-steps 0 -n 250 --every 250 2>/dev/null | nsd-cat --last >"$tmp/slide.h5"
 { "dim": 2, "dt": 1e-3, "gravity": [6, -8], "mu": 0.1, "density": 1000,
   "bodies": [{ "count": 400, "radius": 0.01, "box": { "x": [0, 0.5], "y": [0, null] } }],
   "walls": [{ "point": [0, 0], "normal": [0, 1] }, { "point": [0.5, 0], "normal": [-1, 0], "until": 0.25 },
@@ -392,7 +392,7 @@ dies() # one of three is killed after some frames; whole frames are left, and th
     wait "$job" && return 1
     # whoever is first says so: a process that waits, or mpirun, which ends them all
     grep -qE 'nsd-step: another process of the run has ended|exited on signal 9' "$tmp/said" || { cat "$tmp/said"; return 1; }
-    nsd-step -n 2 -i "$tmp/d.h5" && nsd-info "$tmp/d.h5" >/dev/null
+    nsd-step --small-steps 0 -n 2 -i "$tmp/d.h5" && nsd-info "$tmp/d.h5" >/dev/null
 }
 three=1 ok "a process that dies ends the run, whose frames are whole, and it goes on" dies
 

@@ -144,7 +144,7 @@ for mode in keep project; do
 done
 echo '{ "dt": 1e-4, "gravity": [0, 0, 0], "overlap": true, "bodies": [{ "x": [0, 0, 0], "radius": 0.01, "mass": 1 },
     { "x": [0.019, 0, 0], "radius": 0.01, "mass": 3 }] }' | scene pair
-step -n 60 "$tmp/pair.h5" | nsd-cat --last >"$tmp/apart.h5"
+step --overlap project -n 60 "$tmp/pair.h5" | nsd-cat --last >"$tmp/apart.h5"
 place() { nsd-info -p "$tmp/apart.h5" | jq "select(.id == $1).x[0]"; }
 is "two balls that overlap are left without a velocity" \
     "$(nsd-info -p "$tmp/apart.h5" | jq -s -c 'map(select(.v).v | map(fabs)) | add | max')" 0
@@ -152,7 +152,7 @@ ok "apart, to the slop" holds "$(place 1) - $(place 0) | . > 0.02 - 1.1e-8 and .
 ok "and with their centre of mass where it was" holds "$(place 0) + 3 * $(place 1) - 0.057 | fabs < 1e-16"
 echo '{ "dt": 1e-4, "overlap": true, "bodies": [{ "x": [0, 0, 0.01], "radius": 0.01, "fixed": true },
     { "x": [0, 0, 0.011], "radius": 0.01 }], "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }] }' | scene deep
-step -n 1 "$tmp/deep.h5" >"$tmp/first.h5"
+step --overlap project -n 1 "$tmp/deep.h5" >"$tmp/first.h5"
 ok "what overlaps deeply is moved by a tenth of its radius in a step, and not more" \
     holds "$(nsd-info -p "$tmp/first.h5" | jq -s 'map(select(.id == 1)) | .[-1].x[2] - 0.011') | . > 0.0009 and . < 0.0011"
 
@@ -187,7 +187,7 @@ misfit()
         [((.[-1] | E) - (.[0] | E) - (.[1:] | map(.loads + .drives - .dissipation + .projection) | add) | fabs) / $w,
             (map(.projection) | add) / $w]' "$1"
 }
-step -n 400 --every 400 --log="$tmp/shaken.log" "$tmp/shaken.h5" >"$tmp/x.h5"
+step --overlap project -n 400 --every 400 --log="$tmp/shaken.log" "$tmp/shaken.h5" >"$tmp/x.h5"
 ok "a vibrated bed: energy is balanced from its first step to its last, of which the projection is a part" \
     holds "$(misfit "$tmp/shaken.log") | .[0] < 1e-13 and .[1] > 1e-4"
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], mu: 0.5, bodies: [{ x: [0, 0, 0], radius: 0.01, mass: 1, v: [1, 0, 0] },

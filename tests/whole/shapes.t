@@ -274,7 +274,7 @@ for _ in 1 2 3; do
     nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
     mv "$tmp/next.h5" "$tmp/pipe.h5"
 done
-nsd-step -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+nsd-step --global auto -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
 ok 'detect | solve | move is nsd-step' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
 nsd-step -n 30 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
 nsd-step -n 17 "$tmp/heap.h5" 2>/dev/null >"$tmp/half.h5"

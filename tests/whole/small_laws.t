@@ -146,4 +146,113 @@ scene "$heap, cohesion: { force: 0.05, range: 2e-4 }"
 small 600
 ok "a cohesive heap comes to rest" near "$(last .kinetic_energy)" 0 1e-12
 
+# ---- a cell that moves ----
+
+scene "dt: 1e-3, gravity: [0, 0, 0], cell: { lengths: [1, 1, 1], gradient: [[-0.5, 0, 0.2], [0, 0.3, 0], [0, 0, 0]] },
+    bodies: [{ x: [0.5, 0.25, 0.5], radius: 0.01 }]"
+ok "a cell that moves is made in small steps" small 1000
+ok "a body follows the flow of its cell: y = y0 exp(0.3 t)" near "$(body '.x[1]')" "0.25 * (0.3 | exp)" 1e-6
+ok "and x, which is sheared and compressed" near "$(body '.x[0]')" "(0.5 - 0.2) * (-0.5 | exp) + 0.2 | if . < 0 then . + (-0.5 | exp) else . end" 1e-6
+
+# a gas of elastic balls in shear flow: the cell's edges work on it, and nothing is dissipated; how it lies in the cell does not matter
+gas() # M IN Z
+{
+    scene "dt: 1e-3, gravity: [0, 0, 0], mu: 0, e_n: 1, cell: { lengths: [0.05, 0.05, 0.05], gradient: [[0, 0, 20], [0, 0, 0], [0, 0, 0]] },
+        bodies: [range(6) as \$i | range(6) as \$j | range(6) as \$k | { radius: 0.0035, x: [\$i, \$j, \$k] | map((. + 0.5) * 0.05 / 6) }
+            | .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)] | .x[2] += $1]"
+}
+gas 0
+ok "a gas in shear flow" small 60 --log "$tmp/log"
+jq -s 'map(.balance) | [(map(.drives) | add), (map(.dissipation) | add), .[-1].peculiar, .[-1].kinetic]' "$tmp/log" >"$tmp/first"
+ok "what the edges do is not dissipated" near "$(jq '.[1] / .[3]' "$tmp/first")" 0 5e-3
+gas 0.013
+small 60 --log "$tmp/log"
+ok "and does not depend on where the cell begins" near "$(jq -s '.[-1].balance.peculiar' "$tmp/log") / $(jq '.[2]' "$tmp/first")" 1 2e-3
+ok "a gas in shear flow: the same bytes" same_bytes 40
+
+jq '.bodies[0].count = 100 | .cell.lengths = [0.53, 0.53]' scenes/shear.json | nsd-gen - >"$tmp/in.h5"
+works() { jq -s 'map(select(.time > 2) | .balance.drives) | add' "$tmp/log"; } # J: of the edges, in shear at 1/s
+small 6000 --small-steps 0.005 --log "$tmp/log"
+at_small=$(works)
+timeout 60 nsd-step --dt 5e-4 -n 12000 --every 12000 --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "dense discs in shear: the work of steps that are made at once, within their scatter" near "$at_small / $(works)" 1 0.3
+
+# ---- loads ----
+
+load() # JQ PROGRAM: of the load of the last frame
+{
+    nsd-info --last -w "$tmp/out.h5" | jq -c "select(.load) | .load | $1" | head -n 1
+}
+scene "dt: 1e-3, gravity: [0, 0, 0], walls: [{ point: [0, 0, 1], normal: [0, 0, -1], load: { along: [0, 0, -1], force: 2, mass: 0.01 } }],
+    bodies: [{ $ball }]"
+ok "a load is made in small steps" small 20
+ok "a lid falls freely: F t^2/(2 m)" near "$(load .travel)" "2 * 0.02 * 0.02 / 2 / 0.01" 1e-12
+ok "the work of its force is its energy" near "$(last '.balance | .loads / .change')" 1 1e-9
+
+scene "dt: 1e-3, gravity: [0, 0, 0], e_n: 0.5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1], load: { along: [0, 0, 1], mass: $(jq -n "$mass"), speed: 1 } }],
+    bodies: [{ x: [0, 0, 0.02], radius: 0.01, density: 2500 }]"
+small 30
+ok "a wall meets a ball of its mass at 1 m/s with e 0.5: 0.75 m/s and 0.25 m/s" near "$(body '.v[2]') + $(load .speed) / 1e3" 0.75025 1e-9
+
+scene "$floor, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0.03], normal: [0, 0, -1], load: { along: [0, 0, -1], force: 2, mass: 0.01 } }],
+    e_n: 0.2, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500 }]"
+small 200
+ok "a lid that falls on a ball comes to rest on it" near "$(load .travel)" 0.01 2e-5
+cp "$tmp/out.h5" "$tmp/in.h5"
+small 20 --sums
+ok "the ball carries the load" near "$(sums '.normal[1]')" 2 1e-9
+ok "and the floor carries both" near "$(sums '.normal[0]')" "2 + $mass * 9.81" 1e-9
+
+scene "dt: 1e-3, gravity: [0, -9.81, 0], mu: 0.3, walls: [{ cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.1 }, load: { about: [0, 0, 0], mass: 1e-3 } }],
+    bodies: [{ x: [0, -0.09, 0], radius: 0.01, density: 2500, v: [0.5, 0, 0] }]"
+small 100
+ok "a drum that turns freely is driven by a ball that slides in it" near "$(load '.speed > 0 | if . then 1 else 0 end')" 1 0
+
+lid() # LOAD: a lid on 320 balls
+{
+    scene "dt: 1e-3, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.2, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0], normal: [1, 0, 0] },
+        { point: [0, 0, 0], normal: [0, 1, 0] }, { point: [0.063, 0, 0], normal: [-1, 0, 0] }, { point: [0, 0.063, 0], normal: [0, -1, 0] },
+        { point: [0, 0, 0.042], normal: [0, 0, -1], load: { $1 } }], bodies: [range(8) as \$i | range(8) as \$j | range(5) as \$k |
+        { radius: (0.003 + 0.0002 * ((\$i * 7 + \$j * 3 + \$k * 11) % 5)), x: [\$i, \$j, \$k] | map((. + 0.55) * 0.0077) }
+        | .x[0] += 2e-4 * (\$k * 12 | sin) | .x[1] += 2e-4 * (\$k * 7 | cos)]"
+}
+lid "pressure: 1000"
+ok "balls below a lid: the same bytes" same_bytes 60
+small 400
+travel=$(load .travel)
+ok "a lid at a constant pressure comes to rest on balls" near "$(load .speed)" 0 3e-3
+nsd-step --small-steps 0.01 -n 100 --every 100 --sums -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"
+ok "which carry p A" near "$(sums '.normal[5]') / 3.969" 1 1e-3
+nsd-step --overlap gap -n 400 --every 400 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "where steps that are made at once leave it" near "$travel / $(load .travel)" 1 0.1
+lid "pressure: 1000, mass: 1"
+nsd-step --small-steps 0.01 -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "a lid much heavier than a layer is made at once" grep -q "no small steps with a load of more mass" "$tmp/err"
+
+# ---- a cell under a stress ----
+
+edge() # the third edge along z, of the last frame
+{
+    nsd-info --last "$tmp/out.h5" | jq 'select(.edges) | .edges[2][2]'
+}
+scene 'dt: 1e-3, gravity: [0, 0, 0], density: 1000, mu: 0.3, cell: { lengths: [0.1, 0.2, 0.3], stress: { target: [[null, null, null], [null, null, null], [null, null, 5]],
+    mass: 0.0029 } }, bodies: [{ x: [0.05, 0.05, 0.15], radius: 0.01 }]'
+ok "a cell under a stress is made in small steps" small 20
+ok "an edge that nothing holds: L - P A t^2/(2 m)" near "$(edge)" "0.3 - 5 * 0.02 * 0.0004 / 2 / 0.0029" 1e-9
+ok "its body follows" near "$(body '.x[2]') / $(edge)" 0.5 1e-6
+
+pressed() # [FILTER]: 200 balls under 1 Pa
+{
+    jq '.bodies[0].random.count = 200 | .bodies[0].box = { x: [0, 6.7], y: [0, 6.7], z: [0, 6.7] } | .cell.lengths = [6.7, 6.7, 6.7] |
+        del(.cell.stress.mass) | .mu = 0.4 '"${1:-}" scenes/isotropic.json | nsd-gen - >"$tmp/in.h5"
+}
+pressed
+ok "balls under a pressure: the same bytes" same_bytes 100
+small 800 --contacts
+ok "their stress is the pressure, to 1 %" near "$(nsd-stat --last -m stress "$tmp/out.h5" | jq .stress.p)" 1 0.01
+ok "and the edges are at rest" near "$(nsd-info --last "$tmp/out.h5" | jq 'select(.rates) | .rates[0][0]')" 0 1e-2
+pressed '| .mu = 0'
+nsd-step --small-steps 0.01 -n 1 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "without friction such steps are made at once" grep -q "no small steps with a cell under a stress without friction" "$tmp/err"
+
 done_testing

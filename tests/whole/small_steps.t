@@ -103,6 +103,14 @@ scene 'dim: 3, dt: 2e-2, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.9,
         .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)]] | map(.v |= map(. * 0.5))'
 nsd-step --small-steps 0.01 -n 4 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "and of balls that have parted" newton '[0, 0, 0]'
+# A ball on a turntable: pivoting friction turns it, I dw = the moment of its contact
+scene 'dt: 1e-3, gravity: [0, 0, -10], density: 1000, mu: 0.5, rolling: { mu_p: 1e-4 }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 5 }] }]'
+nsd-step --small-steps 0.002 -n 20 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "moments of a step are what turns a ball, and torques are those of the law" \
+    eval 'nsd-info -p -c "$tmp/out.h5" | jq -es "(4e-6 / 3 * 3.14159265358979 * 1000 * 0.4 * 1e-4) as \$I | map(select(.id == 0).w[2]) as \$w |
+        [[.[] | select(.moment).moment[0]][1:], [range(1; \$w | length) as \$k | \$I * (\$w[\$k] - \$w[\$k - 1])]] |
+        (transpose | length == 19 and all(.[0] - .[1] | fabs < 1e-15)) and (.[0] | add / length / 4.18879e-9 - 1 | fabs < 2e-3)" >"$tmp/moment"'
 
 # ---- the error ----
 
@@ -120,6 +128,60 @@ ok "of a column whose reactions begin at 0 more than 0.04, at rest less than 0.0
     near "($first > 0.04) and ($(last .balance.missing_impulse_mean) < 0.01) | if . then 0 else 1 end" 0 0
 nsd-step --small-steps 0.01 -n 5 --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 is "each line of a log has it" "$(jq -s 'map(select(.balance.missing_impulse > 0)) | length' "$tmp/log")" 5
+
+# ---- which runs make small steps ----
+
+nsd-gen 20 >"$tmp/in.h5"
+makes() # small|once OPTION ...: such steps, of in.h5
+{
+    nsd-step -n 1 "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" || return
+    [ "$(grep -c "1 steps were made in" "$tmp/err")$(grep -c small "$tmp/err")" = "$([ "$1" = small ] && echo 11 || echo 00)" ]
+}
+while read -ra option; do
+    ok "one solve per step: ${option[*]}" makes once "${option[@]}"
+done <<'END'
+--small-steps 0
+--global auto
+-m sbp
+-m auto
+--paper -m sbp
+--eps 1
+--criterion velocity
+--max-sweeps 100
+--max-seconds 100
+--alpha 1
+--newton plain
+--newton-max 10
+--relax 1
+--order colour
+--every-sweep
+--gap 0
+--overlap project
+--dt 5e-5
+--dt auto:0.01
+--substeps 1000
+--stiffness 1e3
+END
+while read -ra option; do
+    ok "small steps: ${option[*]-without options}" makes small "${option[@]}"
+done <<'END'
+
+--small-steps 0.02
+--small-steps 0.02 --global nlgs --eps 1e-3 --overlap keep
+--theta 0.7
+--cold
+--warm
+-j 2
+--contacts --sums
+END
+nsd-step --paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
+ok "one solve per step: a document with another rule of overlaps" makes once
+nsd-gen 20 | nsd-step --global auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
+ok "small steps: one with the default rule" makes small
+scene "$floor, bodies: [{ x: [0, 0, 0.0105], radius: 0.01, v: [0, 0, -1] }] } | .dt = \"auto\" | { walls, gravity, dt, bodies"
+ok "one solve per step: a scene with dt \"auto\"" makes once
+scene "$floor, stiffness: 1e5, bodies: [{ x: [0, 0, 0.02], radius: 0.01 }]"
+ok "and one with contacts that have a stiffness" makes once
 
 # ---- bytes, and words ----
 

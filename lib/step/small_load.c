@@ -1,0 +1,213 @@
+/* step/small_load.c: loads of walls in small steps [step/small_load.h]. */
+#include "step/small_load.h"
+
+#include "base/array.h"
+#include "state/servo_box.h"
+#include "step/small_touch.h"
+#include "step/small_wall.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A touch with a wall that a load moves, in the sweep in hand */
+struct small_loaded {
+    struct small_touch *t;
+    struct small_law l;
+    vec3 D;    /* of the wall's material there, per unit of the speed */
+    double dp; /* N s: the change of the pull along n */
+};
+
+enum { ROUNDS_MOST = 60 };
+/* Layers of grains: a wall of more mass is heavy */
+static const double HEAVY = 2;
+static const double EXACT = 1e-13; /* of the reactions: what may be missing */
+
+/* ---- the interval ---- */
+
+static int find_freedoms(struct small_run *r, struct failure *failure)
+{
+    struct small_loads *o = &r->loads;
+    freedoms_free(&o->list);
+    return freedoms_init(&o->list, r->p, r->cell.edge, false, failure);
+}
+
+int small_loads_init(struct small_run *r, struct failure *failure)
+{
+    const struct packing *p = r->p;
+    struct small_loads *o = &r->loads;
+    const size_t walls = (size_t)p->walls + 1;
+    if (!freedoms_in(p)) return 0;
+    if (find_freedoms(r, failure)) return failure->status;
+    const size_t n = (size_t)o->list.n + 1;
+    o->of = malloc(walls * sizeof *o->of), o->had = malloc(walls * sizeof *o->had);
+    o->change = calloc(n, sizeof *o->change), o->free = calloc(n, sizeof *o->free);
+    o->kept = calloc(n, sizeof *o->kept);
+    if (!o->of || !o->had || !o->change || !o->free || !o->kept)
+        return failure_set(failure, EX_SOFTWARE, "no memory for the loads");
+    for (int32_t w = 0; w < p->walls; w++) o->of[w] = -1, o->had[w] = p->wall[w].load;
+    for (int32_t k = 0; k < o->list.n; k++)
+        for (int32_t w = 0; w < p->walls; w++)
+            if (o->list.f[k].wall == w || (o->list.f[k].lever && servo_box_has(&p->wall[w])))
+                o->of[w] = k;
+    return 0;
+}
+
+void small_loads_free(struct small_run *r, bool failed)
+{
+    struct small_loads *o = &r->loads;
+    for (int32_t w = 0; failed && o->had && o->of && w < r->p->walls; w++)
+        r->p->wall[w].load = o->had[w];
+    free(o->of), free(o->had), free(o->change), free(o->free), free(o->kept), free(o->touch);
+    freedoms_free(&o->list);
+    *o = (struct small_loads){ 0 };
+}
+
+bool small_loads_heavy(const struct packing *p)
+{
+    double mass = 0, n = 0, levers = 0, most = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0) mass += p->mass[i], n++;
+    for (int32_t w = 0; w < p->walls; w++) {
+        const struct load *l = &p->wall[w].load;
+        if (l->way == LOAD_GLIDES) most = fmax(most, l->mass);
+        if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, &p->wall[w], p->t), 2);
+    }
+    if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3);
+    const double layers = p->dim == 2 ? sqrt(n) : cbrt(n);
+    return n > 0 && most > HEAVY * mass / layers;
+}
+
+double small_loads_energy(const struct packing *p)
+{
+    double sum = 0.5 * servo_box_mass(p) * servo_box_growth(p) * servo_box_growth(p);
+    for (int32_t w = 0; w < p->walls; w++) {
+        const struct load *l = &p->wall[w].load;
+        if (l->way && !servo_box_has(&p->wall[w])) sum += 0.5 * l->mass * l->speed * l->speed;
+    }
+    return sum;
+}
+
+/* ---- a small step ---- */
+
+void small_loads_begin(struct small_run *r)
+{
+    struct small_loads *o = &r->loads;
+    struct failure failure = { 0 };
+    if (find_freedoms(r, &failure)) {
+        r->failed = r->stop = true;
+        return;
+    }
+    for (int32_t k = 0; k < o->list.n; k++) {
+        o->free[k] = r->h * o->list.f[k].force / o->list.f[k].mass;
+        o->change[k] = o->free[k] + (r->begins ? 0 : SMALL_WARM * o->kept[k]);
+    }
+}
+
+/* The law of the step: an impact of the pair alone moves the wall, too. */
+static void begin_loaded(struct small_run *r, struct small_loaded *y, double mass)
+{
+    struct small_law *l = &y->l;
+    const double wn = l->wn, wt = l->wt, D2 = v3_dot(y->D, y->D);
+    const double along = v3_dot(y->D, small_vec(l->n));
+    l->wn += along * along / mass, l->wt += (D2 - along * along) / mass;
+    y->dp = small_touch_begin(r, y->t, l);
+    l->wn = wn, l->wt = wt;
+}
+
+/* Adds touches of freedom k that are near. Returns how many; -1: memory is short. */
+static int64_t gather_loaded(struct small_run *r, int32_t k, bool again)
+{
+    struct small_list *l = r->l;
+    struct small_loads *o = &r->loads;
+    int64_t n = 0;
+    for (int64_t i = 0; i < l->touches; i++) {
+        struct small_touch *t = &l->touch[i];
+        if (o->of[t->wall] != k || (again ? !t->near : !small_touch_near(r, t))) continue;
+        if (!array_grow(&o->touch, &o->room, n + 1, sizeof *o->touch)) return -1;
+        struct small_loaded *y = &o->touch[n++];
+        *y = (struct small_loaded){ .t = t, .D = small_load_direction(r, t) };
+        small_touch_law(r, t, &y->l);
+        if (!again) begin_loaded(r, y, o->list.f[k].mass);
+    }
+    return n;
+}
+
+/* N s: D . df of a touch where the speed changes by ds; l, df: then. *slope gets the derivative of it. */
+static double loaded_at(const struct small_loaded *y, double ds, struct small_law *l, double df[3],
+                        double *slope)
+{
+    const vec3 n = small_vec(y->l.n), along = v3_scale(v3_dot(y->D, n), n);
+    const vec3 across = v3_sub(y->D, along);
+    double f2, top;
+    *l = y->l;
+    l->u[0] -= ds * y->D.x, l->u[1] -= ds * y->D.y, l->u[2] -= ds * y->D.z;
+    small_solve(l, df);
+    f2 = dot3(l->f, l->f) - l->rn * l->rn, top = l->mu * l->rn;
+    if (l->rn > 0) *slope += v3_dot(along, along) / (l->wn + l->cn);
+    if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) / (l->wt + l->ct);
+    return v3_dot(y->D, small_vec(df));
+}
+
+/* By how much the speed of freedom k changes, so that its n touches balance it */
+static double balance_load(const struct small_run *r, int32_t k, int64_t n)
+{
+    const double m = r->loads.list.f[k].mass;
+    double lo = 0, hi = 0, ds = 0;
+    for (int round = 0; round < ROUNDS_MOST; round++) {
+        double g = m * ds, slope = m, size = fabs(m * ds);
+        for (int64_t i = 0; i < n; i++) {
+            const struct small_loaded *y = &r->loads.touch[i];
+            struct small_law l;
+            double df[3];
+            const double got = loaded_at(y, ds, &l, df, &slope);
+            g += got - y->dp * v3_dot(y->D, small_vec(y->l.n)), size += fabs(got);
+        }
+        if (!(fabs(g) > EXACT * size)) break;
+        if (!round) lo = g > 0 ? -g / m : 0, hi = g > 0 ? 0 : -g / m;
+        *(g > 0 ? &hi : &lo) = ds;
+        const double next = ds - g / slope;
+        ds = next > lo && next < hi ? next : 0.5 * (lo + hi);
+    }
+    return ds;
+}
+
+void small_loads_sweep(struct small_run *r, bool again)
+{
+    struct small_loads *o = &r->loads;
+    for (int32_t k = 0; k < o->list.n; k++) {
+        const int64_t n = gather_loaded(r, k, again);
+        if (n < 0) r->failed = r->stop = true;
+        const double ds = n > 0 ? balance_load(r, k, n) : 0;
+        for (int64_t i = 0; i < n; i++) {
+            const struct small_loaded *y = &o->touch[i];
+            struct small_law l;
+            double df[3], slope = 0;
+            loaded_at(y, ds, &l, df, &slope);
+            const double ratio =
+                o->list.f[k].mass * r->l->s.body[y->t->body].im / v3_dot(y->D, y->D);
+            small_touch_give(r, y->t, &l, df, y->dp, ratio > 1 ? sqrt(ratio) : 1, again);
+        }
+        o->change[k] += ds;
+    }
+}
+
+void small_loads_end(struct small_run *r)
+{
+    struct small_loads *o = &r->loads;
+    for (int32_t k = 0; k < o->list.n; k++) o->kept[k] = o->change[k] - o->free[k];
+    for (int64_t i = 0; i < r->l->touches; i++) {
+        struct small_touch *t = &r->l->touch[i];
+        if (!small_is_loaded(r, t)) continue;
+        const int32_t k = o->of[t->wall];
+        const vec3 D = small_load_direction(r, t), back = small_touch_end(r, t);
+        o->kept[k] += v3_dot(D, back) / o->list.f[k].mass;
+    }
+    for (int32_t k = 0; k < o->list.n; k++) {
+        const struct freedom *f = &o->list.f[k];
+        if (freedom_of_cell(f)) continue; // [step/small_cell.c]
+        o->work += r->h * f->force * (f->speed + 0.5 * o->change[k]);
+        freedom_move(f, r->p, o->change[k], false);
+    }
+    freedoms_move_rates(&o->list, r->p, false);
+}

@@ -1,0 +1,146 @@
+/* step/small_touch.c: the law where a ball touches a wall [step/small_touch.h]. */
+#include "step/small_touch.h"
+
+#include "step/small_seam.h"
+#include "step/small_wall.h"
+
+#include <string.h>
+
+/* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
+void small_body_push(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
+{
+    vec3 w = v3_axpy(m, -arm, v3_cross(n, f));
+    b->v[0] += b->im * f.x, b->v[1] += b->im * f.y, b->v[2] += b->im * f.z;
+    b->w[0] += b->ii * w.x, b->w[1] += b->ii * w.y, b->w[2] += b->ii * w.z;
+}
+
+/* The law in the first sweep of a step */
+static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const struct small *s = &r->l->s;
+    double before[3];
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM;
+    t->kept = dot3(l->n, l->f);
+    vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
+    l->spin = 0.5 * r->h * v3_dot(w, t->n);
+    small_press(l, &s->rate);
+    small_array(before, small_touch_before(r, t));
+    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
+    memcpy(t->q, l->q, sizeof t->q);
+}
+
+static void roll_touch(const struct small_run *r, struct small_touch *t, const struct small_law *l,
+                       vec3 df, double dm[3])
+{
+    const struct body *b = &r->l->s.body[t->body];
+    double w[3];
+    vec3 spin = v3_axpy(small_vec(b->w), -b->ii * t->arm, v3_cross(t->n, df));
+    small_array(w, v3_sub(spin, r->wall[t->wall].spin));
+    small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
+}
+
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
+   0.98 persists (N s). */
+static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const double had = t->hold[HOLD_PULL];
+    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
+    const double dp = pull - SMALL_WARM * had;
+    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
+    l->calm += 2 * l->wn * pull;
+    return dp;
+}
+
+/* mu of the step, by the velocities before it */
+static void stick_touch(const struct small_run *r, struct small_touch *t)
+{
+    const struct packing *p = r->p;
+    const int32_t pair = packing_pair(p, -1 - t->wall, t->body);
+    const vec3 u = small_touch_before(r, t);
+    double mu[2], v_s;
+    small_tie_stick(mu, &v_s, p, pair);
+    t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
+}
+
+vec3 small_touch_persists(const struct small_touch *t)
+{
+    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
+}
+
+/* A touch whose body has left gives its reaction back. */
+static void leave_touch(struct small_run *r, struct small_touch *t)
+{
+    vec3 f = v3_scale(-1, small_touch_persists(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    const bool pushed = !small_is_zero(t->f) || t->hold[HOLD_PULL] > 0;
+    t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
+    if (pushed) small_load_push(r, t, f);
+    if (pushed) small_body_push(&r->l->s.body[t->body], t->n, t->arm, f, m);
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
+    t->kept = 0, t->near = false;
+}
+
+bool small_touch_near(struct small_run *r, struct small_touch *t)
+{
+    const struct small *s = &r->l->s;
+    const double reach = s->hold ? r->l->margin : s->rate.reach;
+    t->near = small_look_at_touch(r, t, reach) && !small_at_seam(r, t - r->l->touch, reach);
+    if (!t->near) leave_touch(r, t);
+    return t->near;
+}
+
+double small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l)
+{
+    const struct small *s = &r->l->s;
+    const double dp = s->hold ? hold_touch(r, t, l) : 0;
+    if (s->stick) stick_touch(r, t);
+    l->mu = t->mu;
+    begin_touch(r, t, l);
+    return dp;
+}
+
+void small_touch_give(struct small_run *r, struct small_touch *t, const struct small_law *l,
+                      double df[3], double dp, double heavy, bool again)
+{
+    struct small *s = &r->l->s;
+    double dm[3] = { 0, 0, 0 };
+    memcpy(t->f, l->f, sizeof t->f);
+    if (s->turn) roll_touch(r, t, l, small_vec(df), dm);
+    for (int k = 0; k < 3; k++) df[k] -= dp * l->n[k];
+    small_body_push(&s->body[t->body], t->n, t->arm, small_vec(df), small_vec(dm));
+    const double turn = t->arm * s->body[t->body].ii * norm3(dm);
+    const double change = heavy * (l->wn * norm3(df) + turn);
+    if (!again && !(change > s->rate.allowed[0])) return;
+    s->change[t->body] += change;
+    if (!(s->change[t->body] > s->rate.allowed[again])) return;
+    s->change[t->body] = 0, s->hot[t->body] = s->sweep;
+    r->far = true;
+}
+
+void small_touch_push(struct small_run *r, const struct small_touch *t)
+{
+    small_body_push(&r->l->s.body[t->body], t->n, t->arm, small_touch_persists(t),
+                    v3_scale(SMALL_WARM, small_vec(t->m)));
+    small_load_push(r, t, small_touch_persists(t));
+}
+
+vec3 small_touch_end(struct small_run *r, struct small_touch *t)
+{
+    const struct small_list *l = r->l;
+    const vec3 f = small_vec(t->f), m = small_vec(t->m), none = v3(0, 0, 0);
+    if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
+    if (small_is_zero(t->f)) return none;
+    t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
+    const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
+    const double held = t->kept + 2 * t->hold[HOLD_PULL];
+    const double most = small_persists(&l->s.rate, held, w, rn);
+    if (rn <= most) return none;
+    const double back = 1 - most / rn;
+    for (int k = 0; k < 3; k++) {
+        t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
+        t->f[k] *= most / rn, t->m[k] *= most / rn;
+    }
+    small_body_push(&r->l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));
+    return v3_scale(back, f);
+}
