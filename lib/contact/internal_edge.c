@@ -336,9 +336,13 @@ int seams_drop(struct contacts *s, const struct situation *o, struct failure *fa
     return good ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the contacts at seams");
 }
 
-bool seams_drop_one(const struct contacts *s, const struct situation *o, int32_t body, int64_t i)
+bool seams_may(const struct situation *o, const struct contact *c)
 {
-    if (!internal_edge_may_be(o, &s->c[i])) return false;
+    return internal_edge_may_be(o, c);
+}
+
+bool seams_has(const struct contacts *s, const struct situation *o, int32_t body, int64_t i)
+{
     const struct internal_edge_meeting w = internal_edge_meeting_of(o, s, i);
     return at_seam(&w, NULL, body);
 }

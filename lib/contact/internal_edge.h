@@ -22,5 +22,7 @@
 
 /* Drops contacts of s, sorted, at seams. Returns 0 or EX_SOFTWARE. */
 int seams_drop(struct contacts *s, const struct situation *o, struct failure *failure);
-/* Would it drop contact i of s, sorted, which are all contacts of this body with walls and with bodies that do not move? */
-bool seams_drop_one(const struct contacts *s, const struct situation *o, int32_t body, int64_t i);
+/* May a contact be one at a seam, by what meets there alone? */
+bool seams_may(const struct situation *o, const struct contact *c);
+/* Is contact i of s, sorted, at a seam? s: all contacts of this body with walls and with bodies that do not move */
+bool seams_has(const struct contacts *s, const struct situation *o, int32_t body, int64_t i);

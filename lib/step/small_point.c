@@ -7,7 +7,6 @@
 #include "contact/internal_edge.h"
 #include "solve/local_exact.h"
 #include "state/rotation.h"
-#include "step/small_pull.h"
 #include "step/small_tie.h"
 
 #include <math.h>
@@ -90,7 +89,6 @@ int small_points_init(struct small_run *r, const struct surface *surface, int th
     s->scratch = calloc((size_t)threads, sizeof *s->scratch);
     if (!s->q || !s->inverse || !s->spread || !s->way || !s->scratch)
         return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    cell_predict(&p->cell, 0, s->edge);
     for (int64_t i = 0; i < p->n; i++) {
         const vec3 m = rotation_moments(p, i);
         s->q[i] = rotation_predict(p, i);
@@ -99,7 +97,7 @@ int small_points_init(struct small_run *r, const struct surface *surface, int th
         set_inverse(r, i);
     }
     s->at = (struct situation){ .p = p, .x = r->x, .surface = surface };
-    if (cell_repeats(&p->cell)) s->at.edge = s->edge;
+    if (cell_repeats(&p->cell)) s->at.edge = r->cell.edge;
     if (!p->shape) return 0;
     const struct positions at = { .x = r->x, .q = s->q };
     s->at.shaped = &s->placed;
@@ -154,7 +152,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
 
 static vec3 image_of(const struct small_run *r, const struct small_meeting *m)
 {
-    return r->shapes.at.edge ? cell_shift(r->shapes.edge, m->key.shift) : v3(0, 0, 0);
+    return r->shapes.at.edge ? cell_shift(r->cell.edge, m->key.shift) : v3(0, 0, 0);
 }
 
 /* Adds to W what body i has of it, with this arm (m). */
@@ -199,22 +197,35 @@ static bool point_lasts(const struct small_point *t)
     return !small_is_zero(t->f) || !small_is_zero(t->sum);
 }
 
-/* Points that are there no more leave their reactions to new ones beside them. */
+/* The nearest point of those in reach that is beside one that has gone, and, where `starts`, without a reaction; NULL */
+static struct small_point *point_beside(const struct small_run *r, struct small_meeting *m,
+                                        const struct small_point *gone, bool starts)
+{
+    struct small_point *next = NULL;
+    double least = BESIDE * r->thin;
+    for (int64_t i = 0; i < m->points; i++) {
+        struct small_point *t = &m->point[i];
+        const double way = v3_norm(v3_sub(t->x, gone->x));
+        if (!t->near || (starts && !t->starts) || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
+            continue;
+        least = way, next = t;
+    }
+    return next;
+}
+
+/* Points that are in reach no more leave their reactions, and what they have pushed, to others beside them. */
 static void hand_over(const struct small_run *r, struct small_meeting *m)
 {
-    const double most = BESIDE * r->thin;
     for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *gone = &m->point[i], *next = NULL;
-        double least = most;
-        if (gone->near || gone->starts || small_is_zero(gone->f)) continue;
-        for (int64_t k = 0; k < m->points; k++) {
-            struct small_point *t = &m->point[k];
-            const double way = v3_norm(v3_sub(t->x, gone->x));
-            if (!t->near || !t->starts || v3_dot(t->n, gone->n) < ALONG || !(way <= least))
-                continue;
-            least = way, next = t;
-        }
-        for (int k = 0; next && k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+        struct small_point *gone = &m->point[i], *next;
+        if (gone->near || gone->starts) continue;
+        if (!small_is_zero(gone->sum) && (next = point_beside(r, m, gone, false)))
+            for (int k = 0; k < 3; k++) {
+                next->sum[k] += gone->sum[k], next->turned[k] += gone->turned[k];
+                gone->sum[k] = gone->turned[k] = 0;
+            }
+        if (!small_is_zero(gone->f) && (next = point_beside(r, m, gone, true)))
+            for (int k = 0; k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
     }
 }
 
@@ -278,7 +289,7 @@ static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
     const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
     bool there = false;
     for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
-    if (there || !m->looked || reach + gone - m->way > m->wide) {
+    if (there || !m->looked || r->cell.moves || reach + gone - m->way > m->wide) {
         m->looked = true, m->way = gone, m->wide = reach + WIDE * r->thin;
         if (!find_points(r, m, m->wide, c)) return false;
     }
@@ -318,8 +329,11 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
         struct small_meeting *m = &all->of[all->held[k]];
         for (int64_t l = 0; l < m->points; l++) {
             struct small_point *t = &m->point[l];
-            if (!t->near || !seams_drop_one(&c->found, &r->shapes.at, (int32_t)i, n++)) continue;
-            t->near = false;
+            if (!t->near) continue;
+            const struct contact *at = &c->found.c[n++];
+            if (seams_may(&r->shapes.at, at) &&
+                seams_has(&c->found, &r->shapes.at, (int32_t)i, at - c->found.c))
+                t->near = false;
         }
     }
     return true;
@@ -366,6 +380,7 @@ void small_points_last(struct small_run *r)
             if (t->starts && t->near)
                 for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j], t->turned[j] -= t->m[j];
         }
+        hand_over(r, m);
     }
 }
 
@@ -407,10 +422,12 @@ static vec3 velocity_at_b(const struct small_meeting *m, const struct small_poin
     return v3_add(small_vec(b->v), v3_cross(small_vec(b->w), t->b));
 }
 
-static vec3 point_velocity(const struct small_meeting *m, const struct small_point *t,
-                           const struct body *of)
+/* m/s: of the image of b that a meets */
+static vec3 point_velocity(const struct small_run *r, const struct small_meeting *m,
+                           const struct small_point *t, const struct body *of)
 {
-    return v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    const vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    return r->cell.moves ? v3_add(u, cell_shift(r->cell.next, m->key.shift)) : u;
 }
 
 /* mu of the step, whose bodies slide with ut (m/s) before it */
@@ -440,7 +457,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
     small_press(&l, o);
-    const vec3 u = point_velocity(m, t, s->before);
+    const vec3 u = point_velocity(r, m, t, s->before);
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
     small_array(before, u);
     l.cn = l.ct = 0;
@@ -480,7 +497,7 @@ static void roll_point(const struct small_run *r, const struct small_meeting *y,
 static void point_law(const struct small_run *r, const struct small_meeting *m,
                       const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
-    const vec3 u = v3_add(point_velocity(m, t, r->l->s.body), small_vec(t->q));
+    const vec3 u = v3_add(point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
     double W[9], b[3];
     for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
@@ -501,7 +518,7 @@ static double solve_point(struct small_run *r, const struct small_meeting *m, st
 {
     struct small *s = &r->l->s;
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
-    const vec3 u = point_velocity(m, t, s->body);
+    const vec3 u = point_velocity(r, m, t, s->body);
     double f[3], is[3], change2 = 0;
     point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);

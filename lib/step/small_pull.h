@@ -7,15 +7,6 @@
 
 #include "step/small_run.h"
 
-/* Of a body in the small step in hand */
-struct small_pull {
-    double dv[3], dw[3]; /* m/s, rad/s: its free motion, with gravity and the flow of the cell; */
-    double gain[3];      /* m/s: that of the flow */
-    /* In the interval, before this step and half of it */
-    double work, carried; /* J: of the forces, and of the flow */
-    double impulse[3];    /* N s: of the flow, with all of this step */
-};
-
 /* r->pull, where the packing has forces, or a cell that moves. Returns 0 or EX_SOFTWARE. */
 int small_pull_init(struct small_run *r, struct failure *failure);
 /* As begin_bodies() [step/small_loop.c], with forces */

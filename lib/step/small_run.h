@@ -19,7 +19,6 @@ struct small_wall {
     double way;       /* m: that its fastest point has gone in the interval */
 };
 
-enum { CELL_PARTS = 64 };
 /* The cell in a small step [step/small_cell.h] */
 struct small_cell {
     bool moves, relative;      /* ways of bodies are those relative to the flow */
@@ -27,12 +26,8 @@ struct small_cell {
     vec3 edge[3], next[3];     /* m: where contacts act; m/s: rates at the end of the step */
     struct cell_flow flow;     /* what the rates gain in the step; */
     struct cell_flow peculiar; /* and their flow where it begins */
-    struct cell_flow yield;    /* what a stress makes of them, once the reactions are known */
     double strain;             /* 1/s */
-    double (
-        *stress)[3]
-                [3]; /* [CELL_PARTS] N m s: sums of f (x) d over parts of pairs; NULL: no stress */
-    double work;     /* J: of the edges in the interval, by images */
+    double work;               /* J: of the edges in the interval, by images */
 };
 
 /* What loads move in a small step [step/small_load.h] */
@@ -61,12 +56,20 @@ struct small_shapes {
     double (*inverse)[6]; /* [n] 1/(kg m^2): world inertia, inverse: xx, yy, zz, yz, xz, xy */
     double *spread;       /* [n] 1/(kg m^2): its largest eigenvalue */
     double *way;          /* [n] m: that the fastest point of a body has gone in the interval */
-    vec3 edge[3];         /* m */
     struct placed placed;
     struct situation at;
     int threads;
     struct small_scratch *scratch; /* [threads] */
     _Atomic bool failed;           /* memory was short */
+};
+
+/* Forces on a body in the small step in hand [step/small_pull.h] */
+struct small_pull {
+    double dv[3], dw[3]; /* m/s, rad/s: its free motion, with gravity and the flow of the cell; */
+    double gain[3];      /* m/s: that of the flow */
+    /* In the interval, before this step and half of it */
+    double work, carried; /* J: of the forces, and of the flow */
+    double impulse[3];    /* N s: of the flow, with all of this step */
 };
 
 /* The small steps of an interval */
@@ -80,7 +83,7 @@ struct small_run {
     struct small_cell cell;
     struct small_loads loads;
     double stored;          /* J: by attraction, where the interval begins */
-    struct face_sums *sums; /* [walls] NULL: none are kept */
+    struct face_sums *sums; /* [p->sums.n] NULL: none are kept */
     bool meets;             /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */

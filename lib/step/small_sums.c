@@ -1,14 +1,17 @@
 /* step/small_sums.c: sums of what bodies do to walls, in small steps [step/small_sums.h]. */
 #include "step/small_sums.h"
 
+#include "state/face_of.h"
 #include "step/small_wall.h"
+#include "step/sum_step.h"
 
 #include <stdlib.h>
 
 int small_sums_init(struct small_run *r, struct failure *failure)
 {
     if (!r->p->sums.n) return 0;
-    r->sums = calloc((size_t)r->p->walls + 1, sizeof *r->sums);
+    if (sum_step_faces(r->p, failure)) return failure->status;
+    r->sums = calloc((size_t)r->p->sums.n + 1, sizeof *r->sums);
     return r->sums ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for the sums");
 }
 
@@ -49,37 +52,41 @@ static void add_touch_sums(struct face_sums *to, const struct small_run *r,
     add_push(to, &y, r->wall[t->wall].spin);
 }
 
-static void add_point_sums(struct face_sums *to, const struct small_run *r, int32_t wall,
-                           int32_t body, const struct small_point *t)
+static void add_point_sums(const struct small_run *r, const struct small_meeting *m,
+                           const struct small_point *t)
 {
-    const struct body *was = &r->l->s.before[body], *b = &r->l->s.body[body];
+    const struct wall_faces *faces = r->p->sums.faces;
+    const struct body *was = &r->l->s.before[m->key.b], *b = &r->l->s.body[m->key.b];
+    const struct contact c = { .a = m->key.a, .b = m->key.b, .x = t->x, .gap = t->gap };
+    const int32_t wall = -1 - m->key.a;
     struct small_push y = {
         .f = small_vec(t->f), .m = small_vec(t->m), .x = t->x, .n = t->n, .v = t->v
     };
     y.w = small_mean(was->w, b->w);
     y.u = v3_add(v3_sub(small_mean(was->v, b->v), t->v), v3_cross(y.w, t->b));
-    add_push(to, &y, r->wall[wall].spin);
+    const int32_t face = faces->first[wall] + face_of_contact(faces, r->p, &c, r->ahead);
+    add_push(&r->sums[face], &y, r->wall[wall].spin);
 }
 
 void small_sums_step(struct small_run *r)
 {
     for (int64_t i = 0; i < r->l->touches; i++) {
         const struct small_touch *t = &r->l->touch[i];
-        if (t->near) add_touch_sums(&r->sums[t->wall], r, t);
+        if (t->near) add_touch_sums(&r->sums[r->p->sums.faces->first[t->wall]], r, t);
     }
     for (int64_t i = 0; i < r->l->meetings.n; i++) {
         const struct small_meeting *m = &r->l->meetings.of[i];
-        const int32_t wall = -1 - m->key.a;
-        for (int64_t k = 0; wall >= 0 && k < m->points; k++)
-            if (m->point[k].near) add_point_sums(&r->sums[wall], r, wall, m->key.b, &m->point[k]);
+        for (int64_t k = 0; m->key.a < 0 && k < m->points; k++)
+            if (m->point[k].near && !small_is_zero(m->point[k].f))
+                add_point_sums(r, m, &m->point[k]);
     }
 }
 
 void small_sums_give(const struct small_run *r)
 {
-    for (int32_t w = 0; r->sums && w < r->p->walls; w++) {
-        struct face_sums *to = &r->p->sums.face[w];
-        const struct face_sums *x = &r->sums[w];
+    for (int32_t k = 0; r->sums && k < r->p->sums.n; k++) {
+        struct face_sums *to = &r->p->sums.face[k];
+        const struct face_sums *x = &r->sums[k];
         to->impulse = v3_add(to->impulse, x->impulse), to->moment = v3_add(to->moment, x->moment);
         to->normal += x->normal, to->tangential += x->tangential;
         to->work += x->work, to->friction += x->friction, to->rub += x->rub;

@@ -1,6 +1,7 @@
 /* step/small_touch.c: the law where a ball touches a wall [step/small_touch.h]. */
 #include "step/small_touch.h"
 
+#include "step/small_seam.h"
 #include "step/small_wall.h"
 
 #include <string.h>
@@ -71,9 +72,10 @@ vec3 small_touch_persists(const struct small_touch *t)
 static void leave_touch(struct small_run *r, struct small_touch *t)
 {
     vec3 f = v3_scale(-1, small_touch_persists(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    const bool pushed = !small_is_zero(t->f) || t->hold[HOLD_PULL] > 0;
     t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
-    if (!small_is_zero(t->f)) small_load_push(r, t, f);
-    if (!small_is_zero(t->f)) small_body_push(&r->l->s.body[t->body], t->n, t->arm, f, m);
+    if (pushed) small_load_push(r, t, f);
+    if (pushed) small_body_push(&r->l->s.body[t->body], t->n, t->arm, f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
@@ -82,7 +84,8 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
 bool small_touch_near(struct small_run *r, struct small_touch *t)
 {
     const struct small *s = &r->l->s;
-    t->near = small_look_at_touch(r, t, s->hold ? r->l->margin : s->rate.reach);
+    const double reach = s->hold ? r->l->margin : s->rate.reach;
+    t->near = small_look_at_touch(r, t, reach) && !small_at_seam(r, t - r->l->touch, reach);
     if (!t->near) leave_touch(r, t);
     return t->near;
 }

@@ -22,15 +22,19 @@ static void sum_step_add(struct face_sums *to, const struct packing *p, const st
     if (r[0] > 0) to->rub += r[0] * hypot(v3_dot(m.u, c->t1), v3_dot(m.u, contact_t2(c)));
 }
 
+int sum_step_faces(struct packing *p, struct failure *failure)
+{
+    if (p->sums.faces) return 0;
+    if (!(p->sums.faces = calloc(1, sizeof *p->sums.faces)))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
+    return face_of_init(p->sums.faces, p, true, failure);
+}
+
 int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
              struct failure *failure)
 {
     if (!p->sums.n) return 0;
-    if (!p->sums.faces) {
-        if (!(p->sums.faces = calloc(1, sizeof *p->sums.faces)))
-            return failure_set(failure, EX_SOFTWARE, "no memory for the sums");
-        if (face_of_init(p->sums.faces, p, true, failure)) return failure->status;
-    }
+    if (sum_step_faces(p, failure)) return failure->status;
     const struct wall_faces *f = p->sums.faces;
     for (int64_t i = 0; i < s->n && s->c[i].a < 0; i++) { // walls come first
         const double *r = s->found[i].r;

@@ -7,3 +7,5 @@
    where no sums are kept. Returns 0, EX_DATAERR or EX_SOFTWARE. */
 int sum_step(struct packing *p, const struct contacts *s, const struct impulses *sum,
              struct failure *failure);
+/* Makes p->sums.faces, if it is not there. Returns 0, EX_DATAERR or EX_SOFTWARE. */
+int sum_step_faces(struct packing *p, struct failure *failure);
