@@ -18,6 +18,7 @@ scene = {"dt": 1e-3, "mu": 0.9, "shapes": {"brick": {"box": [size, size, height]
 def repose(mu):
     """Degrees: at which a brick slides on another, when the slab is tilted by 2.5 degrees a second"""
     with nsd.Run.from_scene(scene) as run:
+        run.set(small_steps=0)  # one solve per step: friction holds from the first one on, and does not build up in some
         run.friction("ball", "ball", mu)  # "ball" is the kind of grains
         v = run.velocity
         for angle in np.arange(15, 45, 0.05):

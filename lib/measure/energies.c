@@ -110,7 +110,8 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct failu
     else if (s->only.bodies)
         lacks = "contacts are not divided among groups of bodies";
     else if (contacts_summed(s->s))
-        lacks = "the step was made in substeps, nsd-step --log has their dissipation";
+        lacks =
+            "the step was made in small steps or substeps, nsd-step --log has their dissipation";
     else if (energies_add_step(&step, s, &stored, failure))
         return failure->status;
     if (lacks) table_null(t, "no dissipation: %s", lacks);

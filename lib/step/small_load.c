@@ -205,9 +205,10 @@ void small_loads_end(struct small_run *r)
     }
     for (int32_t k = 0; k < o->list.n; k++) {
         const struct freedom *f = &o->list.f[k];
-        if (freedom_of_cell(f)) continue; // [step/small_cell.c]
         o->work += r->h * f->force * (f->speed + 0.5 * o->change[k]);
         freedom_move(f, r->p, o->change[k], false);
     }
     freedoms_move_rates(&o->list, r->p, false);
+    struct failure failure = { 0 };
+    if (servo_box_check_growth(r->p, &failure)) r->failed = r->stop = true;
 }

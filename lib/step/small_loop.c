@@ -261,19 +261,13 @@ void small_loop(void *arg, int me, int threads)
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();
         if (r->judged) small_error_step(r, me, threads);
-        if (r->cell.stress) {
-            small_cell_stress(r, me, threads);
-            team_meet();
-        }
         if (r->cell.moves && !me) small_cell_end(r);
-        if (r->cell.stress) team_meet(); // it reads the reactions of touches
         end_touches(r, first, end);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
         if (r->loads.of && !me) small_loads_end(r);
         if (!me) finish_step(r);
         team_meet();
-        if (r->cell.stress) small_cell_follow(r, first, end);
         move_bodies(r, first, end);
         team_meet();
     }

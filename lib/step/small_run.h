@@ -19,7 +19,6 @@ struct small_wall {
     double way;       /* m: that its fastest point has gone in the interval */
 };
 
-enum { CELL_PARTS = 64 };
 /* The cell in a small step [step/small_cell.h] */
 struct small_cell {
     bool moves, relative;      /* ways of bodies are those relative to the flow */
@@ -27,12 +26,8 @@ struct small_cell {
     vec3 edge[3], next[3];     /* m: where contacts act; m/s: rates at the end of the step */
     struct cell_flow flow;     /* what the rates gain in the step; */
     struct cell_flow peculiar; /* and their flow where it begins */
-    struct cell_flow yield;    /* what a stress makes of them, once the reactions are known */
     double strain;             /* 1/s */
-    double (
-        *stress)[3]
-                [3]; /* [CELL_PARTS] N m s: sums of f (x) d over parts of pairs; NULL: no stress */
-    double work;     /* J: of the edges in the interval, by images */
+    double work;               /* J: of the edges in the interval, by images */
 };
 
 /* What loads move in a small step [step/small_load.h] */

@@ -42,7 +42,7 @@ static const double ALLOWED[2] = { 1, 0.3 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (small_cell_lacks(p)) return small_cell_lacks(p);
+    if (cell_yields(&p->cell)) return "a cell under a stress";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
     if (freedoms_in(p) && (p->shape || p->mesh.elements))
         return "loads, and grains with a shape or surfaces as walls";
@@ -181,7 +181,7 @@ static struct small_energy small_energy_of(const struct packing *p)
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
-    e.kinetic += small_loads_energy(p) + small_cell_energy(p);
+    e.kinetic += small_loads_energy(p);
     return e;
 }
 
@@ -246,7 +246,6 @@ static double small_steady(const struct packing *p)
     const double g = v3_norm(p->g);
     const struct small_sizes size = small_sizes(p);
     double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
-    pressed += small_cell_presses(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
         if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
@@ -275,7 +274,6 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
     if (touching_bond(p, failure)) return failure->status;
-    const struct cell cell = p->cell;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
@@ -284,11 +282,11 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     r.meets = p->shape || p->mesh.elements, r.thin = small_sizes(p).least;
+    small_cell_init(&r);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else if (!neighbours_surfaces(o->near, p, failure) && !small_cell_init(&r, failure) &&
-             !small_pull_init(&r, failure) && !small_sums_init(&r, failure) &&
-             !small_loads_init(&r, failure))
+    else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
+             !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
@@ -297,6 +295,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
+        for (int k = 0; k < 3 && r.cell.moves; k++)
+            p->cell.edge[k] = r.cell.cell.edge[k], p->cell.rate[k] = r.cell.cell.rate[k];
         memory_set(&p->memory, o->warm);
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = small_energy_of(p);
@@ -305,11 +305,11 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {
-        p->t = whole.t, p->cell = cell;
+        p->t = whole.t;
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    small_loads_free(&r, !*made), small_cell_free(&r);
+    small_loads_free(&r, !*made);
     small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
