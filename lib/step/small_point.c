@@ -5,9 +5,7 @@
 #include "base/team.h"
 #include "contact/detect.h"
 #include "contact/internal_edge.h"
-#include "solve/local_exact.h"
 #include "state/rotation.h"
-#include "step/small_tie.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,17 +19,6 @@
 /* Of the smallest thickness: how much farther than in reach points are looked for. Where there is none, that serves until
    the bodies have gone as far. */
 #define WIDE 0.05
-
-/* Of h: tau, in which overlaps are left */
-#define RELAXES 30
-
-/* Rounds of the points of a meeting in one sweep: where some point is new, and in an impact, at most */
-enum { ROUNDS = 2, ROUNDS_NEW = 6, ROUNDS_MOST = 20 };
-static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
-
-/* Of the work of reactions before the impact: what of a gain may be an error of the rounds */
-#define GAIN 2e-3
-enum { BISECTIONS = 7 }; /* of a restitution that is reduced */
 
 /* ---- bodies ---- */
 
@@ -57,14 +44,6 @@ static void set_inverse(struct small_run *r, int64_t i)
         to[2] += d[k] * e[k].z * e[k].z, to[3] += d[k] * e[k].y * e[k].z;
         to[4] += d[k] * e[k].x * e[k].z, to[5] += d[k] * e[k].x * e[k].y;
     }
-}
-
-/* rad/s: what a moment m (N m s) makes of body i */
-static vec3 turned_by(const struct small_run *r, int32_t i, vec3 m)
-{
-    const double *s = r->shapes.inverse[i];
-    return v3(s[0] * m.x + s[5] * m.y + s[4] * m.z, s[5] * m.x + s[1] * m.y + s[3] * m.z,
-              s[4] * m.x + s[3] * m.y + s[2] * m.z);
 }
 
 void small_points_free(struct small_run *r)
@@ -161,7 +140,8 @@ static void add_block(const struct small_run *r, struct small_point *t, int32_t 
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
     const double im = r->l->s.body[i].im;
     vec3 lever[3], turn[3];
-    for (int k = 0; k < 3; k++) lever[k] = v3_cross(arm, e[k]), turn[k] = turned_by(r, i, lever[k]);
+    for (int k = 0; k < 3; k++)
+        lever[k] = v3_cross(arm, e[k]), turn[k] = small_turned_by(r, i, lever[k]);
     for (int k = 0; k < 9; k++) t->W[k] += v3_dot(lever[k / 3], turn[k % 3]) + (k % 4 ? 0 : im);
 }
 
@@ -189,12 +169,6 @@ static void set_point(const struct small_run *r, const struct small_meeting *m,
     for (int k = 0; k < 9; k++) t->W[k] = 0;
     add_block(r, t, b, t->b);
     if (a >= 0) add_block(r, t, a, t->a);
-}
-
-/* What a point has pushed is known no more, but for its sum. */
-static bool point_lasts(const struct small_point *t)
-{
-    return !small_is_zero(t->f) || !small_is_zero(t->sum);
 }
 
 /* The nearest point of those in reach that is beside one that has gone, and, where `starts`, without a reaction; NULL */
@@ -242,7 +216,7 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
         if (was && (!is || was->feature <= is->feature)) {
             const bool same = is && was->feature == is->feature;
             *to = *was, to->there = false, i++;
-            if (!same && !point_lasts(was)) continue;
+            if (!same && !small_point_lasts(was)) continue;
             if (same) set_point(r, m, to, is), j++;
         } else {
             *to = (struct small_point){ 0 };
@@ -361,13 +335,6 @@ void small_points_look(struct small_run *r, int me, int threads)
     if (!me && r->shapes.failed) r->failed = r->stop = true;
 }
 
-/* What a point has pushed goes into its sums. */
-static void end_point(struct small_point *t)
-{
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
-    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
-}
-
 void small_points_last(struct small_run *r)
 {
     r->shapes.at.t = r->p->t + r->ahead;
@@ -376,371 +343,10 @@ void small_points_last(struct small_run *r)
         struct small_meeting *m = &r->l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++) {
             struct small_point *t = &m->point[k];
-            if (!t->starts && !t->near) end_point(t);
+            if (!t->starts && !t->near) small_point_end(t);
             if (t->starts && t->near)
                 for (int j = 0; j < 3; j++) t->sum[j] -= t->f[j], t->turned[j] -= t->m[j];
         }
         hand_over(r, m);
     }
-}
-
-/* ---- the law ---- */
-
-/* Bodies of[] get a reaction f on b, and its moment m. */
-static void push_point(const struct small_run *r, struct body *of, const struct small_meeting *y,
-                       const struct small_point *t, vec3 f, vec3 m)
-{
-    for (int side = 0; side < 2; side++) {
-        const int32_t i = side ? y->key.b : y->key.a;
-        const double sign = side ? 1 : -1;
-        if (i < 0 || !(of[i].im > 0)) continue;
-        const vec3 w = turned_by(r, i, v3_add(m, v3_cross(side ? t->b : t->a, f)));
-        const double s = sign * of[i].im;
-        of[i].v[0] += s * f.x, of[i].v[1] += s * f.y, of[i].v[2] += s * f.z;
-        of[i].w[0] += sign * w.x, of[i].w[1] += sign * w.y, of[i].w[2] += sign * w.z;
-    }
-}
-
-static vec3 spin_of(const struct small_run *r, const struct body *of, int32_t i)
-{
-    return i < 0 ? r->wall[-1 - i].spin : small_vec(of[i].w);
-}
-
-/* m/s: of the material of a at the point */
-static vec3 velocity_at_a(const struct small_meeting *m, const struct small_point *t,
-                          const struct body *of)
-{
-    if (m->key.a < 0) return t->v;
-    const struct body *a = &of[m->key.a];
-    return v3_add(small_vec(a->v), v3_cross(small_vec(a->w), t->a));
-}
-
-static vec3 velocity_at_b(const struct small_meeting *m, const struct small_point *t,
-                          const struct body *of)
-{
-    const struct body *b = &of[m->key.b];
-    return v3_add(small_vec(b->v), v3_cross(small_vec(b->w), t->b));
-}
-
-/* m/s: of the image of b that a meets */
-static vec3 point_velocity(const struct small_run *r, const struct small_meeting *m,
-                           const struct small_point *t, const struct body *of)
-{
-    const vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
-    return r->cell.moves ? v3_add(u, cell_shift(r->cell.next, m->key.shift)) : u;
-}
-
-/* mu of the step, whose bodies slide with ut (m/s) before it */
-static double friction_at(const struct packing *p, const struct small_meeting *m, vec3 ut)
-{
-    double mu[2], v_s;
-    small_tie_stick(mu, &v_s, p, packing_pair(p, m->key.a, m->key.b));
-    return mu[v3_norm(ut) > v_s];
-}
-
-/* The law in the first sweep of a step */
-static void begin_point(const struct small_run *r, const struct small_meeting *m,
-                        struct small_point *t)
-{
-    const struct small *s = &r->l->s;
-    struct small_rates rate = s->rate;
-    const struct small_rates *o = &rate;
-    rate.relax = rate.per_h / (1 + RELAXES);
-    struct small_law l = {
-        .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
-    };
-    double before[3];
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
-    small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
-    l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
-    t->kept = dot3(l.n, l.f), t->starts = false;
-    const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
-    l.spin = 0.5 * o->h * v3_dot(w, t->n);
-    small_press(&l, o);
-    const vec3 u = point_velocity(r, m, t, s->before);
-    if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
-    small_array(before, u);
-    l.cn = l.ct = 0;
-    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
-    memcpy(t->q, l.q, sizeof t->q);
-}
-
-/* The reaction of one point of which u would be b without it: exact, or as of balls where there is no solution */
-static void solve_local(int d, const double W[9], const double b[3], double mu, double f[3])
-{
-    struct local y = { .d = d, .W = W, .mu = mu };
-    double found[3], u[3];
-    memcpy(y.b, b, sizeof y.b), memcpy(y.r, f, sizeof y.r);
-    if (exact_general(&y, found)) {
-        memcpy(f, found, sizeof found);
-        return;
-    }
-    const double w = local_lambda_max(W);
-    local_velocity(&y, f, u);
-    for (int k = 0; k < 3; k++) y.r[k] = f[k] - u[k] / w;
-    disc_project(mu, y.r, f);
-}
-
-static void roll_point(const struct small_run *r, const struct small_meeting *y,
-                       struct small_point *t, double rn)
-{
-    struct body *of = r->l->s.body;
-    const int32_t a = y->key.a, b = y->key.b;
-    const double wr = (a < 0 ? 0 : r->shapes.spread[a]) + r->shapes.spread[b];
-    double n[3], w[3], dm[3];
-    small_array(n, t->n), small_array(w, v3_sub(spin_of(r, of, b), spin_of(r, of, a)));
-    small_roll(n, rn, w, wr, y->most, t->m, dm);
-    push_point(r, of, y, t, v3(0, 0, 0), small_vec(dm));
-}
-
-/* The reaction that a point has, f, and the one by its law, in its basis e */
-static void point_law(const struct small_run *r, const struct small_meeting *m,
-                      const struct small_point *t, const vec3 e[3], double f[3], double is[3])
-{
-    const vec3 u = v3_add(point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
-    const double soft = t->soft * fmax(t->W[4], t->W[8]);
-    double W[9], b[3];
-    for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
-    for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
-    memcpy(W, t->W, sizeof W);
-    W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
-    solve_local(r->p->dim, W, b, t->mu, is);
-}
-
-/* Of the reactions of a meeting in a sweep: what they do to the bodies, and against what */
-struct small_work {
-    double done, scale; /* J */
-};
-
-/* Returns by how much (m/s) the point's u changes. */
-static double solve_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
-                          struct small_work *work)
-{
-    struct small *s = &r->l->s;
-    const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
-    const vec3 u = point_velocity(r, m, t, s->body);
-    double f[3], is[3], change2 = 0;
-    point_law(r, m, t, e, f, is);
-    const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
-    small_array(t->f, new);
-    push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
-    if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, is[0]);
-    for (int k = 0; k < 3; k++) f[k] = is[k] - f[k];
-    for (int k = 0; k < 3; k++) {
-        const double du = dot3(t->W + 3 * k, f);
-        const double does = f[k] * v3_dot(e[k], u);
-        change2 += du * du;
-        work->done += does + 0.5 * f[k] * du, work->scale += fabs(does);
-    }
-    return sqrt(change2);
-}
-
-/* A body has changed by x (m/s) [solve/small_sweep.c]. */
-static bool mark_body(struct small *s, int32_t i, double x, double allowed)
-{
-    if (i < 0) return false;
-    s->change[i] += x;
-    if (!(s->change[i] > allowed)) return false;
-    s->change[i] = 0, s->hot[i] = s->sweep;
-    return true;
-}
-
-static void mark_meeting(struct small_run *r, const struct small_meeting *m, double change,
-                         bool again)
-{
-    struct small *s = &r->l->s;
-    const int32_t a = m->key.a, b = m->key.b;
-    const double ia = a < 0 ? 0 : s->body[a].im, ib = s->body[b].im, least = fmin(ia, ib);
-    const double allowed = s->rate.allowed[again] * (least > 0 ? sqrt(least / fmax(ia, ib)) : 1);
-    if (!(change > (again ? 0 : allowed))) return;
-    const bool far = mark_body(s, a, change, allowed);
-    if (mark_body(s, b, change, allowed) || far) r->far = true;
-}
-
-static bool is_hot(const struct small *s, const struct small_meeting *m)
-{
-    const int32_t a = m->key.a, b = m->key.b, last = s->sweep - 1;
-    return s->hot[b] >= last || (a >= 0 && s->hot[a] >= last);
-}
-
-/* The points in turn, until nothing changes. *first: m/s, the largest change of
-   the first round */
-static struct small_work solve_points(struct small_run *r, struct small_meeting *m, int rounds,
-                                      double *first)
-{
-    struct small_work work = { 0 };
-    double most = INFINITY;
-    for (int k = 0; k < rounds && most > (k ? ENOUGH * *first : 0); k++) {
-        most = 0;
-        for (int64_t i = 0; i < m->points; i++)
-            if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i], &work));
-        if (!k) *first = most;
-    }
-    return work;
-}
-
-/* The same once more, as before, with `times` the restitution. Returns whether the reactions gain energy. */
-static bool solve_again(struct small_run *r, struct small_meeting *m, double times)
-{
-    double first;
-    for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *t = &m->point[i];
-        if (!t->near) continue;
-        push_point(r, r->l->s.body, m, t, v3_sub(t->had, small_vec(t->f)), v3(0, 0, 0));
-        small_array(t->f, t->had);
-        for (int k = 0; k < 3 && t->soft == 0; k++) t->q[k] *= times;
-    }
-    return solve_points(r, m, ROUNDS_MOST, &first).done > 0;
-}
-
-/* An impact that gains energy, as friction may make it [Kane 1984], has the largest restitution with which it does not, by
-   bisection [step/balance.h]. */
-static void bound_impact(struct small_run *r, struct small_meeting *m)
-{
-    double least = 0, most = 1, is = 1;
-    for (int k = 0; k < BISECTIONS; k++) {
-        const double next = 0.5 * (least + most);
-        const bool gains = solve_again(r, m, next / is);
-        is = next;
-        if (gains)
-            most = next;
-        else
-            least = next;
-    }
-    if (is > least) solve_again(r, m, least / is);
-}
-
-static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
-{
-    int64_t near = 0;
-    bool hits = false, rebounds = false, new = false;
-    double first = 0;
-    for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *t = &m->point[i];
-        if (!t->near) continue;
-        if (!again) begin_point(r, m, t);
-        t->had = small_vec(t->f), near++;
-        hits |= t->soft == 0, new |= t->kept <= 0;
-        rebounds |= t->soft == 0 && (t->e[0] > 0 || t->e[1] > 0);
-    }
-    if (!near) return;
-    const int rounds = hits ? ROUNDS_MOST : new ? ROUNDS_NEW : ROUNDS;
-    const struct small_work work = solve_points(r, m, near > 1 ? rounds : 1, &first);
-    if (rebounds && !again && work.done > GAIN * work.scale) bound_impact(r, m);
-    mark_meeting(r, m, first, again);
-}
-
-/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
-   that have gone they are to have nothing. */
-static void start_meeting(struct small_run *r, struct small_meeting *m)
-{
-    int64_t n = 0;
-    for (int64_t i = 0; i < m->points; i++) {
-        struct small_point t = m->point[i];
-        const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
-        if (times != 0 && !small_is_zero(t.f))
-            push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
-        for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
-            t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
-        if (t.starts && !t.near) memset(t.f, 0, sizeof t.f), memset(t.m, 0, sizeof t.m);
-        if (!t.near) end_point(&t);
-        t.starts = false;
-        if (t.near || t.there || point_lasts(&t)) m->point[n++] = t;
-    }
-    m->points = n;
-}
-
-static void judge_meeting(struct small_run *r, const struct small_meeting *m)
-{
-    struct small *s = &r->l->s;
-    for (int64_t i = 0; i < m->points; i++) {
-        const struct small_point *t = &m->point[i];
-        const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) };
-        double f[3], is[3];
-        if (!t->near) continue;
-        point_law(r, m, t, e, f, is);
-        for (int side = m->key.a < 0; side < 2; side++) {
-            const int32_t body = side ? m->key.b : m->key.a;
-            s->load[body] += norm3(f);
-            s->missing[body] += norm3((double[3]){ is[0] - f[0], is[1] - f[1], is[2] - f[2] });
-        }
-    }
-}
-
-/* What persists of the reactions, and what they have done to walls and bodies that do not move */
-static void end_meeting(struct small_run *r, struct small_meeting *m)
-{
-    struct small *s = &r->l->s;
-    for (int64_t i = 0; i < m->points; i++) {
-        struct small_point *t = &m->point[i];
-        const vec3 f = small_vec(t->f), moment = small_vec(t->m);
-        const int32_t a = m->key.a, b = m->key.b;
-        if (!t->near || small_is_zero(t->f)) continue;
-        if (a < 0 || !(s->body[a].im > 0))
-            m->work -=
-                v3_dot(f, velocity_at_a(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, a));
-        if (!(s->body[b].im > 0))
-            m->work +=
-                v3_dot(f, velocity_at_b(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, b));
-        const double rn = v3_dot(f, t->n), most = small_persists(&s->rate, t->kept, t->W[0], rn);
-        if (rn <= most) continue;
-        const double back = 1 - most / rn;
-        for (int k = 0; k < 3; k++) {
-            t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
-            t->f[k] *= most / rn, t->m[k] *= most / rn;
-        }
-        push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));
-    }
-}
-
-/* ---- all meetings ---- */
-
-enum small_point_pass { PASS_START, PASS_SWEEP, PASS_AGAIN, PASS_JUDGE, PASS_END };
-
-static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
-                          enum small_point_pass pass)
-{
-    for (int64_t i = first; i < end; i++) {
-        struct small_meeting *m = &r->l->meetings.of[r->l->meetings.order[i]];
-        if (!m->points) continue;
-        if (pass == PASS_START) start_meeting(r, m);
-        if (pass == PASS_SWEEP) sweep_meeting(r, m, false);
-        if (pass == PASS_AGAIN && is_hot(&r->l->s, m)) sweep_meeting(r, m, true);
-        if (pass == PASS_JUDGE) judge_meeting(r, m);
-        if (pass == PASS_END) end_meeting(r, m);
-    }
-}
-
-static void pass_groups(struct small_run *r, int me, int threads, enum small_point_pass pass)
-{
-    const struct small_meetings *m = &r->l->meetings;
-    for (int64_t g = 0; g < m->serial; g++) {
-        const int64_t at = m->group[g], n = m->group[g + 1] - at;
-        pass_meetings(r, at + n * me / threads, at + n * (me + 1) / threads, pass);
-        team_meet();
-    }
-    if (m->serial == m->groups) return;
-    if (!me) pass_meetings(r, m->group[m->serial], m->n, pass);
-    team_meet();
-}
-
-void small_points_start(struct small_run *r, int me, int threads)
-{
-    pass_groups(r, me, threads, PASS_START);
-}
-
-void small_points_sweep(struct small_run *r, int me, int threads, bool again)
-{
-    pass_groups(r, me, threads, again ? PASS_AGAIN : PASS_SWEEP);
-}
-
-void small_points_judge(struct small_run *r, int me, int threads)
-{
-    pass_groups(r, me, threads, PASS_JUDGE);
-}
-
-void small_points_end(struct small_run *r, int me, int threads)
-{
-    pass_groups(r, me, threads, PASS_END);
 }

@@ -35,3 +35,24 @@ void small_points_end(struct small_run *r, int me, int threads);
 
 /* By one thread: the points where the bodies are now */
 void small_points_last(struct small_run *r);
+
+/* rad/s: what a moment m (N m s) makes of body i */
+static inline vec3 small_turned_by(const struct small_run *r, int32_t i, vec3 m)
+{
+    const double *s = r->shapes.inverse[i];
+    return v3(s[0] * m.x + s[5] * m.y + s[4] * m.z, s[5] * m.x + s[1] * m.y + s[3] * m.z,
+              s[4] * m.x + s[3] * m.y + s[2] * m.z);
+}
+
+/* Has it pushed in this interval, or a reaction that its bodies have? */
+static inline bool small_point_lasts(const struct small_point *t)
+{
+    return !small_is_zero(t->f) || !small_is_zero(t->sum);
+}
+
+/* What a point has pushed goes into its sums. */
+static inline void small_point_end(struct small_point *t)
+{
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
+    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
+}
