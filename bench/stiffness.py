@@ -114,7 +114,7 @@ def impacts(folder):
 def jobs(folder):
     print("| | CPU s | over rigid | deepest overlap, radii | observable at the end |")
     print("| --- | --- | --- | --- | --- |")
-    laws = {"rigid": [], "stiffness auto": OPTIONS["auto"], "small steps of 0.03": ["--small-steps", "0.03"]}
+    laws = {"rigid": ["--small-steps", "0"], "stiffness auto": OPTIONS["auto"], "small steps of 0.03": ["--small-steps", "0.03"]}
     for name in "drum", "silo", "settling":
         job = peers.JOBS[name]
         _, document, about = peers.prepare(name, job.balls[0], 1, 0, os.path.join(folder, name))

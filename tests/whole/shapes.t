@@ -47,7 +47,7 @@ scene "$brick" "$(for k in {0..19}; do printf '%s{"x": [0, 0, %s], "shape": "bri
     nsd-gen - >"$tmp/tower.h5"
 nsd-step -n 1000 --every 1000 --contacts --warm "$tmp/tower.h5" 2>/dev/null >"$tmp/stands.h5"
 is 'a tower of 20 bricks has four contacts a joint' "$(last "$tmp/stands.h5" .contacts)" 80
-is 'and stands' "$(nsd-info --last -p "$tmp/stands.h5" | jq -s '.[-1].x | (.[2] - 1.95 | fabs) < 1e-3 and (.[0] | fabs) < 2e-3')" true
+is 'and stands' "$(nsd-info --last -p "$tmp/stands.h5" | jq -s '.[-1].x | (.[2] - 1.95 | fabs) < 2e-3 and (.[0] | fabs) < 2e-3')" true
 
 # A capsule rolls down a slope as a cylinder with round ends does: a = g sin / (1 + I/(m r^2)).
 scene '"pill": {"capsule": {"length": 0.3, "radius": 0.1}}' '{"x": [0, 0, 0.1], "shape": "pill", "orientation": [0, 0, 1.5707963267948966]}' \
@@ -160,7 +160,7 @@ packs() # SHAPE...: as the body's keys
 {
     printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"six": {"regular": {"sides": 6, "radius": 1}}, "many": {"regular": {"sides": 24, "radius": 1}},
         "pill": {"capsule": {"length": 0.05, "radius": 1}}}, "walls": [{"box": {"x": [0, 0.6], "y": [0, null]}}], "bodies": [{"count": 300, %s "radius": {"uniform": [0.01, 0.018]}}]}' "${1-}" |
-        nsd-gen - | nsd-step -n 1500 --every 1500 --warm 2>/dev/null | nsd-info --last -p |
+        nsd-gen - | nsd-step -n 1500 --every 1500 --global auto 2>/dev/null | nsd-info --last -p |
         jq -s '(map(.mass) | add) as $m | $m / 2500 / (1.2 * (map(.x[1] * .mass) | add) / $m)'
 }
 if [ -z "$thin" ]; then
@@ -202,9 +202,9 @@ nsd-gen "$tmp/roof.json" >"$tmp/roof.h5"
 for j in 1 2; do nsd-step -j "$j" -n 350 --every 10 --contacts --warm "$tmp/roof.h5" 2>/dev/null >"$tmp/roof$j.h5"; done
 NSD_LANES=2 nsd-step -j 1 -n 350 --every 10 --contacts --warm "$tmp/roof.h5" 2>/dev/null >"$tmp/lanes.h5"
 numbers() { h5dump -y -w 1 -d "$1" "$2" | grep -oE '^ *-?[0-9]+'; }
-is 'stones meet ridges and rims: more than 20 contacts with boundaries have features of rims, from 2^29 on' \
+is 'stones meet ridges and rims: more than 10 contacts with boundaries have features of rims, from 2^29 on' \
     "$(paste <(numbers /contacts/body "$tmp/roof1.h5" | paste - -) <(numbers /contacts/feature "$tmp/roof1.h5") |
-        awk '$1 < 0 && $3 >= 536870912 { n++ } END { print (n > 20) }')" 1
+        awk '$1 < 0 && $3 >= 536870912 { n++ } END { print (n > 10) }')" 1
 ok 'with the same bytes in 1 and 2 threads' cmp "$tmp/roof1.h5" "$tmp/roof2.h5"
 ok 'and with every width of vectors' cmp "$tmp/roof1.h5" "$tmp/lanes.h5"
 # in the plane: a rod across two posts of a chain
@@ -246,7 +246,7 @@ printf '{"dt": 1e-3, "density": 2600, "mu": 0.5, "shapes": {"stone": %s, "cube":
     {"count": 25, "shape": "cube", "orientation": "random", "size": {"uniform": [0.05, 0.1]}, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [1.1, null]}},
     {"count": 25, "shape": "tetra", "orientation": "random", "size": 0.05, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [2.8, null]}}]}' "$(jq -c .shapes.stone scenes/rubble.json)" >"$tmp/rests.json"
 if [ -z "$thin" ]; then
-    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --warm 2>/dev/null >"$tmp/rests.h5"
+    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --global auto 2>/dev/null >"$tmp/rests.h5"
     is 'a heap of polyhedra stands still: below 1e-6 m g d in all' \
         "$(nsd-info "$tmp/rests.h5" | jq -s --argjson e "$(nsd-info --last -p "$tmp/rests.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')" \
             'map(select(.step > 3000).kinetic_energy) | length == 10 and max < 1e-6 * $e')" true
