@@ -116,6 +116,19 @@ static void take_bodies(struct small_run *r)
     memset(s->hot, 0, (size_t)s->bodies * sizeof *s->hot);
 }
 
+/* A step at once says what of a body is not finite, and moves none. */
+static bool small_is_finite(const struct small_run *r)
+{
+    for (int64_t i = 0; i < r->p->n; i++) {
+        const struct body *b = &r->l->s.body[i];
+        const double *x = r->l->s.place[i].x;
+        double sum = 0;
+        for (int k = 0; k < 3; k++) sum += fabs(x[k]) + fabs(b->v[k]) + fabs(b->w[k]);
+        if (!isfinite(sum)) return false;
+    }
+    return true;
+}
+
 static void give_bodies(const struct small_run *r)
 {
     struct packing *p = r->p;
@@ -289,6 +302,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
              !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
         small_steps(&r, o, rep, failure);
     p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
+    r.failed = r.failed || (!failure->status && !small_is_finite(&r));
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
     if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
