@@ -31,7 +31,7 @@ except ImportError as trouble:
     sys.exit(f"peers: {trouble}: apt-get install python3-h5py")
 
 VARIANTS = {  # in the order in which they are run: code, threads, what is different
-    "nsd": ("nsd", 1, {}), "liggghts-soft": ("liggghts", 1, {"modulus": 0}), "nsd-auto": ("nsd", 1, {"auto": True}),
+    "nsd": ("nsd", 1, {}), "nsd-small": ("nsd", 1, {"small": True}), "liggghts-soft": ("liggghts", 1, {"modulus": 0}), "nsd-auto": ("nsd", 1, {"auto": True}),
     "liggghts-stiff": ("liggghts", 1, {"modulus": 1}), "nsd-2": ("nsd", 2, {}), "liggghts-soft-2": ("liggghts", 2, {"modulus": 0}),
     "yade-soft": ("yade", 1, {"modulus": 0}), "yade-soft-2": ("yade", 2, {"modulus": 0}),
 }
@@ -72,7 +72,7 @@ def prepare(name, count, seed, quick, folder):
         first = codes.gen(start, folder, "fill.h5")
         if job.settle:
             with open(settled + ".new", "wb") as out:
-                fall = subprocess.Popen(["nsd-step", "-j", "2", "--until", repr(job.settle), "--every", "1000000", first],
+                fall = subprocess.Popen(["nsd-step", "--small-steps", "0", "-j", "2", "--until", repr(job.settle), "--every", "1000000", first],
                                         stdout=subprocess.PIPE, stderr=open(os.path.join(folder, "settle.log"), "w"))
                 subprocess.run(["nsd-cat", "--last"], stdin=fall.stdout, stdout=out, check=True)
                 if fall.wait():
@@ -110,6 +110,8 @@ def one(name, variant, scene, document, about, span, folder, options, bound=None
     extra = list(options)
     if other.get("auto"):
         extra += ["--dt", repr(suggested(scene))]
+    elif code == "nsd" and not other.get("small"):
+        extra += ["--small-steps", "0"]
     given = {"options": extra} if code == "nsd" else {"scene": scene, "modulus": job.modulus[other["modulus"]],
                                                       "velocities": True, "skin": job.skin}
     say(f"{name}: {variant}, {span} s")

@@ -76,8 +76,8 @@ def rest(peers, balls=500, settle=3.0, steps=100000):
     folder = os.path.join(peers.OUT, "rest")
     scene, document, about = peers.prepare("settling", balls, 1, 0, folder)
     settled, long = os.path.join(folder, "bed.h5"), os.path.join(folder, "long.h5")
-    codes.timed(["nsd-step", "--until", repr(settle), "--every", "1000000", "-o", settled, document], folder, 600)
-    codes.timed(["nsd-step", "-n", str(steps), "--every", str(steps // 10), "-o", long, settled], folder, 3600)
+    codes.timed(["nsd-step", "--small-steps", "0", "--until", repr(settle), "--every", "1000000", "-o", settled, document], folder, 600)
+    codes.timed(["nsd-step", "--small-steps", "0", "-n", str(steps), "--every", str(steps // 10), "-o", long, settled], folder, 3600)
     # a ball that touches fewer than three others or walls may roll for ever: nothing brakes that
     solved = os.path.join(folder, "solved.h5")
     with open(solved, "wb") as out:
@@ -110,9 +110,9 @@ def growth(peers, sizes, steps=50):
         # until three times the time in which the highest falls
         until = 3 * (2 * 3 * about["side"] * 0.58 / about["g"]) ** 0.5
         settled, log = os.path.join(folder, "bed.h5"), os.path.join(folder, "log")
-        fall = codes.timed(["nsd-step", "--until", repr(until), "--every", "1000000", "-o", settled, document], folder, 3600)
+        fall = codes.timed(["nsd-step", "--small-steps", "0", "--until", repr(until), "--every", "1000000", "-o", settled, document], folder, 3600)
         none = codes.timed(["nsd-step", "-n", "0", "-o", os.path.join(folder, "none.h5"), settled], folder, 600)
-        at_rest = codes.timed(["nsd-step", "-n", str(steps), "--every", "1000000", "--log", log, "-o", os.path.join(folder, "out.h5"), settled],
+        at_rest = codes.timed(["nsd-step", "--small-steps", "0", "-n", str(steps), "--every", "1000000", "--log", log, "-o", os.path.join(folder, "out.h5"), settled],
                               folder, 600)
         lines = [codes.json.loads(line) for line in open(log)]
         rows.append({"balls": count, "steps": steps, "cpu": at_rest["cpu"] - none["cpu"], "falling": fall["cpu"] / (until / scene["dt"]),
@@ -134,7 +134,7 @@ def profile(name, peers, count):
     _, document, _ = peers.prepare(name, count, 1, int(peers.QUICK), folder)
     span = min(JOBS[name].span[int(peers.QUICK)], 0.3)
     data = os.path.join(folder, "perf.data")
-    codes.timed(["perf", "record", "-q", "-F", "400", "-o", data, "nsd-step", "--until", repr(span), "--every", "1000000",
+    codes.timed(["perf", "record", "-q", "-F", "400", "-o", data, "nsd-step", "--small-steps", "0", "--until", repr(span), "--every", "1000000",
                  "-o", os.path.join(folder, "perf.h5"), document], folder, peers.BOUND)
     said = subprocess.run(["perf", "report", "-i", data, "--stdio", "--no-children", "--sort", "symbol", "--percent-limit", "2"],
                           capture_output=True, text=True, check=True).stdout
