@@ -27,9 +27,14 @@ static const double EXACT = 1e-13; /* of the reactions: what may be missing */
 
 static int find_freedoms(struct small_run *r, struct failure *failure)
 {
-    struct small_loads *o = &r->loads;
-    freedoms_free(&o->list);
-    return freedoms_init(&o->list, r->p, r->cell.edge, false, failure);
+    struct freedoms now = { 0 };
+    if (freedoms_init(&now, r->p, r->cell.edge, false, failure)) {
+        freedoms_free(&now); // the small step in hand ends with those before
+        return failure->status;
+    }
+    freedoms_free(&r->loads.list);
+    r->loads.list = now;
+    return 0;
 }
 
 int small_loads_init(struct small_run *r, struct failure *failure)
@@ -94,10 +99,7 @@ void small_loads_begin(struct small_run *r)
 {
     struct small_loads *o = &r->loads;
     struct failure failure = { 0 };
-    if (find_freedoms(r, &failure)) {
-        r->failed = r->stop = true;
-        return;
-    }
+    if (find_freedoms(r, &failure)) r->lost = r->stop = true;
     for (int32_t k = 0; k < o->list.n; k++) {
         o->free[k] = r->h * o->list.f[k].force / o->list.f[k].mass;
         o->change[k] = o->free[k] + (r->begins ? 0 : SMALL_WARM * o->kept[k]);
@@ -177,7 +179,7 @@ void small_loads_sweep(struct small_run *r, bool again)
     struct small_loads *o = &r->loads;
     for (int32_t k = 0; k < o->list.n; k++) {
         const int64_t n = gather_loaded(r, k, again);
-        if (n < 0) r->failed = r->stop = true;
+        if (n < 0) r->lost = r->stop = true;
         const double ds = n > 0 ? balance_load(r, k, n) : 0;
         for (int64_t i = 0; i < n; i++) {
             const struct small_loaded *y = &o->touch[i];

@@ -332,7 +332,7 @@ void small_points_look(struct small_run *r, int me, int threads)
     team_meet();
     look_some(r, me, threads, true);
     team_meet();
-    if (!me && r->shapes.failed) r->failed = r->stop = true;
+    if (!me && r->shapes.failed) r->lost = r->stop = true;
 }
 
 void small_points_last(struct small_run *r)

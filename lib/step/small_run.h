@@ -95,6 +95,7 @@ struct small_run {
     bool uneven;             /* bodies have masses so different that sweeps are slow */
     bool judged;             /* its errors are summed up [step/small_error.h] */
     bool failed;             /* the interval is to be made at once */
+    bool lost;               /* memory was short */
     _Atomic bool far;        /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock;    /* of what follows */
     double fastest;          /* m^2/s^2: of bodies */

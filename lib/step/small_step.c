@@ -169,6 +169,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
+        if (r->lost) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
         for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
     }
     small_walls_set(r);
