@@ -3,40 +3,10 @@
 # threads, vector widths and resumed runs, and the large step's results where there is no closed form.
 # shellcheck source=tests/support/tap.sh disable=SC2154,SC2016 # jq, tap.sh sets tmp
 . tests/support/tap.sh
+# shellcheck source=tests/support/small.sh
+. tests/support/small.sh
 
 floor='walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], gravity: [0, 0, -9.81], dt: 1e-3'
-scene() # MEMBERS OF THE SCENE: into $tmp/in.h5
-{
-    jq -n "{ $1 }" | nsd-gen - >"$tmp/in.h5"
-}
-small() # STEPS [OPTION ...]: the last frame of them is in $tmp/out.h5; nothing is made at once
-{
-    nsd-step --small-steps 0.01 -n "$1" --every "$1" "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" &&
-        ! grep -E "at once|no small steps" "$tmp/err"
-}
-last() # JQ PROGRAM: of the summary of the last frame
-{
-    nsd-info --last -l "$tmp/out.h5" | jq -c "select(.kinetic_energy != null) | $1"
-}
-body() # JQ PROGRAM [ID]: of a body, the first one
-{
-    nsd-info --last -p "$tmp/out.h5" | jq -c "select(.id == ${2:-0}) | $1"
-}
-near() # VALUE WANTED ERROR: jq's numbers
-{
-    jq -en "(($1) - ($2) | fabs) <= $3" >"$tmp/near"
-}
-same_bytes() # STEPS [OPTION ...]: of bodies, by three threads, two lanes and in two runs
-{
-    local half=$(($1 / 2)) one
-    run() { nsd-step --small-steps 0.01 "$@" 2>"$tmp/err"; }
-    frame() { nsd-info --last -p - | sha256sum; }
-    one=$(run -n "$1" --every "$1" "${@:2}" "$tmp/in.h5" | frame)
-    [ "$one" = "$(run -j 3 -n "$1" --every "$1" "${@:2}" "$tmp/in.h5" | frame)" ] &&
-        [ "$one" = "$(NSD_LANES=2 run -n "$1" --every "$1" "${@:2}" "$tmp/in.h5" | frame)" ] &&
-        [ "$one" = "$(run -n $half --every $half "${@:2}" "$tmp/in.h5" |
-            run -n $(($1 - half)) --every $(($1 - half)) "${@:2}" | frame)" ]
-}
 
 # ---- forces on bodies ----
 
@@ -44,25 +14,25 @@ ball='x: [0, 0, 0], radius: 0.01, density: 2500' # m = 0.010472 kg
 mass='(2500 * 4e-6 / 3 * 3.14159265358979)'
 scene "gravity: [0, 0, 0], dt: 1e-3, bodies: [{ $ball }], forces: [{ bodies: [0], along: [1, 0, 0], force: 0.01 },
     { bodies: [0], about: [0, 0, 1], torque: 1e-6 }]"
-ok "a force and a torque are made in small steps" small 100
+ok "a force and a torque are made in small steps" small_alone 100
 ok "a constant force: x = F t^2/(2 m)" near "$(body '.x[0]')" "0.01 * 0.01 / 2 / $mass" 1e-12
 ok "a constant torque: w = T t/I" near "$(body '.w[2]')" "1e-6 * 0.1 / (0.4 * $mass * 1e-4)" 1e-9
 ok "their work is the kinetic energy: nothing is dissipated" near "$(last '.balance | .dissipation / .loads')" 0 1e-12
 
 scene "gravity: [0, 0, 0], dt: 1e-3, bodies: [{ $ball }],
     forces: [{ bodies: [0], along: [1, 0, 0], force: { amplitude: 0.01, frequency: 20 } }]"
-small 25
+small_alone 25
 ok "half a period of a sine: v = 2 F/(m omega)" near "$(body '.v[0]')" "2 * 0.01 / $mass / (40 * 3.14159265358979)" 3e-5
 
 scene "$floor, mu: 0.3, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500, v: [1, 0, 0], w: [0, 100, 0] },
     { x: [0.1, 0, 0.01], radius: 0.01, density: 2500 }], forces: [{ bodies: [0], along: [0, 0, -1], force: 0.3 },
     { bodies: [0], about: [0, 1, 0], torque: -1e-2 }]"
-small 10
+small_alone 10
 ok "a ball that is pushed onto a floor brakes with mu (m g + F)" \
     near "$(body '.v[0]')" "1 - 0.3 * (9.81 + 0.3 / $mass) * 0.01" 2e-3
 
 scene "gravity: [0, 0, 0], dt: 1e-3, bodies: [{ $ball }]"
-small 100 --with 'jq -c --unbuffered "{forces: [[0, 0, (.time)]]}"'
+small_alone 100 --with 'jq -c --unbuffered "{forces: [[0, 0, (.time)]]}"'
 ok "a program's force that grows with time: v = t (t - dt)/(2 m)" near "$(body '.v[2]')" "0.1 * 0.099 / 2 / $mass" 1e-9
 
 jq -n '{ dim: 3, dt: 1e-3, density: 2500, mu: 0.3, gravity: [0, 0, -9.81], walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0], normal: [1, 0, 0] }, { point: [0, 0, 0], normal: [0, 1, 0] }],
@@ -78,14 +48,14 @@ sums() # JQ PROGRAM: of the sums of the last frame
     nsd-stat --last -m sums "$tmp/out.h5" 2>"$tmp/stat" | jq -c ".sums | $1"
 }
 scene "$floor, mu: 0.3, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500, v: [1, 0, 0] }]"
-ok "sums of walls are kept in small steps" small 300 --sums
+ok "sums of walls are kept in small steps" small_alone 300 --sums
 ok "a ball at rest: the floor carries m g" near "$(sums '.normal[0]')" "$mass * 9.81" 1e-9
 ok "a ball that slides until it rolls: friction takes 2/7 of its energy" near "$(sums '.friction[0]')" "$mass / 7" 1e-7
 ok "and has slid over that divided by mu m g" near "$(sums '.rub[0]')" "$mass / 7 / 0.3" 1e-6
 ok "and pushes the floor by 2/7 of its momentum" near "$(sums '.force[0][0]')" "$mass * 2 / 7 / 0.3" 1e-6
 scene "walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [0, 0, 0.2] }], gravity: [0, 0, 0], dt: 1e-3, e_n: 0.5,
     bodies: [{ x: [0, 0, 0.02], radius: 0.01, density: 2500, v: [0, 0, -1] }]"
-small 50 --sums
+small_alone 50 --sums
 ok "a wall that a ball meets at 1.2 m/s with e 0.5 gets m 1.2 1.5, and works on it by that times 0.2 m/s" \
     near "$(sums '.force[0][2]') * 0.05 + $(sums '.power[0]') * 0.05 / 0.2 + 2 * $mass * 1.8" 0 1e-9
 
@@ -94,23 +64,23 @@ ok "a wall that a ball meets at 1.2 m/s with e 0.5 gets m 1.2 1.5, and works on 
 for force in 0.11 0.05; do # m g = 0.10273 N
     scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, -9.81], dt: 1e-3, cohesion: { force: $force },
         bodies: [{ x: [0, 0, -0.01], radius: 0.01, density: 2500 }]"
-    ok "cohesion is made in small steps, $force N" small 100
+    ok "cohesion is made in small steps, $force N" small_alone 100
     ok "a ball below a ceiling hangs by $force N or falls" \
         near "$(body '.x[2]')" "-0.01 - (if $force < 9.81 * $mass then 9.81 * 0.005 else 0 end)" "if $force > 0.1 then 1e-6 else 1.5e-3 end"
 done
 scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, -9.81], dt: 1e-3, cohesion: { force: 0.3, range: 5e-3 },
     bodies: [{ x: [0, 0, -0.014], radius: 0.01, density: 2500 }]"
-small 10
+small_alone 10
 ok "within its range a pull accelerates with A/m - g" near "$(body '.x[2]')" "-0.014 + (0.3 / $mass - 9.81) * 0.01 * 0.01 / 2" 1e-10
 ok "and nothing is dissipated" near "$(last '.balance | .dissipation / .bond_change')" 0 1e-2
-small 200
+small_alone 200
 ok "then the ball rests" near "$(body '.v[2]') + ($(body '.x[2]') + 0.01) / 1e-2" 0 1e-3
 ok "and stores - A range" near "$(last '.balance.bond_energy')" "-0.3 * 5e-3" 1e-5
 
 scene "walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }], gravity: [0, 0, 0], dt: 1e-4, cohesion: { force: 0.1 },
     bodies: [{ x: [0, 0, -0.01], radius: 0.01, density: 2500 }],
     forces: [{ bodies: [0], along: [0, 0, -1], force: { table: [[0, 0], [1, 1]] } }]"
-small 1500
+small_alone 1500
 ok "a force that grows pulls a ball off at A: then it falls freely" \
     near "$(body '.v[2]')" "-(0.15 * 0.15 - 0.1 * 0.1) / 2 / $mass" 2e-2
 
@@ -120,18 +90,18 @@ wet='capillary: { volume: 1e-10, tension: 0.072 }'
 for v in 0.15 0.11; do
     scene "dt: 1e-5, gravity: [0, 0, 0], $wet, bodies: [{ x: [0, 0, 0], radius: 1e-3, fixed: true },
         { x: [0, 0, -2e-3], radius: 1e-3, density: 2500, v: [0, 0, -$v] }]"
-    small 3000
+    small_alone 3000
     ok "a ball leaves a liquid bridge with what is left of its energy, or comes back: $v m/s" near "$(body '.v[2]' 1)" \
         "(2e-10 / 3.14159265358979 / 1e-3) as \$c2 | ($v * $v - 2 * $bridge / ($mass * 1e-3)) | if . > 0 then -sqrt else 0 end" 4e-4
 done
-is "a ball that comes back stays wet" "$(small 3000 --contacts && nsd-info --last -c "$tmp/out.h5" | jq .wet)" true
+is "a ball that comes back stays wet" "$(small_alone 3000 --contacts && nsd-info --last -c "$tmp/out.h5" | jq .wet)" true
 
 scene "dt: 1e-3, gravity: [6.9367, 0, -6.9367], mu: 0.1, mu_s: 0.4, v_s: 0.01, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500 }]"
-small 100
+small_alone 100
 ok "static friction lets a ball roll where kinetic friction does not: 5/7 g sin" near "$(body '.v[0]')" "5 / 7 * 6.9367 * 0.1" 1e-4
 jq 'del(.mu_s, .v_s)' <(nsd-info --scene "$tmp/in.h5") | nsd-gen - >"$tmp/dry.h5" && mv "$tmp/dry.h5" "$tmp/in.h5"
-small 100
+small_alone 100
 ok "with kinetic friction alone it slides" near "$(body '.v[0]')" "0.9 * 6.9367 * 0.1" 1e-4
 
 heap='dim: 3, dt: 1e-3, density: 2500, mu: 0.3, e_n: 0.3, gravity: [0, 0, -9.81], walls: [{ point: [0, 0, 0], normal: [0, 0, 1] },
@@ -143,14 +113,14 @@ for law in "$wet" 'cohesion: { force: 0.05, range: 2e-4 }, rolling: { mu_r: 1e-5
     ok "a heap with ${law%%:*}: the same bytes" same_bytes 60
 done
 scene "$heap, cohesion: { force: 0.05, range: 2e-4 }"
-small 600
+small_alone 600
 ok "a cohesive heap comes to rest" near "$(last .kinetic_energy)" 0 1e-12
 
 # ---- a cell that moves ----
 
 scene "dt: 1e-3, gravity: [0, 0, 0], cell: { lengths: [1, 1, 1], gradient: [[-0.5, 0, 0.2], [0, 0.3, 0], [0, 0, 0]] },
     bodies: [{ x: [0.5, 0.25, 0.5], radius: 0.01 }]"
-ok "a cell that moves is made in small steps" small 1000
+ok "a cell that moves is made in small steps" small_alone 1000
 ok "a body follows the flow of its cell: y = y0 exp(0.3 t)" near "$(body '.x[1]')" "0.25 * (0.3 | exp)" 1e-6
 ok "and x, which is sheared and compressed" near "$(body '.x[0]')" "(0.5 - 0.2) * (-0.5 | exp) + 0.2 | if . < 0 then . + (-0.5 | exp) else . end" 1e-6
 
@@ -162,17 +132,17 @@ gas() # M IN Z
             | .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)] | .x[2] += $1]"
 }
 gas 0
-ok "a gas in shear flow" small 60 --log "$tmp/log"
+ok "a gas in shear flow" small_alone 60 --log "$tmp/log"
 jq -s 'map(.balance) | [(map(.drives) | add), (map(.dissipation) | add), .[-1].peculiar, .[-1].kinetic]' "$tmp/log" >"$tmp/first"
 ok "what the edges do is not dissipated" near "$(jq '.[1] / .[3]' "$tmp/first")" 0 5e-3
 gas 0.013
-small 60 --log "$tmp/log"
+small_alone 60 --log "$tmp/log"
 ok "and does not depend on where the cell begins" near "$(jq -s '.[-1].balance.peculiar' "$tmp/log") / $(jq '.[2]' "$tmp/first")" 1 2e-3
 ok "a gas in shear flow: the same bytes" same_bytes 40
 
 jq '.bodies[0].count = 100 | .cell.lengths = [0.53, 0.53]' scenes/shear.json | nsd-gen - >"$tmp/in.h5"
 works() { jq -s 'map(select(.time > 2) | .balance.drives) | add' "$tmp/log"; } # J: of the edges, in shear at 1/s
-small 6000 --small-steps 0.005 --log "$tmp/log"
+small_alone 6000 --small-steps 0.005 --log "$tmp/log"
 at_small=$(works)
 timeout 60 nsd-step --dt 5e-4 -n 12000 --every 12000 --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "dense discs in shear: the work of steps that are made at once, within their scatter" near "$at_small / $(works)" 1 0.3
@@ -185,27 +155,27 @@ load() # JQ PROGRAM: of the load of the last frame
 }
 scene "dt: 1e-3, gravity: [0, 0, 0], walls: [{ point: [0, 0, 1], normal: [0, 0, -1], load: { along: [0, 0, -1], force: 2, mass: 0.01 } }],
     bodies: [{ $ball }]"
-ok "a load is made in small steps" small 20
+ok "a load is made in small steps" small_alone 20
 ok "a lid falls freely: F t^2/(2 m)" near "$(load .travel)" "2 * 0.02 * 0.02 / 2 / 0.01" 1e-12
 ok "the work of its force is its energy" near "$(last '.balance | .loads / .change')" 1 1e-9
 
 scene "dt: 1e-3, gravity: [0, 0, 0], e_n: 0.5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1], load: { along: [0, 0, 1], mass: $(jq -n "$mass"), speed: 1 } }],
     bodies: [{ x: [0, 0, 0.02], radius: 0.01, density: 2500 }]"
-small 30
+small_alone 30
 ok "a wall meets a ball of its mass at 1 m/s with e 0.5: 0.75 m/s and 0.25 m/s" near "$(body '.v[2]') + $(load .speed) / 1e3" 0.75025 1e-9
 
 scene "$floor, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0.03], normal: [0, 0, -1], load: { along: [0, 0, -1], force: 2, mass: 0.01 } }],
     e_n: 0.2, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500 }]"
-small 200
+small_alone 200
 ok "a lid that falls on a ball comes to rest on it" near "$(load .travel)" 0.01 2e-5
 cp "$tmp/out.h5" "$tmp/in.h5"
-small 20 --sums
+small_alone 20 --sums
 ok "the ball carries the load" near "$(sums '.normal[1]')" 2 1e-9
 ok "and the floor carries both" near "$(sums '.normal[0]')" "2 + $mass * 9.81" 1e-9
 
 scene "dt: 1e-3, gravity: [0, -9.81, 0], mu: 0.3, walls: [{ cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.1 }, load: { about: [0, 0, 0], mass: 1e-3 } }],
     bodies: [{ x: [0, -0.09, 0], radius: 0.01, density: 2500, v: [0.5, 0, 0] }]"
-small 100
+small_alone 100
 ok "a drum that turns freely is driven by a ball that slides in it" near "$(load '.speed > 0 | if . then 1 else 0 end')" 1 0
 
 lid() # LOAD: a lid on 320 balls
@@ -218,7 +188,7 @@ lid() # LOAD: a lid on 320 balls
 }
 lid "pressure: 1000"
 ok "balls below a lid: the same bytes" same_bytes 60
-small 400
+small_alone 400
 travel=$(load .travel)
 ok "a lid at a constant pressure comes to rest on balls" near "$(load .speed)" 0 3e-3
 nsd-step --small-steps 0.01 -n 100 --every 100 --sums -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"

@@ -3,28 +3,10 @@
 # energy, a pile that comes to rest; the same bytes for threads and resumed runs; what is made at once is said.
 # shellcheck source=tests/support/tap.sh disable=SC2154,SC2016 # jq, tap.sh sets tmp
 . tests/support/tap.sh
+# shellcheck source=tests/support/small.sh
+. tests/support/small.sh
 
 floor='walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], gravity: [0, 0, -9.81], dt: 1e-3'
-scene() # MEMBERS OF THE SCENE: into $tmp/in.h5
-{
-    jq -n "{ $1 }" | nsd-gen - >"$tmp/in.h5"
-}
-small() # STEPS [OPTION ...]: the last frame of them is in $tmp/out.h5
-{
-    nsd-step --small-steps 0.01 -n "$1" --every "$1" "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
-}
-last() # JQ PROGRAM: of the summary of the last frame
-{
-    nsd-info --last -l "$tmp/out.h5" | jq -c "select(.kinetic_energy != null) | $1"
-}
-body() # JQ PROGRAM: of the first body
-{
-    nsd-info --last -p "$tmp/out.h5" | jq -c "select(.id == 0) | $1"
-}
-near() # VALUE WANTED ERROR: jq's numbers
-{
-    jq -en "(($1) - ($2) | fabs) <= $3" >"$tmp/near"
-}
 
 # ---- one ball ----
 
