@@ -3,13 +3,13 @@
 
 #include "step/small_run.h"
 
-/* Body b gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
-void small_body_push(struct body *b, vec3 n, double arm, vec3 f, vec3 m);
+/* Body b gets an impulse f and a moment m about its centre. */
+void small_body_push(struct body *b, vec3 f, vec3 m);
 
 /* N s: what persists of the reaction and the pull of the last step, on the body */
 vec3 small_touch_persists(const struct small_touch *t);
 /* The body gets that, with the moment. */
-void small_touch_push(struct small_run *r, const struct small_touch *t);
+void small_touch_push(struct small_run *r, struct small_touch *t);
 /* First sweep: is the body near its wall? One that has left gives its reaction back. */
 bool small_touch_near(struct small_run *r, struct small_touch *t);
 /* First sweep: the law of this step, attraction and static friction. Returns the change of the pull along n (N s), which l->u
