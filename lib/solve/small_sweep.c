@@ -224,24 +224,24 @@ ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
 }
 
-/* Attraction of pairs that have pushed f: dp, the change of the pull along n, of which 0.98 persists; lanes that it holds */
+/* Attraction of pairs that have pushed f: dp, the change of the pull, of which 0.98 persists; lanes that it holds */
 ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct small *s,
-                                  struct small_law *l, bool again, vd *dp)
+                                  struct small_law *l, bool again, vd dp[3])
 {
     double(*to)[BUNDLE] = s->hold[y->i].x;
     const int k = y->k;
     vd x[HOLD_COUNT], sum[3], had = vload(to[HOLD_PULL] + k), zero = splat(0);
     for (int j = 0; j < HOLD_COUNT; j++) x[j] = vload(to[j] + k);
-    *dp = zero;
+    for (int j = 0; j < 3; j++) dp[j] = zero;
     if (!again) {
-        *dp = small_hold_pull(x, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h) - SMALL_WARM * had;
+        small_hold_pull(x, l->n, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h, SMALL_WARM, dp);
         for (int j = HOLD_WET; j < HOLD_COUNT; j++) vstore(to[j] + k, x[j]);
         small_load(sum, y->c->sum, k);
         for (int j = 0; j < 3; j++) sum[j] -= x[HOLD_PULL] * l->n[j];
         small_store(y->c->sum, k, sum);
     }
     l->calm += 2 * l->wn * x[HOLD_PULL];
-    for (int j = 0; j < 3; j++) l->u[j] -= l->wn * *dp * l->n[j];
+    for (int j = 0; j < 3; j++) l->u[j] -= l->wn * dp[j];
     return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
 }
 
@@ -267,7 +267,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
 {
     struct small_pairs y;
     struct small_law l;
-    vd had[3], couple[3], df[3], dc[3], dm[3], dp = splat(0);
+    vd had[3], couple[3], df[3], dc[3], dm[3], dp[3] = { splat(0), splat(0), splat(0) };
     small_pairs_look(&y, s, i, k);
     const double reach = rich && s->rate.holds > s->rate.reach ? s->rate.holds : s->rate.reach;
     vd most = y.ra + y.rb + reach;
@@ -284,7 +284,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     const double warm = hot ? 1 : SMALL_WARM;
     for (int j = 0; j < 3; j++) had[j] = warm * l.f[j], couple[j] *= warm;
     vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
-    if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, &dp), acts = acts | holds;
+    if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, dp), acts = acts | holds;
     if (rich && s->stick && !hot) small_stick_pairs(&y, s, &l);
     if (hot)
         small_load(l.q, y.c->q, k), acts = acts & *hot;
@@ -296,7 +296,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     if (rolls) small_turn_pairs(&y, s, &l, acts, warm, dc, dm);
     s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn) | holds);
     s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
-    for (int j = 0; j < 3 && rich; j++) df[j] -= dp * l.n[j];
+    for (int j = 0; j < 3 && rich; j++) df[j] -= dp[j];
     small_give(&y, s, df, dc, rolls ? dm : NULL);
     vd change = l.wn * norm3(df);
     if (rolls) change = change + (y.a.ii * y.la + y.b.ii * y.lb) * norm3(dm);

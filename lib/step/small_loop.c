@@ -65,7 +65,8 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
 static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small_law l;
-    double df[3], dp = 0;
+    double df[3];
+    vec3 dp = v3(0, 0, 0);
     if (again ? !t->near : !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
     if (!again) dp = small_touch_begin(r, t, &l);

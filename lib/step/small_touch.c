@@ -55,16 +55,16 @@ static void roll_touch(const struct small_run *r, struct small_touch *t, const s
     small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
 }
 
-/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
-   0.98 persists (N s). */
-static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull, of which 0.98
+   persists (N s). */
+static vec3 hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
-    const double had = t->hold[HOLD_PULL];
-    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
-    const double dp = pull - SMALL_WARM * had;
-    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
+    double dp[3];
+    const double pull =
+        small_hold_pull(t->hold, l->n, l->gap, lt(0, dot3(l->n, l->f)), r->h, SMALL_WARM, dp);
+    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp[k];
     l->calm += 2 * l->wn * pull;
-    return dp;
+    return small_vec(dp);
 }
 
 /* mu of the step, by the velocities before it */
@@ -80,7 +80,8 @@ static void stick_touch(const struct small_run *r, struct small_touch *t)
 
 vec3 small_touch_persists(const struct small_touch *t)
 {
-    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
+    return v3_scale(SMALL_WARM,
+                    v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], small_vec(&t->hold[HOLD_X])));
 }
 
 /* A touch whose body has left gives its reaction back. */
@@ -105,10 +106,10 @@ bool small_touch_near(struct small_run *r, struct small_touch *t)
     return t->near;
 }
 
-double small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l)
+vec3 small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
     const struct small *s = &r->l->s;
-    const double dp = s->hold ? hold_touch(r, t, l) : 0;
+    const vec3 dp = s->hold ? hold_touch(r, t, l) : v3(0, 0, 0);
     if (s->stick) stick_touch(r, t);
     l->mu = t->mu;
     begin_touch(r, t, l);
@@ -116,17 +117,17 @@ double small_touch_begin(const struct small_run *r, struct small_touch *t, struc
 }
 
 void small_touch_give(struct small_run *r, struct small_touch *t, const struct small_law *l,
-                      double df[3], double dp, double heavy, bool again)
+                      double df[3], vec3 dp, double heavy, bool again)
 {
     struct small *s = &r->l->s;
     double dm[3] = { 0, 0, 0 };
     const vec3 couple = touch_couple(t, l->rt), dc = v3_sub(couple, small_vec(t->couple));
     memcpy(t->f, l->f, sizeof t->f), small_array(t->couple, couple);
     if (s->turn) roll_touch(r, t, l, dc, dm);
-    for (int k = 0; k < 3; k++) df[k] -= dp * l->n[k];
-    small_body_push(&s->body[t->body], small_vec(df), v3_add(dc, small_vec(dm)));
+    const vec3 given = v3_sub(small_vec(df), dp);
+    small_body_push(&s->body[t->body], given, v3_add(dc, small_vec(dm)));
     const double turn = t->arm * s->body[t->body].ii * norm3(dm);
-    const double change = heavy * (l->wn * norm3(df) + turn);
+    const double change = heavy * (l->wn * v3_norm(given) + turn);
     if (!again && !(change > s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;

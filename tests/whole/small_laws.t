@@ -146,6 +146,15 @@ scene "$heap, cohesion: { force: 0.05, range: 2e-4 }"
 small_alone 600
 ok "a cohesive heap comes to rest" near "$(last .kinetic_energy)" 0 1e-12
 
+# A heap that flows: pairs turn while they attract
+for law in 'capillary: { volume: 1e-9, tension: 0.072 }' 'cohesion: { force: 0.05 }'; do
+    scene "${heap/gravity: \[0, 0/gravity: [6, 0}, $law"
+    small_alone 45
+    cp "$tmp/out.h5" "$tmp/in.h5"
+    nsd-step --small-steps 0.01 -n 4 --contacts -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+    ok "reactions of a heap with ${law%%:*} that flows are those of Newton's law" newton '[6e-3, 0, -9.81e-3]'
+done
+
 # ---- a cell that moves ----
 
 scene "dt: 1e-3, gravity: [0, 0, 0], cell: { lengths: [1, 1, 1], gradient: [[-0.5, 0, 0.2], [0, 0.3, 0], [0, 0, 0]] },
