@@ -1,5 +1,6 @@
 #include "run/cli.h"
 
+#include "base/nearest.h"
 #include "base/output.h"
 #include "file/reader.h"
 
@@ -211,6 +212,25 @@ static json_t *cli_set(const struct cli_option *o, const char *text)
     }
 }
 
+/* Ends the tool. A name that is the beginning of several could be each of them. */
+static void no_such_option(const char *text, const struct option *known) __attribute__((noreturn));
+static void no_such_option(const char *text, const struct option *known)
+{
+    const char *name = text + strspn(text, "-");
+    const size_t n = strcspn(name, "=");
+    char begun[200] = "";
+    struct nearest near = { 0 };
+    for (const struct option *o = known; o->name; o++) {
+        const size_t at = strlen(begun);
+        nearest_look(&near, name, n, o->name);
+        if (!strncmp(o->name, name, n))
+            snprintf(begun + at, sizeof begun - at, "%s--%s", at ? ", " : "", o->name);
+    }
+    if (*begun) die_usage("--%.*s: more than one option begins so: %s", (int)n, name, begun);
+    if (near.name) die_usage("--%.*s: no such option; did you mean --%s?", (int)n, name, near.name);
+    die_usage("--%.*s: no such option", (int)n, name);
+}
+
 /* Of every tool, for it is every reader's: how much a packed document may hold */
 static double gigabytes;
 static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
@@ -253,7 +273,10 @@ int cli_parse(int argc, char **argv)
         }
         if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
         if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
-        if (c == '?') die_usage("%s: no such option", argv[optind - 1]);
+        if (c == '?' && optopt)
+            die_usage("%.*s: takes no argument", (int)strcspn(argv[optind - 1], "="),
+                      argv[optind - 1]);
+        if (c == '?') no_such_option(argv[optind - 1], lng);
         int k = c - FIRST_LONG;
         for (int i = 0; c < HELP && i < n; i++)
             if (at[i]->letter == c) k = i;

@@ -1,6 +1,7 @@
 /* scene/keys.c: objects of a scene by their tables. */
 #include "scene/keys.h"
 
+#include "base/nearest.h"
 #include "base/text.h"
 
 #include <stdio.h>
@@ -8,8 +9,7 @@
 #include <string.h>
 
 enum {
-    ROWS_MOST = 64, /* of an object, those of included tables too */
-    NAME_MOST = 40
+    ROWS_MOST = 64 /* of an object, those of included tables too */
 };
 
 /* A row, and where its member lies */
@@ -106,26 +106,6 @@ static int check_some(jnode o, const struct row *row, int n)
     return *names ? json_node_fault(o, "needs at least one of the keys %s", names) : 0;
 }
 
-/* Letters that are to be left out, put in, changed or swapped with the next to make a name of another */
-static int distance(const char *a, const char *b)
-{
-    int d[NAME_MOST + 1][NAME_MOST + 1];
-    const int n = (int)strlen(a), m = (int)strlen(b);
-    if (n > NAME_MOST || m > NAME_MOST) return NAME_MOST;
-    for (int i = 0; i <= n; i++)
-        for (int j = 0; j <= m; j++) {
-            d[i][j] = i + j;
-            if (!i || !j) continue;
-            const int change = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
-            d[i][j] = 1 + (d[i - 1][j] < d[i][j - 1] ? d[i - 1][j] : d[i][j - 1]);
-            if (change < d[i][j]) d[i][j] = change;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
-                d[i - 2][j - 2] + 1 < d[i][j])
-                d[i][j] = d[i - 2][j - 2] + 1;
-        }
-    return d[n][m];
-}
-
 /* A key that would be known beside another one */
 static int misplaced_key(jnode o, const struct key *k)
 {
@@ -147,18 +127,17 @@ static bool is_elsewhere(const jnode *o, const struct key *k, const struct row *
 static int unknown_key(jnode o, const char *key, const struct row *row, int n)
 {
     char names[250] = "";
-    const char *near = NULL;
-    int least = 3;
+    struct nearest near = { 0 };
     for (int i = 0; i < n; i++) {
         const struct key *k = row[i].key;
         if (is_elsewhere(&o, k, row, n) || keys_among(names, k->name)) continue;
-        const int d = distance(key, k->name);
-        if (d < least && d < (int)strlen(k->name)) least = d, near = k->name;
+        nearest_look(&near, key, strlen(key), k->name);
         add_name(names, sizeof names, k->name);
     }
-    if (near)
+    if (near.name)
         return json_node_fault(json_node_key(&o, key),
-                               "unknown key; did you mean \"%s\"? known here: %s", near, names);
+                               "unknown key; did you mean \"%s\"? known here: %s", near.name,
+                               names);
     return json_node_fault(json_node_key(&o, key), "unknown key; known here: %s", names);
 }
 

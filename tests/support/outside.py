@@ -165,6 +165,8 @@ for kind, words, call in (
         (nsd.Error, "no number", lambda: run.number("speed")),
         (nsd.Error, "measures", lambda: run.measure("beauty")),
         (nsd.Error, "no such option", lambda: run.set(epsilon=1)),
+        (nsd.Error, "did you mean criterion?", lambda: run.set(critereon="natural")),
+        (nsd.Error, "did you mean pixels?", lambda: run.set(pixel=3)),
         (nsd.Error, "not load-controlled", lambda: run.push_boundary(0, 1)),
         (nsd.Error, "no boundary", lambda: run.move_boundary(17, [0, 0, 1])),
         (nsd.Error, "no kind", lambda: run.friction("ball", "cheese", 1)),

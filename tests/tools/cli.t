@@ -38,6 +38,25 @@ for tool in "${tools[@]}"; do
     done
     refuses 64 "$tool --completion of another shell" "$tool" --completion fish
 done
+while read -r line; do
+    read -r tool option near <<<"$line"
+    refuses 64 "$tool $option" "$tool" "$option" 1
+    like "names the nearest" "$(head -1 "$tmp/err")" "^$tool: ${option%%=*}: no such option${near:+; did you mean $near\\?}\$"
+done <<'END'
+nsd-gen --verison --version
+nsd-step --stpes=3 --steps
+nsd-solve --critreion --criterion
+nsd-cat --strem --stream
+nsd-fit --tiemout --timeout
+nsd-step --foo
+nsd-err --foo
+END
+refuses 64 "the beginning of several options" nsd-step --max 3
+like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'
+refuses 64 "an argument to an option without one" nsd-step --in-place=3
+like "names the option" "$(head -1 "$tmp/err")" ': --in-place: takes no argument$'
+refuses 64 "an unknown measure" nsd-stat -m energy,sterss "$tmp/heap.h5"
+like "names the nearest" "$(head -1 "$tmp/err")" "no 'sterss'; did you mean stress\\?"
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {

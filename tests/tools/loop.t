@@ -236,7 +236,7 @@ EOT
     forged '["{\"step\":1,\"answer\":[]}"]' 'line 1 is not a step above 0 and an answer'
     forged '["{\"step\":1,\"answer\":{}"]' 'line 1 is not a step above 0 and an answer'
     forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"gravity\":3}}"]' "line 2: the answer.s gravity is a vector"
-    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"force\":{}}}"]' "line 2: the answer has no .force."
+    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"force\":{}}}"]' "line 2: the answer has no .force.; did you mean .forces..: it has"
     forged '["{\"step\":1,\"answer\":{\"gravity\":[" + "[]," * 500000 + "0]}}"]' 'an answer of [0-9]+ bytes: [0-9]+ are allowed'
 else
     skip "answers that are forged" "no h5py"
