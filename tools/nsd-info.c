@@ -1,4 +1,5 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
+#include "base/renamed.h"
 #include "file/reader.h"
 #include "file/report_json.h"
 #include "measure/stress.h"
@@ -96,6 +97,20 @@ static json_t *commands(const char *text)
     return list;
 }
 
+/* The options of the solve, which documents keep by their names of version 1 */
+static json_t *solve_options(const char *text)
+{
+    json_t *kept = json_loads(text, 0, NULL), *options = json_object(), *value;
+    const char *key;
+    json_object_foreach(kept, key, value)
+    {
+        const struct renamed *r = renamed_find("document", key, strlen(key));
+        json_object_set(options, r ? r->is : key, value);
+    }
+    json_decref(kept);
+    return options;
+}
+
 static void show_document(const struct frame *f, int64_t frames)
 {
     json_t *j = json_object();
@@ -121,8 +136,7 @@ static void show_document(const struct frame *f, int64_t frames)
         json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
         json_object_set_new(j, "material", material(p));
     }
-    if (f->report.options)
-        json_object_set_new(j, "options", json_loads(f->report.options, 0, NULL));
+    if (f->report.options) json_object_set_new(j, "options", solve_options(f->report.options));
     json_object_set_new(j, "history", commands(f->history));
     json_line(j);
 }

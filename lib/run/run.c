@@ -2,6 +2,7 @@
 #include "run/run.h"
 
 #include "base/nearest.h"
+#include "base/renamed.h"
 #include "base/team.h"
 #include "base/text.h"
 #include "convert/scene_file.h"
@@ -239,6 +240,9 @@ static int no_such_option(const char *name, struct failure *failure)
     static const char *const others[] = { "dt", "stiffness", "contacts", "forces", NULL };
     struct nearest near = { 0 };
     const size_t n = strlen(name);
+    const struct renamed *renamed = renamed_find("nsd_set", name, n);
+    if (renamed)
+        return failure_set(failure, NSD_USAGE, "%s: now called %s", renamed->was, renamed->is);
     for (int k = 0; others[k]; k++) nearest_look(&near, name, n, others[k]);
     for (int k = 0; asked_name(k); k++) nearest_look(&near, name, n, asked_name(k));
     for (const struct cli_option *const *t = run_tables; *t; t++)

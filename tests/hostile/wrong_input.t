@@ -470,7 +470,7 @@ for tool in nsd-gen "${readers[@]}"; do
     refuses 64 "$tool: an unknown letter" "$tool" -Z
 done
 for tool in nsd-solve nsd-step; do
-    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--method SBP' '-m=' \
+    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--local SBP' '-m=' \
         '--criterion best' '--order up' '--newton no' '--max-sweeps -1' '--max-sweeps 2.5' '--max-sweeps 1e30' \
         '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-eps 0' '--newton-max 0' '--theta 2' \
         '--theta -0.1' '-j 0' '-j -2' '-j many'; do

@@ -61,7 +61,7 @@ chain()
     for _ in 1 2 3 4 5 6 7 8; do
         nsd-detect chain.h5 | nsd-solve 2>/dev/null | nsd-move >next.h5 && mv next.h5 chain.h5 || return
     done
-    nsd-step --global auto -n 8 first.h5 2>/dev/null >eight.h5
+    nsd-step --solver auto -n 8 first.h5 2>/dev/null >eight.h5
     same_last chain.h5 eight.h5
 }
 ok "nsd-detect | nsd-solve | nsd-move is a step of a pour, too" chain
