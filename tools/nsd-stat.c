@@ -283,7 +283,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct fai
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, failure);
     if (k) s.first = &first, s.before = &before;
-    s.unconverged = count_missed(f);
+    s.unconverged = count_missed(f), s.report = f->reported ? &f->report : NULL;
     if (fields_to && s.only.bodies)
         die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
     if (measured_run(t, chosen, &s, failure)) {

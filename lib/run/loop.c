@@ -262,6 +262,7 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
     struct table t[MOST_MEASURES];
     const struct packing *p = &f->packing;
     snapshot_init(&look, p, s, f->moved, &loop.asked, failure);
+    look.report = f->reported ? &f->report : NULL;
     if (loop.remembers) look.first = &loop.first, look.before = &loop.before;
     if (!measured_run(t, loop.chosen, &look, failure)) {
         fputs(",\"measures\":", out);

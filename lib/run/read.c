@@ -413,7 +413,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, failure);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;
-    s.unconverged = missed - r->measured;
+    s.unconverged = missed - r->measured, s.report = f->reported ? &f->report : NULL;
     if (!measured_run(t, chosen, &s, failure)) {
         FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);

@@ -2,6 +2,7 @@
 #include "step/small_error.h"
 
 #include "base/team.h"
+#include "state/kinematics.h"
 #include "step/small_point.h"
 #include "step/small_wall.h"
 
@@ -70,4 +71,26 @@ void small_error_give(const struct small_run *r, struct report *rep)
             rep->missing = s->missing[i] / carries, rep->missing_id = p->id[i];
     }
     if (load > 0) rep->missing_mean = missing / load;
+}
+
+/* Times the permitted overlap */
+#define CRUSHED 3
+
+void small_error_approach(const struct small_run *r, const struct contacts *s, double permitted,
+                          struct report *rep)
+{
+    const struct packing *p = r->p;
+    double worst = 0;
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        if (!(c->gap < 0)) continue;
+        const double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+        const double approach = -opening_of(p, c, 0), depth = -c->gap / small;
+        if (c->gap + r->h * approach > 0)
+            continue; // it has closed in the last small step, and impacts in the next
+        rep->err.max_penetration_true = fmax(rep->err.max_penetration_true, approach);
+        if (approach <= r->l->s.rate.push || depth <= fmax(worst, CRUSHED * permitted)) continue;
+        worst = depth, rep->converged = false;
+        rep->unsolved[0] = c->a < 0 ? c->a : p->id[c->a], rep->unsolved[1] = p->id[c->b];
+    }
 }

@@ -316,7 +316,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
         p->step++, p->t = packing_time(p, p->step);
         const struct small_energy after = small_energy_of(p);
         small_report(rep, &r, s, o->bare);
-        small_error_give(&r, rep);
+        small_error_give(&r, rep), small_error_approach(&r, s, o->overlap, rep);
         small_balance(&rep->balance, &before, &after, &r);
         depth_of(&rep->depth, p, s, NULL, failure);
     } else {

@@ -65,7 +65,7 @@ solve() { nsd-solve "$@" "$tmp/contacts.h5" | nsd-cat; }
 while read -r was is; do # scripts that others keep have them
     ok "nsd-solve$was is nsd-solve$is" cmp <(eval "solve $was") <(eval "solve $is")
 done <<'END'
- --global=nlgs --solver=nlgs
+ --solver=nlgs --solver=nlgs
 END
 refuses 64 "the beginning of several options" nsd-step --max 3
 like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'

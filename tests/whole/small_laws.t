@@ -199,6 +199,22 @@ lid "pressure: 1000, mass: 1"
 nsd-step --small-steps 0.01 -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "a lid much heavier than a layer is made at once" grep -q "no small steps with a load of more mass" "$tmp/err"
 
+# ---- what has no solution ----
+
+plates() # SPEED: a ball of 1 kg between the floor and a plate that comes down
+{
+    scene "dt: 1e-3, mu: 1, walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1] }, { point: [0, 0, 0.1], normal: [0, 0, -1], velocity: [0, 0, -$1] }],
+        bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }]"
+    local s=0
+    nsd-step -n 100 --small-steps 0.01 -e --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" || s=$?
+    is "a plate that comes down at $1 m/s: status" $s "$2"
+}
+plates 0.1 1
+ok "a ball that walls crush has no solution" grep -q ", 1 without a solution" "$tmp/err"
+ok "and overlaps by little more than 3 R then" near "$(jq -s 'last.max_overlap / 0.1' "$tmp/log")" 0.03 1e-3
+ok "walls still approach it, at half of their velocity at least" near "$(jq -s 'map(.max_penetration_true | select(. >= 0.05 and . <= 0.101)) | length / 54' "$tmp/log")" 1 0
+plates -0.1 0
+
 nsd-gen scenes/isotropic.json >"$tmp/in.h5"
 nsd-step --small-steps 0.01 -n 1 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "a cell under a stress is made at once" grep -q "no small steps with a cell under a stress" "$tmp/err"
