@@ -84,7 +84,7 @@ $(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json
 	mkdir -p $(@D)
-	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --steps 217 | nsd-detect --overlap keep >$@
+	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --frames 217 | nsd-detect --overlap keep >$@
 $(OUT)/jam/eps-%.h5: $(OUT)/jam/jam.h5
 	nsd-solve --criterion natural --solver nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
 $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5

@@ -32,7 +32,8 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "only", &only, "NAME,...",
       .help = "print only these walls, parts, groups, kinds; for -p, -w, -c [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -549,8 +550,8 @@ int tool_main(int argc, char **argv)
     struct failure failure = { 0 };
     bool more, part = particles || walls || contacts || history || events;
     int64_t frames = 0;
-    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
-    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --frames exclude each other");
     if (only && (scene || (!particles && !walls && !contacts)))
         die_usage("--only: needs -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))

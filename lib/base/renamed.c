@@ -6,6 +6,8 @@ static const struct renamed table[] = {
     { "nsd-solve", "global", "solver", true },
     { "nsd-step nsd_set document", "global", "solver", false },
     { "nsd-solve nsd-step nsd_set", "method", "local", false },
+    { "nsd-cat nsd-export nsd-info nsd-stat nsd-web", "steps", "frames", false },
+    { "nsd-view", "cut", "clip", false },
 };
 enum { RENAMED = sizeof table / sizeof table[0] };
 

@@ -44,7 +44,7 @@ ln -s "$repository/scenes" "$tmp/stock/scenes"
     nsd-step -n 10 out.h5 >more.h5
     nsd-cat --last out.h5 >packing.h5
     nsd-export -o dump.liggghts --to lammps packing.h5
-    nsd-cat --steps 700 out.h5 | nsd-detect >contacts.h5
+    nsd-cat --frames 700 out.h5 | nsd-detect >contacts.h5
     nsd-solve contacts.h5 >solved.h5
     cp packing.h5 edited.h5
     cp "$repository/cookbook/drum/scene.json" drum.json
@@ -141,7 +141,7 @@ claim()
     'nsd-step'*'--with '*'> leaning.h5') frames leaning.h5 "length == $2" && h5ls leaning.h5/nsd/outside/answer/text ;;
     # contacts
     'nsd-cat --last out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [1000]' ;;
-    'nsd-cat --steps 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
+    'nsd-cat --frames 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
     'nsd-info -c contacts.h5 | jq .gap') output "length > 100 and all(. <= 5e-7) and min < 0 and length == $(nsd-info --last contacts.h5 | jq .contacts)" ;;
     *'nsd-detect --gap 1e-4'*'jq .contacts' | 'nsd-info contacts.h5 | jq '*'.contacts'*) output '.[0] > 0' ;;
     'nsd-detect --fclib=local '*'> problem.h5') fclib problem.h5 ;;
@@ -181,7 +181,7 @@ claim()
     *'map(.r[0]) | max / 5e-5'*) output 'length == 1 and .[0] > 0' ;;
     *'map(.sweeps) | add'*) output '.[0] > 0' ;;
     # copies
-    'nsd-cat --steps 0:1000:100 out.h5 > thin.h5') frames thin.h5 '. == [range(100; 1001; 100)]' ;;
+    'nsd-cat --frames 0:1000:100 out.h5 > thin.h5') frames thin.h5 '. == [range(100; 1001; 100)]' ;;
     'nsd-cat --vtk '*' out.h5 > paraview.h5') frames paraview.h5 'length == 100' && h5ls paraview.h5/VTKHDF | grep -Eq 'Points|surfaces' ;;
     *'nsd-cat --vtk all > bricks.h5') frames bricks.h5 'length == 100' && h5ls bricks.h5/VTKHDF/surfaces/Polygons | grep -q Connectivity ;;
     'nsd-gen --from dump.liggghts '*) bodies out.h5 500 && frames out.h5 'length == 1000' ;;

@@ -51,7 +51,7 @@ ok "and from the scene's" eval 'jq ".bodies[0].document = \"five.h5\"" sub/five.
 
 # ---- streams ----
 
-nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --steps 401: --stream >stream.h5
+nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --frames 401: --stream >stream.h5
 nsd-detect stream.h5 | nsd-solve 2>said >/dev/null
 is "a stream of 50 documents has one line" "$(wc -l <said)" 1
 like "with its sums" "$(cat said)" '^nsd-solve: 50 documents, [0-9]+ contacts, [0-9]+ sweeps, largest [a-z]+ [0-9.e-]+, [0-9.e-]+ s$'

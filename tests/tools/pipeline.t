@@ -96,7 +96,7 @@ gen --contacts >"$tmp/trajectory.h5"
 gen --contacts | cat >"$tmp/stream.h5"
 ok "contacts are the same in a stream and in a trajectory" \
     cmp <(nsd-info -c "$tmp/trajectory.h5") <(nsd-info -c "$tmp/stream.h5")
-nsd-cat --steps 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
+nsd-cat --frames 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
 is "a cut trajectory has the steps asked for" \
     "$(nsd-info "$tmp/cut.h5" | jq -n -c '[inputs | select(.step != null).step]')" \
     "[610,611,612,613,614,615]"

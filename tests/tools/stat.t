@@ -167,7 +167,7 @@ nsd-stat "$tmp/heap.h5" >"$tmp/one" 2>/dev/null
 nsd-cat --stream "$tmp/heap.h5" | nsd-stat 2>/dev/null >"$tmp/two"
 ok "a stream and a trajectory give the same lines" cmp "$tmp/one" "$tmp/two"
 is "a line for each frame, live" "$(nsd-gen 20 | step -n 7 | nsd-stat 2>/dev/null | wc -l)" 7
-is "--last and --steps" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
+is "--last and --frames" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
     "500 200 400 "
 for j in 1 2 4; do
     nsd-gen 200 | step -j $j -n 20 --contacts | nsd-stat -m all 2>/dev/null >"$tmp/j$j"
@@ -218,7 +218,7 @@ refuses 64 "a box that is empty" nsd-stat -b 1,0,0,1 "$tmp/corner.h5"
 refuses 64 "a box of five numbers" nsd-stat -b 0,1,0,1,0 "$tmp/corner.h5"
 refuses 64 "a plane of no direction" nsd-stat --plane 0,0,0 "$tmp/heap.h5"
 refuses 64 "--grains and --measures" nsd-stat --grains -m stress "$tmp/heap.h5"
-refuses 64 "--last and --steps" nsd-stat --last -s 1:2 "$tmp/heap.h5"
+refuses 64 "--last and --frames" nsd-stat --last -s 1:2 "$tmp/heap.h5"
 refuses 65 "a step that is not there" nsd-stat -s 99999 "$tmp/heap.h5"
 refuses 64 "no such measure" nsd-stat -m heat "$tmp/heap.h5"
 refuses 64 "a box of three numbers" nsd-stat -b 0,1,2 "$tmp/heap.h5"

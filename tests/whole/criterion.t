@@ -175,7 +175,7 @@ travels "boxes" "$tmp/boxes.h5"
 nsd-gen scenes/plane-shear.json >"$tmp/shear.h5"
 travels "a sheared cell with a load" "$tmp/shear.h5"
 nsd-step -n 6 -o "$tmp/killed.h5" "$tmp/falls.h5" 2>/dev/null
-nsd-cat --steps 0:223 "$tmp/killed.h5" >"$tmp/cut.h5"
+nsd-cat --frames 0:223 "$tmp/killed.h5" >"$tmp/cut.h5"
 ok "an earlier frame of a trajectory starts as the run did" cmp \
     <(nsd-info --last -p "$tmp/killed.h5") <(nsd-step -n 3 "$tmp/cut.h5" 2>/dev/null | nsd-info --last -p)
 for l in 2 4 8; do
