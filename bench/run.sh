@@ -65,9 +65,9 @@ whole_runs() {
     thousand "" --eps 1e-8
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
-    thousand 1.5 --eps 1e-8 --global auto
-    thousand 10 --eps 1e-12 --global auto
-    thousand 10 --eps 1e-12 --global auto --warm
+    thousand 1.5 --eps 1e-8 --solver auto
+    thousand 10 --eps 1e-12 --solver auto
+    thousand 10 --eps 1e-12 --solver auto --warm
     [ -f "$balls" ] || return 0
     start="nsd-gen example3-balls"
     jq --arg file "$PWD/$balls" '.bodies = [{ file: $file }]' scenes/paper/example3.json |
@@ -75,9 +75,9 @@ whole_runs() {
     thousand "" --eps 1e-8
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5
     thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
-    thousand 1.5 --eps 1e-8 --global auto
-    thousand 10 --eps 1e-12 --global auto
-    thousand 10 --eps 1e-12 --global auto --warm
+    thousand 1.5 --eps 1e-8 --solver auto
+    thousand 10 --eps 1e-12 --solver auto
+    thousand 10 --eps 1e-12 --solver auto --warm
 }
 
 # Every frame or the last one only, in turn: what writing costs

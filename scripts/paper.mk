@@ -122,7 +122,7 @@ fair = $(foreach k,$3,$(foreach m,$(METHODS) exact,$1_$(if $(filter exact,$m),ns
 SAME := $(call fair,example2,nsd,$(SEEDS)) $(call fair,example2-2d,paper,$(SEEDS)) \
         $(call fair,example3,nsd,$(PILES)) $(call fair,example3-2d,paper,$(PILES))
 
-last_problem_of = nsd-cat --steps $$(($2 - 1)):$$(($2 - 1)) $1 | nsd-detect
+last_problem_of = nsd-cat --frames $$(($2 - 1)):$$(($2 - 1)) $1 | nsd-detect
 last_problem    = $(call last_problem_of,$1,$(steps))
 
 $(OUT)/same/%.json: $(OUT)/runs.json | $(OUT)/same

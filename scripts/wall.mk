@@ -48,7 +48,7 @@ $(OUT)/%/global.h5: $(OUT)/%/pile.h5
 # sweeps without mixing or relaxation, each a continuation of the one before
 define sweeps
 $$(OUT)/%/sweeps-$(1).h5: $$(OUT)/%/$(if $(2),sweeps-$(2),pile).h5
-	nsd-solve --criterion natural --warm --global nlgs -m exact --order colour --eps 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
+	nsd-solve --criterion natural --warm --solver nlgs -m exact --order colour --eps 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
 endef
 before :=
 $(foreach k,$(EACH),$(eval $(call sweeps,$k,$(before)))$(eval before := $k))
@@ -84,9 +84,9 @@ $(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json
 	mkdir -p $(@D)
-	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --steps 217 | nsd-detect --overlap keep >$@
+	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --frames 217 | nsd-detect --overlap keep >$@
 $(OUT)/jam/eps-%.h5: $(OUT)/jam/jam.h5
-	nsd-solve --criterion natural --global nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
+	nsd-solve --criterion natural --solver nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
 $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
 	nsd-solve --criterion natural --eps 1e-10 $< >$@ 2>/dev/null
 $(OUT)/jam/follow.jsonl: $(OUT)/jam/global.h5 $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 $(P)/wall.py

@@ -108,7 +108,7 @@ const char *options_usual(const void *to)
 
 static struct cli_choice method_choice(int k)
 {
-    if (k == 0) return (struct cli_choice){ "auto", "choose the solver, as --global auto" };
+    if (k == 0) return (struct cli_choice){ "auto", "choose the solver, as --solver auto" };
     const struct method *m = methods[k - 1];
     return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
 }
@@ -149,9 +149,9 @@ struct cli_choice options_overlap_choice(int k)
 const struct cli_option options_solve[] = {
     { CLI_FLAG, 0, "paper", &options.paper,
       .help = "use the protocol of the paper instead of the defaults; requires -m" },
-    { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
+    { CLI_CHOICE, 'm', "local", &options.local, .choice = method_choice,
       .help = "solve by Gauss-Seidel with this local method [auto]" },
-    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice, .gone = solvers_gone,
+    { CLI_CHOICE, 0, "solver", &options.solver, .choice = solver_choice, .gone = solvers_gone,
       .help = "solve all contacts with this solver [nlgs with -m, else auto]" },
     { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
       .help = "stop when the criterion is at most EPS", .usual = options_usual },
@@ -225,10 +225,10 @@ void *options_member(struct options *o, const void *to)
 }
 
 /* A method that is named stands for the paper's Gauss-Seidel with it. */
-static const struct solver *global(const struct options *o)
+static const struct solver *solver_of(const struct options *o)
 {
-    if (options_has(o, &options.global)) return solvers[o->global];
-    return o->method ? &solver_nlgs : &solver_auto;
+    if (options_has(o, &options.solver)) return solvers[o->solver];
+    return o->local ? &solver_nlgs : &solver_auto;
 }
 
 /* The option where it is given, else what stands for it */
@@ -243,7 +243,7 @@ static int order_usual(const struct options *o, enum order otherwise)
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign)
 {
     const struct step_options_usual *u = o->paper ? &paper : &usual;
-    const struct solver *solver = global(o);
+    const struct solver *solver = solver_of(o);
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
     double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
@@ -258,7 +258,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
         .as_is = o->paper,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
-                   .method = o->method ? methods[o->method - 1] : &local_exact,
+                   .method = o->local ? methods[o->local - 1] : &local_exact,
                    .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
                               .newton_eps = OPTION(newton_eps, u->newton_eps),
                               .newton_abs = o->newton_abs * dt, // forces there, impulses here
@@ -338,7 +338,7 @@ int options_names(const struct options *o, struct failure *failure)
 {
     char names[100] = "";
     size_t n = 0;
-    if (!o->paper || o->method) return 0;
+    if (!o->paper || o->local) return 0;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
     return failure_set(failure, EX_USAGE, "--paper: needs a local method, -m %s", names);

@@ -10,8 +10,8 @@
 /* What was given, and which of them were */
 struct options {
     bool paper;
-    int method;                                    /* 0: auto; else 1 + the index in methods[] */
-    int global, criterion, order, newton, overlap; /* indices among their choices */
+    int local;                                     /* 0: auto; else 1 + the index in methods[] */
+    int solver, criterion, order, newton, overlap; /* indices among their choices */
     double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
     double gap; /* m */
     double theta;

@@ -320,7 +320,7 @@ class Run:
     # ---- options and steps ----
 
     def set(self, **options: Any) -> "Run":
-        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4 (s), threads=2,
+        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, local="exact", dt=1e-4 (s), threads=2,
         small_steps=0.01, contacts=True ...; returns the run. Raises Error (status 64) if there is no such option or value; those before it are set."""
         for name, value in options.items():
             if not isinstance(value, (bool, np.bool_, int, float, np.number, str)):

@@ -470,7 +470,7 @@ for tool in nsd-gen "${readers[@]}"; do
     refuses 64 "$tool: an unknown letter" "$tool" -Z
 done
 for tool in nsd-solve nsd-step; do
-    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--method SBP' '-m=' \
+    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--local SBP' '-m=' \
         '--criterion best' '--order up' '--newton no' '--max-sweeps -1' '--max-sweeps 2.5' '--max-sweeps 1e30' \
         '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-eps 0' '--newton-max 0' '--theta 2' \
         '--theta -0.1' '-j 0' '-j -2' '-j many'; do
@@ -492,9 +492,9 @@ done
 for tool in nsd-cat nsd-info; do
     for steps in x 1-2 5:3 1:2:0 1:2:3:4 -1:2 :: '' 1:2:; do
         case $steps in :: | 1:2:) continue ;; esac
-        refuses 64 "$tool --steps '$steps'" "$tool" --steps "$steps" "$tmp/packing.h5"
+        refuses 64 "$tool --frames '$steps'" "$tool" --frames "$steps" "$tmp/packing.h5"
     done
-    refuses 64 "$tool --last --steps 1" "$tool" --last --steps 1 "$tmp/packing.h5"
+    refuses 64 "$tool --last --frames 1" "$tool" --last --frames 1 "$tmp/packing.h5"
 done
 refuses 64 "nsd-solve --overlap that needs other contacts" nsd-solve --overlap gap "$tmp/contacts.h5"
 refuses 64 "nsd-solve --theta other than the contacts'" nsd-solve --theta 0.9 "$tmp/contacts.h5"

@@ -72,7 +72,7 @@ for method in exact sbp sal ebp eal; do
     solve halves -m $method --order colour --max-sweeps 8
 done
 for document in lattice contacts given; do
-    solve $document --global anderson --max-sweeps 30
+    solve $document --solver anderson --max-sweeps 30
     solve $document --max-sweeps 100
 done
 status 0 "whole steps in halves" $built/nsd-step -m exact --gap 1e-6 --order colour --relax 1.5 --warm --max-sweeps 8 -j 2 -n 3 "$tmp/halves.h5"

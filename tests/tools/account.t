@@ -38,7 +38,7 @@ refuses 64 "--keep-going alone" nsd-step --keep-going "$tmp/pair.h5"
 status 0 "where dt adapts, --dt auto is no advice" nsd-step --dt auto:0.01 --overlap keep "$tmp/pair.h5"
 like "but a smaller TOL is" "$(head -n 1 "$tmp/err")" 'bodies 1 and 2\): a smaller TOL of --dt auto leaves less'
 pair 0
-status 0 "bodies that touch" nsd-step --global auto -e "$tmp/pair.h5"
+status 0 "bodies that touch" nsd-step --solver auto -e "$tmp/pair.h5"
 is "have no account but its last line" "$(grep -c . "$tmp/err"), $(tail -n 1 "$tmp/err")" \
     "2, nsd-step: worst: overlap 0 of a radius, approach 0 m/s, 0 wedged, 0 went through a wall or another body, 0 steps not converged"
 
@@ -54,7 +54,7 @@ like "which has its number" "$(tail -n 1 "$tmp/err")" 'step 1, wall 0 and body 0
 # A plate presses a ball onto the floor: no step has a solution.
 jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },
     { point: [0, 0, 0.1], normal: [0, 0, -1], velocity: [0, 0, -0.1] }] }' | nsd-gen - >"$tmp/press.h5"
-status 1 "a run without a solution ends with 1 without -e" nsd-step --global auto --contacts -n 5 "$tmp/press.h5"
+status 1 "a run without a solution ends with 1 without -e" nsd-step --solver auto --contacts -n 5 "$tmp/press.h5"
 cp "$tmp/out" "$tmp/pressed.h5"
 like "says at once which step, and who" "$(head -n 2 "$tmp/err")" \
     '1 step not converged \(step 1, wall (0 \(floor\)|1) and body 0\): no solution, .*: the step fails, and the run continues'
@@ -63,20 +63,20 @@ most=$(nsd-info -c "$tmp/pressed.h5" | jq -s -r 'map(select(.step == 1 and .stat
 is "whose contact has the largest reaction" "$(account "$tmp/pressed.h5" '.unconverged.bodies')" "[\"$most\",0]"
 stop() # what command ...
 {
-    status 1 "$1: with -e it ends with its first step" "${@:2}" nsd-step --global auto -e -n 5 --every 5 -o "$tmp/stop.h5" "$tmp/press.h5"
+    status 1 "$1: with -e it ends with its first step" "${@:2}" nsd-step --solver auto -e -n 5 --every 5 -o "$tmp/stop.h5" "$tmp/press.h5"
     is "$1: which is kept" "$(nsd-info "$tmp/stop.h5" | jq -s -c '[.[1:][] | [.step, .account.unconverged.value]]')" '[[1,1]]'
 }
 stop "one process" env
-status 1 "--until" nsd-step --global auto -e --until 5e-3 -j 2 "$tmp/press.h5"
+status 1 "--until" nsd-step --solver auto -e --until 5e-3 -j 2 "$tmp/press.h5"
 is "--until, two threads: the same" "$(nsd-info "$tmp/out" | jq -s -c 'map(.step // empty)')" '[1]'
-status 1 "--with" nsd-step --global auto -e -n 5 --with "jq -c --unbuffered '{}'" -o "$tmp/with.h5" "$tmp/press.h5"
-status 1 "--replay" nsd-step --global auto -e -n 5 --replay "$tmp/with.h5" "$tmp/press.h5"
+status 1 "--with" nsd-step --solver auto -e -n 5 --with "jq -c --unbuffered '{}'" -o "$tmp/with.h5" "$tmp/press.h5"
+status 1 "--replay" nsd-step --solver auto -e -n 5 --replay "$tmp/with.h5" "$tmp/press.h5"
 is "--with and --replay: the same" "$(for f in with.h5 out; do nsd-info "$tmp/$f" | jq -s -c 'map(.step // empty)'; done | paste -sd ' ')" '[1] [1]'
 nsd-stat -m boundaries "$tmp/pressed.h5" 2>"$tmp/err" | jq -s -c 'map(.unconverged)' >"$tmp/out"
 is "nsd-stat has the number of such steps in each line" "$(cat "$tmp/out")" '[1,1,1,1,1]'
 is "and says so" "$(cat "$tmp/err")" \
     "nsd-stat: 5 steps NOT CONVERGED, the first is step 1: their forces, and the motion by them, are no solution; of 5 frames 5 have such forces (key unconverged)"
-nsd-step --global auto -n 4 --every 4 --sums "$tmp/press.h5" 2>/dev/null >"$tmp/sums.h5" || true
+nsd-step --solver auto -n 4 --every 4 --sums "$tmp/press.h5" 2>/dev/null >"$tmp/sums.h5" || true
 is "of sums, those of their span" "$(nsd-stat -m sums "$tmp/sums.h5" 2>/dev/null | jq .unconverged)" 4
 
 # A bed that falls too fast for its dt, and solves that are ended early

@@ -18,7 +18,7 @@ for _ in 1 2 3; do
     nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
     mv "$tmp/next.h5" "$tmp/pipe.h5"
 done
-nsd-step --global auto -n 3 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+nsd-step --solver auto -n 3 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
 ok 'detect | solve | move is nsd-step, edges and images too' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
 
 for j in 2 4; do
@@ -219,7 +219,7 @@ jq '.bodies[0].count = 100 | .cell.lengths = [0.5, 0.5] | .cell.gradient[2].t = 
     nsd-step -n 1600 --every 1600 --log="$tmp/sheared.log" -o "$tmp/sheared.h5" 2>/dev/null
 like "discs under compression and shear: its changes add up to it" "$(sums "$tmp/sheared.log" | jq '. < 1e-11')" true
 is "nsd-move puts it into the report" "$(nsd-cat --last "$tmp/sheared.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')" \
-    "$(nsd-step --global auto -n 1 "$tmp/sheared.h5" 2>/dev/null | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')"
+    "$(nsd-step --solver auto -n 1 "$tmp/sheared.h5" 2>/dev/null | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')"
 if have_ranks; then
     ranks 2 nsd-step -n 50 --order block --log="$tmp/ranks.log" -o "$tmp/ranks.h5" "$tmp/sheared.h5" 2>/dev/null
     like "two processes: so they do" "$(sums "$tmp/ranks.log" | jq '. < 1e-11')" true

@@ -38,6 +38,47 @@ for tool in "${tools[@]}"; do
     done
     refuses 64 "$tool --completion of another shell" "$tool" --completion fish
 done
+while read -r line; do
+    read -r tool option near <<<"$line"
+    refuses 64 "$tool $option" "$tool" "$option" 1
+    like "names the nearest" "$(head -1 "$tmp/err")" "^$tool: ${option%%=*}: no such option${near:+; did you mean $near\\?}\$"
+done <<'END'
+nsd-gen --verison --version
+nsd-step --stpes=3 --steps
+nsd-solve --critreion --criterion
+nsd-cat --strem --stream
+nsd-fit --tiemout --timeout
+nsd-step --foo
+nsd-err --foo
+END
+# names of version 1
+while read -r tool was is; do
+    refuses 64 "$tool --$was" "$tool" "--$was" 1
+    like "names the new one" "$(head -1 "$tmp/err")" "^$tool: --$was: now called --$is\$"
+    is "and does not have the old one" "$("$tool" --help | grep -c -e "--$was[ =]")" 0
+done <<'END'
+nsd-step global solver
+nsd-step method local
+nsd-solve method local
+nsd-cat steps frames
+nsd-export steps frames
+nsd-info steps frames
+nsd-stat steps frames
+nsd-web steps frames
+nsd-view cut clip
+END
+solve() { nsd-solve "$@" "$tmp/contacts.h5" 2>/dev/null | nsd-cat; }
+while read -r was is; do # scripts that others keep have them
+    ok "nsd-solve --$was is --$is" cmp <(solve "--$was") <(solve "--$is")
+done <<'END'
+global=nlgs solver=nlgs
+END
+refuses 64 "the beginning of several options" nsd-step --max 3
+like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'
+refuses 64 "an argument to an option without one" nsd-step --in-place=3
+like "names the option" "$(head -1 "$tmp/err")" ': --in-place: takes no argument$'
+refuses 64 "an unknown measure" nsd-stat -m energy,sterss "$tmp/heap.h5"
+like "names the nearest" "$(head -1 "$tmp/err")" "no 'sterss'; did you mean stress\\?"
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {
@@ -51,8 +92,8 @@ nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
 nsd-detect --overlap keep|gap|push|project|gap-project.*project\]
 nsd-detect --fclib local|global
-nsd-solve --method auto|sbp|.*\[auto\]
-nsd-solve --global auto|nlgs|.*\[nlgs with -m
+nsd-solve --local auto|sbp|.*\[auto\]
+nsd-solve --solver auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
 nsd-solve --eps \[1; 1e-10 for FCLIB\]
 nsd-solve --criterion glob|scaled|natural|velocity.*\[velocity; natural for FCLIB\]
@@ -74,9 +115,9 @@ nsd-step --every \[1\]
 nsd-step --contacts .
 nsd-step --warm .
 nsd-step --output \[standard output\]
-nsd-info --steps \[all\]
+nsd-info --frames \[all\]
 nsd-info --last .
-nsd-cat --steps \[all\]
+nsd-cat --frames \[all\]
 nsd-cat --last .
 nsd-view --step \[last frame\]
 nsd-view --colour radius|speed|kind|id.*\[radius\]
@@ -89,7 +130,7 @@ END
 
 solve() { nsd-solve "$@" 2>/dev/null; }
 ok "options may stand behind the operands" cmp <(solve -m sbp "$tmp/contacts.h5") <(solve "$tmp/contacts.h5" -m sbp)
-ok "-msbp and --method=sbp are the same" cmp <(solve -msbp "$tmp/contacts.h5") <(solve --method=sbp "$tmp/contacts.h5")
+ok "-msbp and --local=sbp are the same" cmp <(solve -msbp "$tmp/contacts.h5") <(solve --local=sbp "$tmp/contacts.h5")
 ok "the last of two wins" cmp <(solve -m sbp -m eal "$tmp/contacts.h5") <(solve -m eal "$tmp/contacts.h5")
 status 0 "-- ends the options" nsd-info -- "$tmp/heap.h5"
 cp "$tmp/contacts.h5" "$tmp/-e"
@@ -98,7 +139,7 @@ ok "so that a file may be called -e" dash
 
 solve -m eal --max-sweeps 77 --eps 1e-9 "$tmp/contacts.h5" >"$tmp/solved.h5"
 ok "the document's history has the options given" jq -e -s '.[0].history[-1].options ==
-    {method: "eal", eps: 1e-9, "max-sweeps": 77}' <(nsd-info "$tmp/solved.h5")
+    {local: "eal", eps: 1e-9, "max-sweeps": 77}' <(nsd-info "$tmp/solved.h5")
 is "and the command before, and the one before that" \
     "$(nsd-info "$tmp/solved.h5" | jq -c -s '.[0].history | map(.command)')" \
     '["nsd-gen","nsd-step","nsd-detect","nsd-solve"]'
@@ -132,7 +173,7 @@ is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | 
 # ---- defaults, and the paper's: contacts that are found without gaps ----
 
 nsd-detect --overlap keep "$tmp/heap.h5" >"$tmp/keep.h5"
-asked() { nsd-info "$1" | jq -c 'select(.options).options | [.global, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
+asked() { nsd-info "$1" | jq -c 'select(.options).options | [.solver, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
 paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
 solve --paper -m sbp "$tmp/keep.h5" >"$tmp/paper.h5"
 is "--paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
@@ -146,9 +187,9 @@ while read -r want options; do
     done
 done <<'END'
 ["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --eps 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
-["auto","sbp","glob",1e-10,5000,"natural",1,false] --global auto
+["auto","sbp","glob",1e-10,5000,"natural",1,false] --solver auto
 END
-for line in "" "-m auto" "--global nlgs"; do
+for line in "" "-m auto" "--solver nlgs"; do
     # shellcheck disable=SC2086 # words
     refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/keep.h5"
     like "needs a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: needs a local method, -m sbp\|sal\|ebp\|eal\|exact'

@@ -25,14 +25,14 @@ resumes()
     step -j 4 -n 20 -o "$tmp/j4.h5" "$tmp/$1.h5"
     ok "$1: 4 threads give the bytes of one" cmp "$tmp/j4.h5" "$tmp/ten.h5"
     if have_ranks; then
-        step --global auto -n 20 -o "$tmp/once.h5" "$tmp/$1.h5"
-        ranks 3 nsd-step --global auto -n 20 -o "$tmp/ranks.h5" "$tmp/$1.h5" >/dev/null 2>&1 || true
+        step --solver auto -n 20 -o "$tmp/once.h5" "$tmp/$1.h5"
+        ranks 3 nsd-step --solver auto -n 20 -o "$tmp/ranks.h5" "$tmp/$1.h5" >/dev/null 2>&1 || true
         ok "$1: 3 processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
     else
         skip "$1: 3 processes give the bytes of one" "no MPI"
     fi
     nsd-cat --last "$tmp/$1.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/parts.h5"
-    nsd-cat --last "$tmp/$1.h5" | step --global auto -n 1 | cat >"$tmp/whole.h5"
+    nsd-cat --last "$tmp/$1.h5" | step --solver auto -n 1 | cat >"$tmp/whole.h5"
     ok "$1: detect | solve | move and step give the same bits" cmp <(dump "$tmp/parts.h5") <(dump "$tmp/whole.h5")
     is "$1: nsd-err finds the solution that the solver has found" "$(natural "$tmp/$1.h5")" true
 }

@@ -205,7 +205,7 @@ refuses 64 "many frames in a file of one" nsd-export -o "$tmp/f.vtp" "$tmp/out.h
 refuses 64 "contacts as XYZ" nsd-export --part contacts -o "$tmp/f.xyz" "$tmp/out.h5"
 refuses 64 "contacts as triangles" nsd-export --last --part contacts -o "$tmp/f.stl" "$tmp/out.h5"
 refuses 64 "the input as output" nsd-export --to csv -o "$tmp/out.h5" "$tmp/out.h5"
-refuses 65 "no such step" nsd-export --steps 5000: -o "$tmp/f.csv" "$tmp/out.h5"
+refuses 65 "no such step" nsd-export --frames 5000: -o "$tmp/f.csv" "$tmp/out.h5"
 refuses 65 "a problem without bodies" nsd-export --to csv "$tmp/problem.h5"
 refuses 74 "a directory that cannot be" nsd-export -o "$tmp/no/such/" "$tmp/out.h5"
 refuses 74 "a file that cannot be" nsd-export -o "$tmp/no/such.csv" "$tmp/out.h5"

@@ -41,7 +41,7 @@ is "the balances are in the document, and nsd-info shows them" \
 
 nsd-cat --last "$tmp/pressed.h5" >"$tmp/last.h5"
 nsd-detect "$tmp/last.h5" | solve | nsd-move >"$tmp/parts.h5"
-step --global auto -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
+step --solver auto -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
 for group in /particles /observables; do
     ok "detect | solve | move and step give the same bits of $group" \
         cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/whole.h5" $group)
@@ -109,7 +109,7 @@ step -n $((2 * steps)) --every 100 --contacts --log "$tmp/cell.log" -o "$tmp/squ
 like "energy is balanced in a cell under pressure and shear stress" "$(misfit "$tmp/cell.log" | jq '. < 1e-13')" true
 nsd-cat --last "$tmp/squeezed.h5" >"$tmp/last-cell.h5"
 nsd-detect "$tmp/last-cell.h5" | solve | nsd-move >"$tmp/parts.h5"
-step --global auto -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
+step --solver auto -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
 ok "detect | solve | move and step give the same bits" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 step -j 4 -n 20 "$tmp/last-cell.h5" >"$tmp/j4.h5"
 step -j 1 -n 20 "$tmp/last-cell.h5" >"$tmp/j1.h5"
@@ -132,7 +132,7 @@ like "a pressure of 20 N/m is found again in the contacts" "$(pressure "$tmp/res
 # ---- drives: a wall with a velocity, a drum of sorts ----
 
 for scene in piston slope column; do
-    nsd-gen scenes/$scene.json | step --global auto -n 200 --every 200 --log "$tmp/$scene.log" -o "$tmp/drive.h5"
+    nsd-gen scenes/$scene.json | step --solver auto -n 200 --every 200 --log "$tmp/$scene.log" -o "$tmp/drive.h5"
     like "scenes/$scene.json: energy is balanced" "$(misfit "$tmp/$scene.log" | jq '. < 1e-13')" true
 done
 like "the wall of scenes/piston.json works" "$(jq -s 'map(.balance.drives) | add > 1e-8' "$tmp/piston.log")" true
@@ -193,7 +193,7 @@ fi
 jq '.bodies[0] = {count: 160000, radius: 5e-4, spacing: 1, jitter: 0, box: {x: [0, 0.4], y: [0, 0.4], z: [0, 1e-3]}} |
     .overlap = true | .walls = [{point: [0, 0, 1e-3], normal: [0, 0, -1], load: {along: [0, 0, 1], mass: 1}}]' \
     scenes/press.json | nsd-gen - >"$tmp/many.h5"
-refuses 70 "a piston on 160000 balls is too much" nsd-step --global auto -n 1 -o "$tmp/never.h5" "$tmp/many.h5"
+refuses 70 "a piston on 160000 balls is too much" nsd-step --solver auto -n 1 -o "$tmp/never.h5" "$tmp/many.h5"
 like "and why is said" "$(cat "$tmp/err")" 'the loads couple [0-9.e+]+ pairs of contacts: needs [0-9.e+]+ GB, the machine has'
 
 bad() # "what is true" FILTER REGEX

@@ -51,15 +51,15 @@ ok "and from the scene's" eval 'jq ".bodies[0].document = \"five.h5\"" sub/five.
 
 # ---- streams ----
 
-nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --steps 401: --stream >stream.h5
+nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --frames 401: --stream >stream.h5
 nsd-detect stream.h5 | nsd-solve 2>said >/dev/null
 is "a stream of 50 documents has one line" "$(wc -l <said)" 1
 like "with its sums" "$(cat said)" '^nsd-solve: 50 documents, [0-9]+ contacts, [0-9]+ sweeps, largest [a-z]+ [0-9.e-]+, [0-9.e-]+ s$'
 nsd-detect stream.h5 | nsd-solve -v 2>said >/dev/null
 is "with -v all have" "$(wc -l <said)" 51
-nsd-detect stream.h5 | nsd-solve --global nlgs --max-sweeps 2 2>said >/dev/null
+nsd-detect stream.h5 | nsd-solve --solver nlgs --max-sweeps 2 2>said >/dev/null
 is "those that did not converge have one" "$(grep -c ': NOT CONVERGED to' said)" "$(tail -n 1 said | sed -n 's/.*: \([0-9]*\) NOT CONVERGED$/\1/p')"
-status 1 "and the exit status, with -e" eval 'nsd-detect stream.h5 | nsd-solve -e --global nlgs --max-sweeps 2'
+status 1 "and the exit status, with -e" eval 'nsd-detect stream.h5 | nsd-solve -e --solver nlgs --max-sweeps 2'
 
 # ---- terminals ----
 

@@ -112,8 +112,8 @@ refuses 65 "a document with an FCLIB problem too" nsd-info -c --only NOSUCH "$tm
 refuses 64 "--only with --scene" nsd-info --scene -p --only side "$tmp/run.h5"
 
 if have_ranks; then
-    step --global auto -n 4 --contacts -o "$tmp/once.h5" "$tmp/start.h5"
-    ranks 2 nsd-step --global auto -n 4 --contacts -o "$tmp/ranks.h5" "$tmp/start.h5" 2>/dev/null
+    step --solver auto -n 4 --contacts -o "$tmp/once.h5" "$tmp/start.h5"
+    ranks 2 nsd-step --solver auto -n 4 --contacts -o "$tmp/ranks.h5" "$tmp/start.h5" 2>/dev/null
     ok "two processes write the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
 else
     skip "two processes write the bytes of one" "no MPI"

@@ -68,7 +68,7 @@ two()
         nsd-detect |
         solve |
         nsd-move >"$tmp/parts.h5"
-    step -n 2 --global auto --theta 0.7 "$tmp/heap.h5" | nsd-cat --last >"$tmp/whole.h5"
+    step -n 2 --solver auto --theta 0.7 "$tmp/heap.h5" | nsd-cat --last >"$tmp/whole.h5"
     same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 }
 ok "two steps with another theta, too" two
@@ -96,7 +96,7 @@ gen --contacts >"$tmp/trajectory.h5"
 gen --contacts | cat >"$tmp/stream.h5"
 ok "contacts are the same in a stream and in a trajectory" \
     cmp <(nsd-info -c "$tmp/trajectory.h5") <(nsd-info -c "$tmp/stream.h5")
-nsd-cat --steps 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
+nsd-cat --frames 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
 is "a cut trajectory has the steps asked for" \
     "$(nsd-info "$tmp/cut.h5" | jq -n -c '[inputs | select(.step != null).step]')" \
     "[610,611,612,613,614,615]"
@@ -130,8 +130,8 @@ for j in 2 3; do
     ok "40 000 balls: 1 and $j threads give the same bytes" cmp <(many -j 1) <(many -j $j)
 done
 # stderr has the summary alone, also of the thread that writes
-nsd-gen 20 | nsd-step --global auto -n 3 -j 2 -o "$tmp/told.h5" 2>"$tmp/told"
-nsd-gen 20 | nsd-step --global auto -n 3 -j 1 -o "$tmp/one.h5" 2>"$tmp/alone"
+nsd-gen 20 | nsd-step --solver auto -n 3 -j 2 -o "$tmp/told.h5" 2>"$tmp/told"
+nsd-gen 20 | nsd-step --solver auto -n 3 -j 1 -o "$tmp/one.h5" 2>"$tmp/alone"
 ok "two threads say no more than one" cmp <(sed "s/[^ ]* s in/T s in/" "$tmp/told") <(sed "s/[^ ]* s in/T s in/" "$tmp/alone")
 is "two lines: the steps, and what went worst" "$(wc -l <"$tmp/told")" 2
 # In a cell two bricks long each meets the next one twice: both times by the same thread
@@ -279,7 +279,7 @@ through() # scene: the long way, 3 steps; in the end nsd-err of each
         nsd-detect "$tmp/a.h5" | solve -e >"$tmp/b.h5" && nsd-err "$tmp/b.h5" && nsd-move "$tmp/b.h5" >"$tmp/a.h5" ||
             return
     done
-    echo "$1" | nsd-gen - | step -e --global auto -n 3 | nsd-cat --last >"$tmp/c.h5" && same_particles "$tmp/a.h5" "$tmp/c.h5"
+    echo "$1" | nsd-gen - | step -e --solver auto -n 3 | nsd-cat --last >"$tmp/c.h5" && same_particles "$tmp/a.h5" "$tmp/c.h5"
 }
 floor='"dt": 1e-4, "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]'
 ball='"x": [0, 0, 0.001], "radius": 0.001'
@@ -321,7 +321,7 @@ bounce() # e [OPTION ...]: how fast a ball leaves that has fallen on the floor w
 }
 ok "e = 1: what falls on the floor leaves as fast" jq -e '(. - 1 | fabs) < 1e-9' <(bounce 1)
 ok "e = 0.5: half as fast" jq -e '(. - 0.5 | fabs) < 1e-9' <(bounce 0.5)
-ok "e = 0: not at all" jq -e 'fabs < 1e-9' <(bounce 0 --global auto)
+ok "e = 0: not at all" jq -e 'fabs < 1e-9' <(bounce 0 --solver auto)
 ok "e = 1, mu = 0: a gas keeps its energy" jq -e -s '[.[] | select(.step != null).kinetic_energy] |
     length == 100 and (max - min) / max < 1e-9' <(nsd-gen scenes/gas.json | step -n 100 --eps 1e-13 | nsd-info)
 

@@ -56,9 +56,9 @@ nsd-gen 200 | step -n 500 --every 100 --contacts --eps 1e-8 --max-sweeps 20000 -
 ok "numpy finds the same in a heap: stress, forces, fabric, energies, distributions" truth same_as_numpy "$tmp/heap.h5"
 ok "energies, and what a step dissipates, are what its report says" truth balances "$tmp/heap.h5"
 jq '.walls[0].drives = [{ along: [0, 0, 1], amplitude: 5e-4, frequency: 20 }] | .bodies[0].count = 100' scenes/shaken.json |
-    nsd-gen - | step --global auto -n 600 --every 100 --contacts -o "$tmp/shaken.h5"
+    nsd-gen - | step --solver auto -n 600 --every 100 --contacts -o "$tmp/shaken.h5"
 ok "also where boundaries move" truth balances "$tmp/shaken.h5"
-step --global auto -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
+step --solver auto -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
 ok "and where a cell's edges do" truth balances "$tmp/shear.h5"
 # belts, drives, rolling and pivoting friction, grains of all shapes, walls that a load moves or a room; a cell whose rates change
 jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes: { block: { box: [2, 1, 1] } },
@@ -167,7 +167,7 @@ nsd-stat "$tmp/heap.h5" >"$tmp/one" 2>/dev/null
 nsd-cat --stream "$tmp/heap.h5" | nsd-stat 2>/dev/null >"$tmp/two"
 ok "a stream and a trajectory give the same lines" cmp "$tmp/one" "$tmp/two"
 is "a line for each frame, live" "$(nsd-gen 20 | step -n 7 | nsd-stat 2>/dev/null | wc -l)" 7
-is "--last and --steps" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
+is "--last and --frames" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
     "500 200 400 "
 for j in 1 2 4; do
     nsd-gen 200 | step -j $j -n 20 --contacts | nsd-stat -m all 2>/dev/null >"$tmp/j$j"
@@ -218,7 +218,7 @@ refuses 64 "a box that is empty" nsd-stat -b 1,0,0,1 "$tmp/corner.h5"
 refuses 64 "a box of five numbers" nsd-stat -b 0,1,0,1,0 "$tmp/corner.h5"
 refuses 64 "a plane of no direction" nsd-stat --plane 0,0,0 "$tmp/heap.h5"
 refuses 64 "--grains and --measures" nsd-stat --grains -m stress "$tmp/heap.h5"
-refuses 64 "--last and --steps" nsd-stat --last -s 1:2 "$tmp/heap.h5"
+refuses 64 "--last and --frames" nsd-stat --last -s 1:2 "$tmp/heap.h5"
 refuses 65 "a step that is not there" nsd-stat -s 99999 "$tmp/heap.h5"
 refuses 64 "no such measure" nsd-stat -m heat "$tmp/heap.h5"
 refuses 64 "a box of three numbers" nsd-stat -b 0,1,2 "$tmp/heap.h5"

@@ -155,8 +155,8 @@ is "to the bit in the document" "$(nsd-cat --last "$tmp/b2.h5" >"$tmp/c1.h5" && 
 step -n 30 -j 2 -o "$tmp/two.h5" "$tmp/each.h5"
 ok "two threads give the bytes of one" cmp "$tmp/two.h5" "$tmp/a.h5"
 if have_ranks; then
-    step --global auto -n 30 -o "$tmp/once.h5" "$tmp/each.h5"
-    ranks 2 nsd-step --global auto --sums -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
+    step --solver auto -n 30 -o "$tmp/once.h5" "$tmp/each.h5"
+    ranks 2 nsd-step --solver auto --sums -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
     ok "two processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
 else
     skip "two processes give the bytes of one" "no MPI"
@@ -165,7 +165,7 @@ nsd-step -n 30 -o "$tmp/without.h5" <(nsd-gen 50) 2>/dev/null
 nsd-step -n 30 --sums -o "$tmp/with.h5" <(nsd-gen 50) 2>/dev/null
 is "the motion is that of a run without sums" "$(nsd-info --last -p "$tmp/with.h5")" "$(nsd-info --last -p "$tmp/without.h5")"
 nsd-gen 50 | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/hand0.h5"
-step --global auto -n 1 "$tmp/each.h5" >"$tmp/one.h5"
+step --solver auto -n 1 "$tmp/each.h5" >"$tmp/one.h5"
 nsd-cat --last "$tmp/each.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/hand.h5"
 is "a step by hand adds to them" "$(stat -m sums "$tmp/hand.h5")" "$(stat -m sums "$tmp/one.h5" | jq -c 'del(.unconverged)')"
 # a run continued by its scene: the edges gone, what the run does about overlaps

@@ -108,7 +108,7 @@ step --until 0.4 -o whole.h5 --dt auto:0.01 start.h5
 deepest() { nsd-info --last "$1" | jq '.account.overlap.value'; }
 dts() { nsd-info "$1" | jq -c 'select(.step) | .dt'; }
 ok "no impact goes deeper than TOL" eval "jq -n -e '$(deepest whole.h5) > 0 and $(deepest whole.h5) <= 0.01'"
-step --global auto --until 0.4 -o plain.h5 start.h5
+step --solver auto --until 0.4 -o plain.h5 start.h5
 ok "which it does with one dt" eval "jq -n -e '$(deepest plain.h5) > 0.1'"
 ok "dt is the scene's, halved" eval "dts whole.h5 | jq -s -e 'all(. == 0.004 or ((0.004 / .) | log2 | . == floor))'"
 ok "it is halved and doubled" eval "dts whole.h5 | jq -s -e '. as \$d | (map(select(. < 1e-3)) | length > 2) and (map(select(. == 0.004)) | length > 2) and any(range(1; length); \$d[.] > \$d[. - 1])'"

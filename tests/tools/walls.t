@@ -84,7 +84,7 @@ step -n $steps --every $steps "$tmp/mesh.h5" | nsd-cat --last >"$tmp/last-mesh.h
 
 for k in last last-mesh; do
     nsd-detect "$tmp/$k.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/parts.h5"
-    step --global auto -n 1 "$tmp/$k.h5" | cat >"$tmp/whole.h5"
+    step --solver auto -n 1 "$tmp/$k.h5" | cat >"$tmp/whole.h5"
     ok "detect | solve | move is nsd-step, $k" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
     for j in 2 4; do
         step -j $j -n 20 "$tmp/$k.h5" >"$tmp/j$j.h5"

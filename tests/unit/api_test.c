@@ -533,7 +533,7 @@ static void test_failure(void)
     must(nsd_from_scene(&r, scene, NULL), NULL);
     must(nsd_failure(r, &text), r);
     ok(!*text, "before the first step none has failed");
-    must(nsd_set(r, "global", "auto"), r);
+    must(nsd_set(r, "solver", "auto"), r);
     must(nsd_step(r, 2) || nsd_failure(r, &text), r);
     ok(strstr(text, "2 steps not converged (first step 1, wall ") && strstr(text, " and body 0)"),
        "steps that fail are known, with who is concerned: %s", text);
@@ -686,7 +686,7 @@ static double some(void)
 }
 
 static const char *const words[] = { "eps",
-                                     "method",
+                                     "local",
                                      "threads",
                                      "warm",
                                      "dt",

@@ -44,7 +44,7 @@ for tiles in 1 16 64; do
     done
     ok "$balls balls, auto: the bytes of the CPU" same "$tmp/$tiles.h5"
     ok "$balls balls, Anderson's mixing to 1e-6: the bytes of the CPU" \
-        same "$tmp/$tiles.h5" --global anderson --criterion natural --eps 1e-6
+        same "$tmp/$tiles.h5" --solver anderson --criterion natural --eps 1e-6
 done
 ok "a history of every sweep: the bytes of the CPU" same "$tmp/1.h5" --criterion glob --history --max-sweeps 100
 ok "every criterion judged after every sweep: the bytes of the CPU" \

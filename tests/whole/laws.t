@@ -23,7 +23,7 @@ whole()
     local group j m
     nsd-detect "$tmp/$1" | solve >"$tmp/solved.h5"
     nsd-move "$tmp/solved.h5" >"$tmp/parts.h5"
-    step --global auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
+    step --solver auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
     for group in /particles /nsd/bonds /nsd/law /nsd/solver; do
         ok "$1: detect | solve | move and step give the same bits of $group" \
             cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/one.h5" $group)
@@ -92,7 +92,7 @@ is "no bridge is made over a gap" "$(nsd-detect "$tmp/apart.h5" | nsd-info | tai
 jq -n '{ dt: 1e-6, gravity: [0, 0, 0], overlap: true, capillary: { volume: 1e-10, tension: 0.072, wetting: 0.3 },
     bodies: [{ x: [1e-6, 0, 0], radius: 1e-3, density: 1e5, v: [-0.5, 0, 0] }, { x: [0.003, 0, 0], radius: 2e-3, density: 1e5, v: [0.5, 0, 0] }] }' |
     nsd-gen - >"$tmp/parting.h5" # the first step finds them touching
-step --global auto -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
+step --solver auto -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
 nsd-info -c "$tmp/parted.h5" >"$tmp/parted"
 like "a bridge pulls with the closed form of its length" \
     "$(jq -s 'map(select(.gap > 0) | (4e-3 / 3) as $R | (2e-10 / (3.141592653589793 * $R)) as $c2 |
@@ -107,14 +107,14 @@ jq -n '{ dt: 2e-5, mu: 0.4, e_n: 0.2, capillary: { volume: 1e-11, tension: 0.072
     walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
     bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] }' |
     nsd-gen - >"$tmp/grains.h5"
-step --global auto -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
+step --solver auto -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
 nsd-cat --last "$tmp/wetted.h5" >"$tmp/wet.h5"
 like "wet grains: energy is balanced in every step" "$(misfit "$tmp/wet.log" | jq '. < 1e-13')" true
 like "wet grains: nothing dissipates less than nothing" "$(jq -s 'map(.balance.dissipation) | min > -1e-12' "$tmp/wet.log")" true
 whole wet.h5
 for g in auto nlgs anderson; do
-    nsd-detect "$tmp/wet.h5" | solve --global $g --criterion natural --eps 1e-6 >"$tmp/g.h5"
-    like "wet grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
+    nsd-detect "$tmp/wet.h5" | solve --solver $g --criterion natural --eps 1e-6 >"$tmp/g.h5"
+    like "wet grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
 done
 # FORM PACKING CONTACTS: "true" where the problem that FCLIB gets has the velocities of these contacts, more than 20
 foreign()
@@ -313,8 +313,8 @@ for m in sbp sal ebp eal exact; do
 done
 nsd-detect "$tmp/rolling.h5" >"$tmp/contacts.h5"
 for g in anderson auto; do
-    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
-    like "rolling grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 2e-8')" true
+    solve --solver $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    like "rolling grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 2e-8')" true
     like "in fewer sweeps than Gauss-Seidel" "$(jq -n --argjson a "$(nsd-info "$tmp/g.h5" | tail -n 1)" \
         --argjson b "$(nsd-info "$tmp/m.h5" | tail -n 1)" '$a.sweeps < $b.sweeps')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
@@ -322,7 +322,7 @@ for g in anderson auto; do
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
 jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
-refuses 65 "nor are they solved with loads" nsd-step --global auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
+refuses 65 "nor are they solved with loads" nsd-step --solver auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
 like "moments are within their limits" "$(nsd-info -c "$tmp/m.h5" | jq -s \
     'map(select(.mu_r) | (.moment[1] * .moment[1] + .moment[2] * .moment[2] | sqrt) <= 1e-4 * .r[0] * (1 + 1e-9) + 1e-30 and
         (.moment[0] | fabs) <= 5e-5 * .r[0] * (1 + 1e-9) + 1e-30) | length > 20 and all')" true
@@ -406,7 +406,7 @@ grains() # ADHESION
     jq -n --argjson a "$1" '{ dt: 2e-5, mu: 0.4, e_n: 0.2, walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
         bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] } +
         if $a then { adhesion: $a } else {} end' | nsd-gen - >"$tmp/grains.h5"
-    step --global auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
+    step --solver auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
     nsd-cat --last "$tmp/some.h5" >"$tmp/bonded.h5"
     rm "$tmp/some.h5"
 }
@@ -423,8 +423,8 @@ for m in sbp sal ebp eal exact; do
     like "bonded grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-7')" true
 done
 for g in auto anderson; do
-    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
-    like "bonded grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
+    solve --solver $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    like "bonded grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
         '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
 done
@@ -517,7 +517,7 @@ reactions() # WAY ...
     nsd-solve --criterion natural --eps 3e-11 --max-sweeps 100000 "$@" "$tmp/found.h5" 2>/dev/null | nsd-info -c | jq -c 'select(.r) | .r'
 }
 reactions --cold >"$tmp/r"
-for way in '-m exact --order random' '-m eal' '--global nlgs --order natural'; do
+for way in '-m exact --order random' '-m eal' '--solver nlgs --order natural'; do
     # shellcheck disable=SC2086 # a way is several words
     reactions $way >"$tmp/other"
     ok "$way finds the same reactions, to 1e-5 of their mean" \
@@ -627,7 +627,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
     like "and more than 30 contacts are left" "$(nsd-info -c "$tmp/contacts.h5" | jq -s 'length > 30')" true
     local m
     for m in "${methods[@]}"; do
-        solve -m "$m" --global anderson --criterion natural --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
+        solve -m "$m" --solver anderson --criterion natural --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
         like "shaped grains with $1: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-6')" true
     done
 }
@@ -645,7 +645,7 @@ twice() # BODIES
     jq -n '{ dt: 1e-4, mu: 0.4, density: 2500, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], shapes: { brick: { box: [0.01, 0.01, 0.01] } },
         rolling: { mu_r: 2e-4, mu_p: 1e-4 }, adhesion: { c_n: 1e10, c_t: 5e9, w: 1e-3, area: 1e-6, forever: true },
         bodies: ([{ count: 20, radius: 0.002, box: { x: [0, 0.02], y: [0, 0.02], z: [0, null] }, v: [0.05, 0, -0.3] }] + '"$1"') }' | nsd-gen - |
-        step --global nlgs --criterion natural --eps 1e-11 --overlap keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
+        step --solver nlgs --criterion natural --eps 1e-11 --overlap keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
 }
 if [ -z "$thin" ]; then # a minute each under the sanitizers, of sweeps that are run elsewhere
     twice '[]' >"$tmp/numbers"

@@ -54,7 +54,7 @@ nsd-gen 300 | nsd-step --small-steps 0 -n 900 --every 900 2>/dev/null | nsd-cat 
 three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
 ok "with a stiffness of contacts" same "$tmp/heap.h5" 3 -n 5 --stiffness auto --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
-ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
+ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --solver anderson --eps 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
 jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step --small-steps 0 -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
 alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap keep --eps 1e-10
@@ -155,7 +155,7 @@ after 300 scenes/rolling.json
 nsd-step --small-steps 0 -n 1 -o "$tmp/solved.h5" --contacts "$tmp/rolling.h5" 2>/dev/null
 ok "with bonds of clumps, capsules, hulls" blocks "$tmp/glued.h5" 3 1e-6 -n 1 --overlap keep
 ok "with rolling friction" blocks "$tmp/rolling.h5" 3 1e-6 -n 1 --overlap keep
-ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --global anderson --overlap keep
+ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --solver anderson --overlap keep
 ok "with bonds" blocks "$tmp/bonded.h5" 3 1e-8 -n 3 --overlap keep
 ok "with rolling friction, from the last reactions and moments" blocks "$tmp/solved.h5" 3 1e-6 -n 2 --warm --overlap keep
 ok "with grains that pour" blocks "$tmp/pour.h5" 2 1e-8 -n 3 --overlap keep

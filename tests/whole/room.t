@@ -186,7 +186,7 @@ wrong "rates that are too fast" '.room.strain_rate = [100, 0, -100]' 'more than 
 wrong "no body for the mass" 'del(.bodies)' 'give a "mass", kg'
 wrong "a room without walls" 'del(.walls)' 'needs "walls" in the scene'
 jq '.dt = 1 | .room.mass = 1e-3 | .bodies[0].radius = 0.01' "$tmp/one.json" | nsd-gen - >"$tmp/fast.h5"
-status 65 "a room that falls in faster than a step ends the run" eval 'nsd-step --global auto -n 5 -o "$tmp/fasts.h5" "$tmp/fast.h5"'
+status 65 "a room that falls in faster than a step ends the run" eval 'nsd-step --solver auto -n 5 -o "$tmp/fasts.h5" "$tmp/fast.h5"'
 like "and says how to go on" "$(cat "$tmp/err")" "changes by -.* of its size in step 1, and a tenth is the most: take a smaller dt, a larger mass"
 # documents that say what no scene can
 if has h5py; then

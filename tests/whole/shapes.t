@@ -38,7 +38,7 @@ is 'at rest' "$(last "$tmp/cube.h5" '.kinetic_energy < 1e-10')" true
 
 # Symmetric: from a full solution all corners carry the same.
 scene "$cube" '{"x": [0, 0, 0.05], "shape": "cube"}' | jq '.mu = 0' | nsd-gen - | nsd-detect --gap 1e-9 |
-    nsd-solve -m exact --global auto --eps 1e-10 2>/dev/null | nsd-info -c |
+    nsd-solve -m exact --solver auto --eps 1e-10 2>/dev/null | nsd-info -c |
     jq -s 'map(.r[0]) | (max - min) / max < 1e-3' >"$tmp/equal"
 is 'its corners carry equal parts' "$(cat "$tmp/equal")" true
 
@@ -160,7 +160,7 @@ packs() # SHAPE...: as the body's keys
 {
     printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"six": {"regular": {"sides": 6, "radius": 1}}, "many": {"regular": {"sides": 24, "radius": 1}},
         "pill": {"capsule": {"length": 0.05, "radius": 1}}}, "walls": [{"box": {"x": [0, 0.6], "y": [0, null]}}], "bodies": [{"count": 300, %s "radius": {"uniform": [0.01, 0.018]}}]}' "${1-}" |
-        nsd-gen - | nsd-step -n 1500 --every 1500 --global auto 2>/dev/null | nsd-info --last -p |
+        nsd-gen - | nsd-step -n 1500 --every 1500 --solver auto 2>/dev/null | nsd-info --last -p |
         jq -s '(map(.mass) | add) as $m | $m / 2500 / (1.2 * (map(.x[1] * .mass) | add) / $m)'
 }
 if [ -z "$thin" ]; then
@@ -246,7 +246,7 @@ printf '{"dt": 1e-3, "density": 2600, "mu": 0.5, "shapes": {"stone": %s, "cube":
     {"count": 25, "shape": "cube", "orientation": "random", "size": {"uniform": [0.05, 0.1]}, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [1.1, null]}},
     {"count": 25, "shape": "tetra", "orientation": "random", "size": 0.05, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [2.8, null]}}]}' "$(jq -c .shapes.stone scenes/rubble.json)" >"$tmp/rests.json"
 if [ -z "$thin" ]; then
-    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --global auto 2>/dev/null >"$tmp/rests.h5"
+    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --solver auto 2>/dev/null >"$tmp/rests.h5"
     is 'a heap of polyhedra stands still: below 1e-6 m g d in all' \
         "$(nsd-info "$tmp/rests.h5" | jq -s --argjson e "$(nsd-info --last -p "$tmp/rests.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')" \
             'map(select(.step > 3000).kinetic_energy) | length == 10 and max < 1e-6 * $e')" true
@@ -274,7 +274,7 @@ for _ in 1 2 3; do
     nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
     mv "$tmp/next.h5" "$tmp/pipe.h5"
 done
-nsd-step --global auto -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+nsd-step --solver auto -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
 ok 'detect | solve | move is nsd-step' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
 nsd-step -n 30 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
 nsd-step -n 17 "$tmp/heap.h5" 2>/dev/null >"$tmp/half.h5"
@@ -287,7 +287,7 @@ for m in sbp sal ebp eal exact; do
     is "$m solves it" "$(nsd-err "$tmp/$m.h5" | jq '.natural < 1.1e-6')" true
 done
 for g in nlgs anderson; do
-    nsd-solve --global "$g" --eps 1e-4 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$g.h5"
+    nsd-solve --solver "$g" --eps 1e-4 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$g.h5"
     is "and so does $g" "$(nsd-err "$tmp/$g.h5" | jq '.natural < 1.1e-4')" true
 done
 

@@ -112,7 +112,7 @@ while read -ra option; do
     ok "one solve per step: ${option[*]}" makes once "${option[@]}"
 done <<'END'
 --small-steps 0
---global auto
+--solver auto
 -m sbp
 -m auto
 --paper -m sbp
@@ -138,7 +138,7 @@ while read -ra option; do
 done <<'END'
 
 --small-steps 0.02
---small-steps 0.02 --global nlgs --eps 1e-3 --overlap keep
+--small-steps 0.02 --solver nlgs --eps 1e-3 --overlap keep
 --theta 0.7
 --cold
 --warm
@@ -147,7 +147,7 @@ done <<'END'
 END
 nsd-step --paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
 ok "one solve per step: a document with another rule of overlaps" makes once
-nsd-gen 20 | nsd-step --global auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
+nsd-gen 20 | nsd-step --solver auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
 ok "small steps: one with the default rule" makes small
 scene "$floor, bodies: [{ x: [0, 0, 0.0105], radius: 0.01, v: [0, 0, -1] }] } | .dt = \"auto\" | { walls, gravity, dt, bodies"
 ok "one solve per step: a scene with dt \"auto\"" makes once

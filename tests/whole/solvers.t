@@ -25,13 +25,13 @@ nsd-solve -m exact --criterion glob --eps 1e-13 --max-sweeps 200000 "$tmp/contac
 velocities() { nsd-info --contacts "$1" | jq -r '.u | @tsv'; }
 for g in "${solvers[@]}"; do
     eps=1e-12
-    status 0 "--global $g converges" nsd-solve -e --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
+    status 0 "--solver $g converges" nsd-solve -e --solver "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
     cp "$tmp/out" "$tmp/$g.h5"
-    ok "--global $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
-    nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
-    ok "--global $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
-    NSD_LANES=2 nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
-    ok "--global $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
+    ok "--solver $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
+    nsd-solve --solver "$g" --criterion glob --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
+    ok "--solver $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
+    NSD_LANES=2 nsd-solve --solver "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
+    ok "--solver $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
 done
 same() # two tables, to within the third number everywhere?
 {
@@ -42,7 +42,7 @@ same() # two tables, to within the third number everywhere?
 for g in auto anderson; do
     velocities "$tmp/truth.h5" >"$tmp/a"
     velocities "$tmp/$g.h5" >"$tmp/b"
-    ok "--global $g: the velocities are Gauss-Seidel's" same "$tmp/a" "$tmp/b" 1e-8
+    ok "--solver $g: the velocities are Gauss-Seidel's" same "$tmp/a" "$tmp/b" 1e-8
 done
 
 # ---- real problems ----
@@ -66,16 +66,16 @@ hard=$tmp/heap.h5
 status 1 "-e and too few sweeps: status 1" nsd-solve -e --eps 0 --max-sweeps 7 "$hard"
 like "says NOT CONVERGED" "$(cat "$tmp/err")" "NOT CONVERGED"
 for g in "${solvers[@]}"; do
-    status 0 "--global $g, eps 0: ends" nsd-solve --global "$g" --eps 0 --max-seconds $((thin ? 8 : 4)) "$tmp/contacts.h5"
-    ok "--global $g: what comes back is good all the same" below "$tmp/out" eps_glob 1e-6
+    status 0 "--solver $g, eps 0: ends" nsd-solve --solver "$g" --eps 0 --max-seconds $((thin ? 8 : 4)) "$tmp/contacts.h5"
+    ok "--solver $g: what comes back is good all the same" below "$tmp/out" eps_glob 1e-6
 done
-status 0 "-m auto is --global auto" nsd-solve -m auto "$tmp/contacts.h5"
+status 0 "-m auto is --solver auto" nsd-solve -m auto "$tmp/contacts.h5"
 cp "$tmp/out" "$tmp/a.h5"
 nsd-solve "$tmp/contacts.h5" >"$tmp/b.h5" 2>/dev/null
 ok "and the default" cmp <(nsd-info --contacts "$tmp/a.h5") <(nsd-info --contacts "$tmp/b.h5")
-like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.. | .global? // empty')" auto
+like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.options.solver? // empty')" auto
 is "-m alone is Gauss-Seidel" "$(nsd-solve -m sbp "$tmp/contacts.h5" 2>/dev/null | nsd-info - |
-    jq -r '.. | .global? // empty')" nlgs
+    jq -r '.options.solver? // empty')" nlgs
 
 # An operator that no bodies have, and numbers whose squares are none
 spoilt() # NAME PYTHON: of the group g
@@ -89,10 +89,10 @@ if have_h5py; then
     spoilt hole 'g["W/x"][0] = -0.1'
     spoilt huge 'g["vectors/q"][...] *= 1e200'
     for g in "${solvers[@]}"; do
-        status 1 "--global $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/negative.h5"
-        ok "--global $g, -W: nsd-err reads it" nsd-err "$tmp/out"
-        status 1 "--global $g, one entry of W negative" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/hole.h5"
-        ok "--global $g, huge q: ends" timeout 30 nsd-solve --global "$g" --max-sweeps 2000 "$tmp/huge.h5"
+        status 1 "--solver $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --solver "$g" --max-sweeps 2000 "$tmp/negative.h5"
+        ok "--solver $g, -W: nsd-err reads it" nsd-err "$tmp/out"
+        status 1 "--solver $g, one entry of W negative" timeout 30 nsd-solve -e --solver "$g" --max-sweeps 2000 "$tmp/hole.h5"
+        ok "--solver $g, huge q: ends" timeout 30 nsd-solve --solver "$g" --max-sweeps 2000 "$tmp/huge.h5"
     done
 else
     skip "operators of no bodies" "no h5py"
@@ -114,7 +114,7 @@ for m in exact sbp; do
     agree "$m, $sweeps sweeps" "$tmp/long.h5"
     ok "$m, $sweeps sweeps: their additions are not in it" below "$tmp/long.h5" natural 1e-13
 done
-for g in "${solvers[@]}"; do agree "--global $g" "$tmp/$g.h5"; done
+for g in "${solvers[@]}"; do agree "--solver $g" "$tmp/$g.h5"; done
 
 # ---- what cannot be done is said ----
 
@@ -140,7 +140,7 @@ fi
 
 work() # GLOBAL FILE EPS: what a solve that converges has cost, ns; null where it does not
 {
-    nsd-solve -m exact --global "$1" --criterion natural --eps "$3" --max-sweeps 50000 --log "$tmp/work" "$2" \
+    nsd-solve -m exact --solver "$1" --criterion natural --eps "$3" --max-sweeps 50000 --log "$tmp/work" "$2" \
         >"$tmp/out" 2>/dev/null
     jq 'if .converged then .work else null end' "$tmp/work"
 }
@@ -184,14 +184,14 @@ ok "and no small map of reactions that grow passes for a solution" \
 
 status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
 refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
-refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"
+refuses 64 "--solver nothing" nsd-solve --solver nothing "$tmp/contacts.h5"
 for g in cg prox ipm; do
-    refuses 64 "--global $g is refused" nsd-solve --global $g "$tmp/contacts.h5"
+    refuses 64 "--solver $g is refused" nsd-solve --solver $g "$tmp/contacts.h5"
     like "with what to use instead" "$(cat "$tmp/err")" "$g is no longer available: auto"
 done
 nsd-gen 0 | nsd-detect >"$tmp/none.h5"
 for g in "${solvers[@]}"; do
-    status 0 "--global $g of no contacts" nsd-solve -e --global "$g" "$tmp/none.h5"
+    status 0 "--solver $g of no contacts" nsd-solve -e --solver "$g" "$tmp/none.h5"
 done
 
 # ---- a settled pile, where a few contacts hold the sweeps up and are solved by themselves ----

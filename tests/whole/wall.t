@@ -15,9 +15,9 @@ is "a disc at rest: 1/3" "$(resting 2 | jq '. - 1/3 | fabs < 1e-14')" true
 # ---- four balls that wedge themselves in: reactions grow, nothing moves ----
 
 jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap keep --criterion natural 2>/dev/null |
-    nsd-cat --steps 217 | nsd-detect --overlap keep >"$tmp/jam.h5"
+    nsd-cat --frames 217 | nsd-detect --overlap keep >"$tmp/jam.h5"
 for eps in 1e-4 1e-5 1e-6; do
-    nsd-solve --global nlgs -m exact --criterion natural --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
+    nsd-solve --solver nlgs -m exact --criterion natural --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
     nsd-err "$tmp/jam-$eps.h5" >"$tmp/jam-$eps"
 done
 like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1], .[1] / .[2]] | all(. > 8 and . < 12)' "$tmp"/jam-1e-[456])" '^true$'
