@@ -64,7 +64,7 @@ bullet_half() # ITERATIONS
     awk 'NR > 1 { s = sqrt($5 ^ 2 + $6 ^ 2 + $7 ^ 2); a = s > 0 ? 2 * atan2(s, $4) / s : 0
             printf("%s{\"shape\": \"brick\", \"x\": [%s, %s, %s], \"orientation\": [%.17g, %.17g, %.17g]}", NR == 2 ? "[" : ", ", $1, $2, $3, a * $5, a * $6, a * $7) }
         END { print "]" }' "$work/bullet" > "$work/bodies"
-    jq --slurpfile b "$work/bodies" '.bodies = $b[0] | .overlap = true' "$work/scene.json" | nsd-gen - > "$work/bullet.h5"
+    jq --slurpfile b "$work/bodies" '.bodies = $b[0] | .allow_overlap = true' "$work/scene.json" | nsd-gen - > "$work/bullet.h5"
     read -r seconds energy residual < "$work/bullet"
     row "Bullet, $1 iterations" "$(jq -n "$seconds * 1e3")" "$(judge "$work/bullet.h5")" \
         "$(jq -n "$energy / $mgd")" "$(height "$work/bullet.h5")" "$residual"

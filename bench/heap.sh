@@ -25,6 +25,6 @@ heap()
                     for (i = 1; i <= NR; i++)
                         printf "%.17g %.17g %.17g %.17g\n", x[i] + k % side * 0.0063, y[i] + int(k / side) * 0.0063, z[i], r[i]
             }' > "$work/heap.txt"
-    jq --arg file "$work/heap.txt" '.overlap = true | .bodies = [{ file: $file }]
+    jq --arg file "$work/heap.txt" '.allow_overlap = true | .bodies = [{ file: $file }]
         | .walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }]' scenes/paper/example3.json | nsd-gen -
 }

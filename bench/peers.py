@@ -82,7 +82,7 @@ def prepare(name, count, seed, quick, folder):
             os.rename(first, settled)
     scene = {k: v for k, v in start.items() if k not in ("bodies", "table")}
     scene.update({k: v for k, v in run.items() if k != "more"})
-    scene.update(dt=dt, overlap=True, bodies=[{"document": settled, "at_rest": True}] + run.get("more", []))
+    scene.update(dt=dt, allow_overlap=True, bodies=[{"document": settled, "at_rest": True}] + run.get("more", []))
     document = codes.gen(scene, folder, "start.h5")
     balls = codes.balls_of(document)
     about.update(mass=balls["mass"].sum(), g=-scene["gravity"][2])

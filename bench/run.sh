@@ -51,7 +51,7 @@ thousand() {
     local limit=$1
     shift
     for ((k = 0; k < runs; k++)); do
-        { time nsd-step -m exact -n 1000 --criterion glob --overlap keep "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
+        { time nsd-step -m exact -n 1000 --criterion glob --overlap-rule keep "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
             awk '{ print $1 }'
     done | figure "$start | nsd-step -m exact -n 1000 $*" s "$limit"
 }
@@ -86,7 +86,7 @@ writing() {
     nsd-gen 500 > "$work/start.h5"
     for ((k = 0; k < runs; k++)); do
         for every in 1 1000; do
-            { time nsd-step -m exact -n 1000 --criterion glob --overlap keep --eps 0 --max-sweeps 5000 --order colour --every $every \
+            { time nsd-step -m exact -n 1000 --criterion glob --overlap-rule keep --eps 0 --max-sweeps 5000 --order colour --every $every \
                 < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 | awk '{ printf "%s ", $2 + $3 }'
         done | awk '{ print 100 * ($1 - $2) / $1 }'
     done | figure "writing 1000 frames of the run with 5000 sweeps a step" "% of its CPU" 5

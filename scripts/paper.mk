@@ -8,7 +8,7 @@
 #   plain-A   table 4: alpha A, the plain Newton
 #   line-A    the same with nsd's line search
 #   bond      nsd's, with bonds of BOND weights wherever grains touch
-# Always the paper's protocol, whatever the tools' defaults: nsd-detect --overlap keep; nsd-solve and nsd-step --paper,
+# Always the paper's protocol, whatever the tools' defaults: nsd-detect --overlap-rule keep; nsd-solve and nsd-step --paper,
 # which is Gauss-Seidel from 0, the paper's criterion, nothing done about overlap.
 #
 #   runs/*.h5, *.log   the last two frames of a run; a line for each of its solves
@@ -251,7 +251,7 @@ PNG  := $(foreach s,$(DIMS),$s-start $s-end) $(PILED_UP:%=%-rest)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
 $(OUT)/data/%.tsv: $P/laws.jq | $(OUT)/data
-	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --overlap keep --gap 1e-4 | \
+	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --overlap-rule keep --gap 1e-4 | \
 	    nsd-solve -m exact --paper --eps 1e-10 --max-sweeps 5000 2> /dev/null | \
 	    nsd-info --contacts | \
 	    jq -r '[.u[], .r[]] | @tsv' > $@

@@ -84,7 +84,7 @@ $(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json
 	mkdir -p $(@D)
-	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --frames 217 | nsd-detect --overlap keep >$@
+	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap-rule keep 2>/dev/null | nsd-cat --frames 217 | nsd-detect --overlap-rule keep >$@
 $(OUT)/jam/eps-%.h5: $(OUT)/jam/jam.h5
 	nsd-solve --criterion natural --solver nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
 $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
@@ -92,7 +92,7 @@ $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
 $(OUT)/jam/follow.jsonl: $(OUT)/jam/global.h5 $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 $(P)/wall.py
 	$(P)/wall.py follow $< $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 >$@
 $(OUT)/jam/global.h5: $(OUT)/jam/jam.h5
-	nsd-detect --overlap keep --fclib=global <$< >$@
+	nsd-detect --overlap-rule keep --fclib=global <$< >$@
 
 $(OUT)/map.svg: $(P)/map.gp $(SIZES:%=$(OUT)/%/follow.jsonl) $(OUT)/$(LAST)/steps.jsonl
 	for n in $(SIZES); do jq -r '[(.file | capture("sweeps-(?<k>[0-9]+)").k), .natural, .dv] | @tsv' $(OUT)/$$n/follow.jsonl; echo; echo; done >$(OUT)/follow.tsv

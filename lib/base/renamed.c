@@ -8,6 +8,9 @@ static const struct renamed table[] = {
     { "nsd-solve nsd-step nsd_set", "method", "local", false },
     { "nsd-cat nsd-export nsd-info nsd-stat nsd-web", "steps", "frames", false },
     { "nsd-view", "cut", "clip", false },
+    { "nsd-detect nsd-solve nsd-step", "overlap", "overlap-rule", true },
+    { "nsd_set", "overlap", "overlap-rule", false },
+    { "scene", "overlap", "allow_overlap", true },
 };
 enum { RENAMED = sizeof table / sizeof table[0] };
 

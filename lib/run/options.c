@@ -131,8 +131,9 @@ void options_overlap(struct packing *p, bool detected)
     bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
                   overlap_meets(was) != overlap_meets(now);
     if (detected && others)
-        die_usage("--overlap %s: the contacts were detected with %s: nsd-detect --overlap %s",
-                  overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
+        die_usage(
+            "--overlap-rule %s: the contacts were detected with %s: nsd-detect --overlap-rule %s",
+            overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
     p->overlap = now;
 }
 

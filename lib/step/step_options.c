@@ -185,7 +185,7 @@ const struct cli_option options_detect[] = {
       .help = "detect pairs with a predicted gap of at most G m [0]" },
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "predict the position q + (1 - T) dt qdot [document, else 0.5]" },
-    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+    { CLI_CHOICE, 0, "overlap-rule", &options.overlap, .choice = options_overlap_choice,
       .help = "treat overlaps; keep: the paper", .usual = options_usual },
     { 0 },
 };

@@ -57,7 +57,7 @@ gen = tool("nsd-gen", path("scene.json"))
 with open(path("begin.h5"), "wb") as f:
     f.write(gen)
 for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion": "natural"}, {"dt": "auto:0.01"},
-                {"local": "exact", "relax": 1.2, "overlap": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
+                {"local": "exact", "relax": 1.2, "overlap_rule": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
     words = [w for key, x in options.items()
              for w in (["--" + key] if x is True else ["--" + key.replace("_", "-"), str(x)])]
     tool("nsd-step", "-n", "60", "--every", "20", *words, "-o", path("step.h5"), path("begin.h5"))
@@ -167,6 +167,7 @@ for kind, words, call in (
         (nsd.Error, "no such option", lambda: run.set(epsilon=1)),
         (nsd.Error, "did you mean criterion?", lambda: run.set(critereon="natural")),
         (nsd.Error, "global: now called solver", lambda: run.set(**{"global": "auto"})),
+        (nsd.Error, "overlap: now called overlap-rule", lambda: run.set(overlap="keep")),
         (nsd.Error, "did you mean pixels?", lambda: run.set(pixel=3)),
         (nsd.Error, "not load-controlled", lambda: run.push_boundary(0, 1)),
         (nsd.Error, "no boundary", lambda: run.move_boundary(17, [0, 0, 1])),

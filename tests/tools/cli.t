@@ -72,6 +72,7 @@ while read -r was is; do # scripts that others keep have them
     ok "nsd-solve --$was is --$is" cmp <(solve "--$was") <(solve "--$is")
 done <<'END'
 global=nlgs solver=nlgs
+overlap=keep overlap-rule=keep
 END
 refuses 64 "the beginning of several options" nsd-step --max 3
 like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'
@@ -90,7 +91,7 @@ done <<'END'
 nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
-nsd-detect --overlap keep|gap|push|project|gap-project.*project\]
+nsd-detect --overlap-rule keep|gap|push|project|gap-project.*project\]
 nsd-detect --fclib local|global
 nsd-solve --local auto|sbp|.*\[auto\]
 nsd-solve --solver auto|nlgs|.*\[nlgs with -m
@@ -172,7 +173,7 @@ is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | 
 
 # ---- defaults, and the paper's: contacts that are found without gaps ----
 
-nsd-detect --overlap keep "$tmp/heap.h5" >"$tmp/keep.h5"
+nsd-detect --overlap-rule keep "$tmp/heap.h5" >"$tmp/keep.h5"
 asked() { nsd-info "$1" | jq -c 'select(.options).options | [.solver, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
 paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
 solve --paper -m sbp "$tmp/keep.h5" >"$tmp/paper.h5"

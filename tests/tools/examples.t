@@ -153,7 +153,7 @@ claim()
         output 'length == 1 and .[0] > 0 and .[0] <= 1e-4' ;;
     *'| nsd-err | jq .self_stress') output 'length == 1 and .[0] > 0.001 and .[0] < 0.3' ;;
     'nsd-solve -m eal < contacts.h5 > solved.h5') converged solved.h5 ;;
-    *'nsd-detect --overlap keep > keep.h5') settings keep.h5 '.overlap == "keep"' && touching keep.h5 ;;
+    *'nsd-detect --overlap-rule keep > keep.h5') settings keep.h5 '.overlap_rule == "keep"' && touching keep.h5 ;;
     'nsd-solve --paper'*'> paper.h5')
         settings paper.h5 '.options | .solver == "nlgs" and .order == "natural" and .alpha' && grep -q 'NOT CONVERGED' stderr ;;
     'for m in '*) output 'map(.[0]) == ["sbp", "sal", "ebp", "eal", "exact"] and all(.[1] <= 1e-4)' ;;

@@ -66,7 +66,7 @@ jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes
         { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.3 }, drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: -2 }] }],
     bodies: [{ count: 20, radius: 0.005, box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.001, 0.02] } },
         { count: 10, radius: 0.006, shape: "block", orientation: "random", box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.02, 0.05] } }] }' >"$tmp/works.json"
-nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap keep --eps 1e-8 -o "$tmp/works.h5"
+nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap-rule keep --eps 1e-8 -o "$tmp/works.h5"
 ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
 nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --eps 1e-8 -o "$tmp/works.h5"
 ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
@@ -77,7 +77,7 @@ ok "the sums of the walls have the work of all steps" opposite \
     "$(nsd-info "$tmp/works.h5" 2>/dev/null | jq -s 'map(.balance.drives // 0) | add')"
 jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, cell: { lengths: [1, 1], stress: { pressure: 1000, mass: 20 } },
     bodies: [{ count: 60, radius: { uniform: [0.03, 0.05] }, box: { x: [0, 1], y: [0, 1] } }] }' | nsd-gen - |
-    step -n 150 --every 30 --contacts --overlap keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
+    step -n 150 --every 30 --contacts --overlap-rule keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
 ok "and a cell that yields to a stress" truth balances "$tmp/servo.h5" edges
 if [ -z "${NSD_THIN-}" ]; then
     nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"

@@ -171,10 +171,10 @@ is "a step by hand adds to them" "$(stat -m sums "$tmp/hand.h5")" "$(stat -m sum
 # a run continued by its scene: the edges gone, what the run does about overlaps
 echo '{ "dt": 1e-3, "mu": 0.3, "cell": { "lengths": [0.3, 0.3, 1], "repeats": [true, true, false] }, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }],
     "bodies": [{ "count": 20, "radius": 0.02, "v": [0.7, 0.2, 0], "box": { "x": [0, 0.3], "y": [0, 0.3], "z": [0, 0.4] } }] }' | nsd-gen - >"$tmp/slides.h5"
-step -n 300 --every 300 --sums --overlap gap -o "$tmp/half.h5" "$tmp/slides.h5"
+step -n 300 --every 300 --sums --overlap-rule gap -o "$tmp/half.h5" "$tmp/slides.h5"
 step -n 300 --every 300 -o "$tmp/on.h5" "$tmp/half.h5"
 nsd-info --scene "$tmp/half.h5" | nsd-gen - 2>"$tmp/err" | step -n 300 --every 300 -o "$tmp/by_scene.h5"
-is "a scene continues what the run does about overlaps" "$(nsd-info "$tmp/by_scene.h5" | jq -c 'select(.overlap).overlap')" '"gap"'
+is "a scene continues what the run does about overlaps" "$(nsd-info "$tmp/by_scene.h5" | jq -c 'select(.overlap_rule).overlap_rule')" '"gap"'
 is "and bodies, to the bit, with the edges that they have gone" "$(nsd-info --last -p "$tmp/by_scene.h5" | jq -c '[.x, .v, .w, .image]')" "$(nsd-info --last -p "$tmp/on.h5" | jq -c '[.x, .v, .w, .image]')"
 like "the sums begin again, which is said" "$(cat "$tmp/err")" "half.h5: the sums of its walls begin again from 0"
 cp "$tmp/without.h5" "$tmp/grown.h5"

@@ -385,7 +385,7 @@ for part in 1.02 0.98; do
     jq -n --argjson part $part '6 as $n | { dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1],
         adhesion: { c_n: 1e9, w: ($part * $n * $n | . * . / 1e9), area: 1 },
         bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - |
-        step --overlap keep --max-sweeps 100000 --criterion natural --eps 1e-8 -n 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
+        step --overlap-rule keep --max-sweeps 100000 --criterion natural --eps 1e-8 -n 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
     like "a bonded beam breaks where a bond bears S sqrt(w c_n), not below: $part" \
         "$(jq -s 'map(.balance.broken) | add > 0' "$tmp/breaks.log")" "$(jq -n "$part < 1")"
     rm "$tmp/breaks.h5"
@@ -645,7 +645,7 @@ twice() # BODIES
     jq -n '{ dt: 1e-4, mu: 0.4, density: 2500, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], shapes: { brick: { box: [0.01, 0.01, 0.01] } },
         rolling: { mu_r: 2e-4, mu_p: 1e-4 }, adhesion: { c_n: 1e10, c_t: 5e9, w: 1e-3, area: 1e-6, forever: true },
         bodies: ([{ count: 20, radius: 0.002, box: { x: [0, 0.02], y: [0, 0.02], z: [0, null] }, v: [0.05, 0, -0.3] }] + '"$1"') }' | nsd-gen - |
-        step --solver nlgs --criterion natural --eps 1e-11 --overlap keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
+        step --solver nlgs --criterion natural --eps 1e-11 --overlap-rule keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
 }
 if [ -z "$thin" ]; then # a minute each under the sanitizers, of sweeps that are run elsewhere
     twice '[]' >"$tmp/numbers"

@@ -60,7 +60,7 @@ is 'a capsule rolls as fast as its moment of inertia lets it' \
 scene '"one": {"balls": [[0, 0, 0, 0.1]]}' '{"x": [0, 0, 0.1], "shape": "one", "v": [1, 0, 0]}' | nsd-gen - |
     nsd-step -n 400 --every 400 --eps 1e-10 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/clump"
 scene '' '{"x": [0, 0, 0.1], "radius": 0.1, "v": [1, 0, 0]}' | nsd-gen - |
-    nsd-step -n 400 --every 400 --eps 1e-10 --overlap gap-project 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/ball"
+    nsd-step -n 400 --every 400 --eps 1e-10 --overlap-rule gap-project 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/ball"
 is 'a clump of one ball moves as the ball' \
     "$(jq -s '[.[0], .[1]] | transpose | map((.[0] / .[1] - 1 | fabs) < 1e-4) | all' "$tmp/clump" "$tmp/ball")" true
 
@@ -299,7 +299,7 @@ for form in local global; do
 done
 
 # A scene from a document has its shapes.
-printf '{"dt": 1e-3, "mu": 0.5, "overlap": true, "bodies": [{"document": "%s"}]}' "$tmp/heap.h5" | nsd-gen - >"$tmp/from.h5"
+printf '{"dt": 1e-3, "mu": 0.5, "allow_overlap": true, "bodies": [{"document": "%s"}]}' "$tmp/heap.h5" | nsd-gen - >"$tmp/from.h5"
 is 'bodies from a document have their shapes' "$(nsd-info -p "$tmp/from.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)" \
     "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)"
 is 'nsd-info says which' "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map(.shape) | unique | join(" ")')" '"clump cube rounded stone"'

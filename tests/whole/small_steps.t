@@ -138,7 +138,7 @@ done <<'END'
 --order colour
 --every-sweep
 --gap 0
---overlap project
+--overlap-rule project
 --dt 5e-5
 --dt auto:0.01
 --substeps 1000
@@ -149,7 +149,7 @@ while read -ra option; do
 done <<'END'
 
 --small-steps 0.02
---small-steps 0.02 --solver nlgs --eps 1e-3 --overlap keep
+--small-steps 0.02 --solver nlgs --eps 1e-3 --overlap-rule keep
 --theta 0.7
 --cold
 --warm

@@ -197,7 +197,7 @@ done
 # ---- a settled pile, where a few contacts hold the sweeps up and are solved by themselves ----
 
 jq ".mu = 0.8" scenes/paper/example3.json | nsd-gen - |
-    nsd-step -m exact --relax 1.5 -n 955 --every 955 --overlap keep --criterion glob --eps 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
+    nsd-step -m exact --relax 1.5 -n 955 --every 955 --overlap-rule keep --criterion glob --eps 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
 status 0 "steps of a settled pile to 1e-12" nsd-step -e --criterion glob --eps 1e-12 -n 12 --contacts --log "$tmp/log" "$tmp/pile.h5"
 cp "$tmp/out" "$tmp/one.h5"
 ok "three of them or more by one or two thousand sweeps and Newton's steps" \

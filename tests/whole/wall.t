@@ -14,8 +14,8 @@ is "a disc at rest: 1/3" "$(resting 2 | jq '. - 1/3 | fabs < 1e-14')" true
 
 # ---- four balls that wedge themselves in: reactions grow, nothing moves ----
 
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap keep --criterion natural 2>/dev/null |
-    nsd-cat --frames 217 | nsd-detect --overlap keep >"$tmp/jam.h5"
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap-rule keep --criterion natural 2>/dev/null |
+    nsd-cat --frames 217 | nsd-detect --overlap-rule keep >"$tmp/jam.h5"
 for eps in 1e-4 1e-5 1e-6; do
     nsd-solve --solver nlgs -m exact --criterion natural --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
     nsd-err "$tmp/jam-$eps.h5" >"$tmp/jam-$eps"
@@ -25,7 +25,7 @@ like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1],
 # ---- the page's own numbers, from M and H ----
 
 if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
-    nsd-detect --overlap keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global"
+    nsd-detect --overlap-rule keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global"
     scripts/wall/wall.py follow "$tmp/jam.global" "$tmp"/jam-1e-[456].h5 >"$tmp/follow"
     is "the self-stress and the map of nsd-err are those of M and H" \
         "$(jq -s '[.[0:3], .[3:]] | transpose | map((.[0].self_stress / .[1].self_stress - 1 | fabs < 1e-9) and (.[0].natural / .[1].natural - 1 | fabs < 1e-6)) | all' \
