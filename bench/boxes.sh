@@ -32,10 +32,10 @@ height() { jq -s 'map(.x[2]) | add / length * 1e3' <(nsd-info --last -p "$1"); }
 
 nsd_half() # EPS
 {
-    nsd-step -j 1 -n $((steps - late)) --every "$steps" --criterion natural --warm --eps "$1" "$work/start.h5" 2> /dev/null | nsd-cat --last > "$work/rests.h5"
+    nsd-step -j 1 -n $((steps - late)) --every "$steps" --criterion natural --warm --tolerance "$1" "$work/start.h5" 2> /dev/null | nsd-cat --last > "$work/rests.h5"
     TIMEFORMAT='%U'
     local seconds natural
-    { time nsd-step -j 1 -n "$late" --every "$late" --contacts --criterion natural --warm --eps "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
+    { time nsd-step -j 1 -n "$late" --every "$late" --contacts --criterion natural --warm --tolerance "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
     seconds=$(cat "$work/time")
     nsd-info --last -p "$work/end.h5" | jq -s 'map({x, v, w})' > "$work/moving"
     natural=$(nsd-info --last -c "$work/end.h5" | jq -s --argjson dt $dt --slurpfile bodies "$work/moving" \

@@ -8,7 +8,7 @@ settle()
 {
     [ -f "$work/pile.h5" ] && return
     nsd-gen 500 |
-        nsd-step --paper -m exact -n 1000 --every 1000 --eps 1e-8 2> /dev/null |
+        nsd-step --protocol paper -m exact -n 1000 --every 1000 --tolerance 1e-8 2> /dev/null |
         nsd-cat --last > "$work/pile.h5"
 }
 

@@ -79,7 +79,7 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "method", json_string(r->method));
     set_err(j, &r->err);
     json_object_set_new(j, "criterion", json_string(criterion_name[r->criterion]));
-    json_object_set_new(j, "eps", json_number(r->eps));
+    json_object_set_new(j, "tolerance", json_number(r->eps));
     for (const struct field *f = report_fields; f->name; f++)
         if (f->offset >= ERR_AT + sizeof r->err)
             json_object_set_new(j, f->name, json_field(f, (const char *)r + f->offset));

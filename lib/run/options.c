@@ -143,8 +143,8 @@ void options_stiffness(struct frame *f, const char *fixed)
     struct failure failure = { 0 };
     double k, was[2];
     if (!stiffness) return;
-    if (options.paper && strcmp(stiffness, "rigid"))
-        die_usage("--stiffness: contacts of the paper are rigid, and --paper is given");
+    if (options.protocol && strcmp(stiffness, "rigid"))
+        die_usage("--stiffness: contacts of the paper are rigid, and --protocol paper is given");
     if (stiffness_read(&k, stiffness, p, &failure)) {
         if (failure.status == EX_USAGE) die_usage("--stiffness: %s", failure.text);
         die(failure.status, "--stiffness: %s", failure.text);

@@ -9,10 +9,10 @@
 
 /* What was given, and which of them were */
 struct options {
-    bool paper;
+    int protocol;                                  /* 0: nsd's, 1: the paper's */
     int local;                                     /* 0: auto; else 1 + the index in methods[] */
     int solver, criterion, order, newton, overlap; /* indices among their choices */
-    double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
+    double tolerance, alpha, newton_eps, newton_abs, max_seconds, relax;
     double gap; /* m */
     double theta;
     int64_t max_sweeps, newton_max, threads;
@@ -53,5 +53,5 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
 double options_small_of(const struct options *o, const struct packing *p);
 /* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
 char *options_json_of(const struct options *asked, const struct step_opt *step);
-/* What is to be done about overlap: --overlap-rule, keep with --paper, else what the document says, else nsd's choice */
+/* What is to be done about overlap: --overlap-rule, keep with --protocol paper, else what the document says, else nsd's choice */
 enum overlap options_overlap_of(const struct options *o, const struct packing *p, bool detected);

@@ -23,7 +23,7 @@ settle() # NAME: NAME-settled.h5
     local k rest=$((end + 120)) from=$1-rest
     step "$from.h5" --overlap-rule gap --dt 0.05 --until "$rest" --every "${rest}s" --contacts "$out/$1.h5"
     for k in {1..8}; do
-        step "$1-rest-$k.h5" --warm --eps 1e-6 --overlap-rule project --dt 0.05 --until $((rest + 10 * k)) --every 1s --contacts "$out/$from.h5"
+        step "$1-rest-$k.h5" --warm --tolerance 1e-6 --overlap-rule project --dt 0.05 --until $((rest + 10 * k)) --every 1s --contacts "$out/$from.h5"
         from=$1-rest-$k
         nsd-stat -m stress "$out/$from.h5" | jq -es '.[-5:] | all(.[]; (.stress.p - 1 | fabs) < 1e-6)' >/dev/null && break
     done

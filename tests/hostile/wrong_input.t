@@ -470,14 +470,14 @@ for tool in nsd-gen "${readers[@]}"; do
     refuses 64 "$tool: an unknown letter" "$tool" -Z
 done
 for tool in nsd-solve nsd-step; do
-    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--local SBP' '-m=' \
+    for option in '--tolerance -1' '--tolerance nan' '--tolerance inf' '--tolerance 1e' '--tolerance=' '--tolerance 1x' '-m newton' '--local SBP' '-m=' \
         '--criterion best' '--order up' '--newton no' '--max-sweeps -1' '--max-sweeps 2.5' '--max-sweeps 1e30' \
-        '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-eps 0' '--newton-max 0' '--theta 2' \
+        '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-tolerance 0' '--newton-max 0' '--theta 2' \
         '--theta -0.1' '-j 0' '-j -2' '-j many'; do
         # shellcheck disable=SC2086 # words
         refuses 64 "$tool $option" "$tool" $option "$tmp/contacts.h5"
     done
-    for option in --eps -m --max-sweeps -j --log; do
+    for option in --tolerance -m --max-sweeps -j --log; do
         refuses 64 "$tool $option without its argument" "$tool" "$tmp/contacts.h5" $option
     done
 done

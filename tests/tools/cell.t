@@ -62,7 +62,7 @@ import sys, h5py
 with h5py.File(sys.argv[1]) as f, h5py.File(sys.argv[2], "w") as g:
     f.copy("fclib_local", g)
 PY
-    nsd-solve --eps 1e-10 "$tmp/problem.h5" 2>/dev/null | nsd-info --last | jq .natural >"$tmp/a"
+    nsd-solve --tolerance 1e-10 "$tmp/problem.h5" 2>/dev/null | nsd-info --last | jq .natural >"$tmp/a"
     like 'the FCLIB problem of a cell is solved' "$(jq '. < 1e-9' "$tmp/a")" true
 fi
 

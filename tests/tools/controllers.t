@@ -12,7 +12,7 @@ misfit()
     jq -s 'map(.balance | ((.change - (.gravity + .loads + .drives - .dissipation)) | fabs) /
         (.kinetic + (.gravity | fabs) + (.loads | fabs) + (.drives | fabs) + (.dissipation | fabs) + 1e-300)) | max' "$1"
 }
-natural() { step -n 3 --contacts --eps 1e-9 --overlap-rule gap "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
+natural() { step -n 3 --contacts --tolerance 1e-9 --overlap-rule gap "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
 state() { nsd-info --last -p "$1" && nsd-info --last -w "$1" && nsd-info --last "$1" | jq -c 'select(.edges) | [.edges, .rates]'; }
 
 # resumes NAME: to the bit, by threads, as a stream, in parts

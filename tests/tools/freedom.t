@@ -66,21 +66,21 @@ step -n 5 -o "$tmp/trajectory.h5" "$tmp/last.h5"
 ok "a stream and a trajectory hold the same loads" \
     cmp <(nsd-info -w "$tmp/stream.h5") <(nsd-info -w "$tmp/trajectory.h5")
 
-natural() { step -n 3 --contacts --eps 1e-9 "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
+natural() { step -n 3 --contacts --tolerance 1e-9 "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
 is "nsd-err finds what the solver has found" "$(natural "$tmp/last.h5")" true
 like "after a solve without a step, too" \
-    "$(nsd-detect "$tmp/last.h5" | solve --eps 1e-9 | nsd-err | jq '.natural < 2e-9')" true
+    "$(nsd-detect "$tmp/last.h5" | solve --tolerance 1e-9 | nsd-err | jq '.natural < 2e-9')" true
 
 # The problem alone, as FCLIB has it: both forms have the solution of the packing.
-nsd-detect "$tmp/last.h5" | solve --eps 1e-12 | nsd-move | nsd-info -w | jq -c 'select(.load).load.speed' >"$tmp/speed"
-nsd-detect "$tmp/last.h5" | solve --eps 1e-12 | nsd-info -c | jq -s 'map(select(.body[0] == -6).r[0])' >"$tmp/pushes"
+nsd-detect "$tmp/last.h5" | solve --tolerance 1e-12 | nsd-move | nsd-info -w | jq -c 'select(.load).load.speed' >"$tmp/speed"
+nsd-detect "$tmp/last.h5" | solve --tolerance 1e-12 | nsd-info -c | jq -s 'map(select(.body[0] == -6).r[0])' >"$tmp/pushes"
 on_piston=$(jq length "$tmp/pushes")
 jq add "$tmp/pushes" >"$tmp/push"
 for form in local global; do
     nsd-detect --fclib=$form "$tmp/last.h5" >"$tmp/both.h5"
     rm -f "$tmp/alone.h5"
     h5copy -i "$tmp/both.h5" -o "$tmp/alone.h5" -s /fclib_$form -d /fclib_$form
-    solve --eps 1e-12 "$tmp/alone.h5" >"$tmp/solved.h5"
+    solve --tolerance 1e-12 "$tmp/alone.h5" >"$tmp/solved.h5"
     pushed=$(nsd-info -c "$tmp/solved.h5" | jq -s "map(.r[0])[:$on_piston] | add")
     like "--fclib=$form: the same push at the piston" \
         "$(jq -n "$(cat "$tmp/push") / $pushed - 1 | fabs < 1e-6")" true

@@ -54,10 +54,10 @@ nsd-gen 300 | nsd-step --small-steps 0 -n 900 --every 900 2>/dev/null | nsd-cat 
 three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
 ok "with a stiffness of contacts" same "$tmp/heap.h5" 3 -n 5 --stiffness auto --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
-ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --solver anderson --eps 1e-7
+ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --solver anderson --tolerance 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
 jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step --small-steps 0 -n 216 --every 216 --overlap-rule keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
-alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap-rule keep --eps 1e-10
+alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap-rule keep --tolerance 1e-10
 
 while read -r before scene ranks steps alone name; do
     [ -z "$thin" ] || [ "$alone" != 0 ] || steps=1
@@ -126,8 +126,8 @@ blocks() # FILE K EPS ARGUMENT ...: to the criterion, and moving as the order of
     shift 3
     rm -f "$tmp"/one.h5 "$tmp"/block.h5
     set -- --criterion natural "$@"
-    nsd-step --small-steps 0 "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
-        ranks "$k" "$@" --eps "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
+    nsd-step --small-steps 0 "$@" --tolerance "$eps" -o "$tmp/one.h5" "$file" &&
+        ranks "$k" "$@" --tolerance "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
     jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '($e | type) == "number" and $e <= $eps' && /usr/bin/python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'
 import io, sys, h5py
 import numpy as np

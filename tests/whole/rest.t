@@ -39,15 +39,15 @@ ok "keep: its top sinks further" holds "$(drift keep) > 2 * $(drift project)"
 
 nsd-gen 20 >"$tmp/twenty.h5"
 bits() { nsd-info -p --last "$1" | jq -S -c 'select(.x) | [.step, .id, .x, .v, .w, .q]' | sha256sum | cut -c 1-32; }
-is "--paper: 20 balls after 400 steps have the bits that they had before there was --overlap-rule" \
-    "$(step --paper -m ebp -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/paper.h5" && bits "$tmp/paper.h5")" \
+is "--protocol paper: 20 balls after 400 steps have the bits that they had before there was --overlap-rule" \
+    "$(step --protocol paper -m ebp -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/paper.h5" && bits "$tmp/paper.h5")" \
     "$(sed -n 's/^paper //p' tests/support/golden/rest)"
 is "so with --overlap-rule keep and the natural map" \
     "$(step --criterion natural --overlap-rule keep -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/keep.h5" && bits "$tmp/keep.h5")" \
     "$(sed -n 's/^keep //p' tests/support/golden/rest)"
 ok "project gives others" [ "$(step -n 400 --every 400 "$tmp/twenty.h5" >"$tmp/p.h5" && bits "$tmp/p.h5")" != "$(bits "$tmp/keep.h5")" ]
-is "--paper keeps, whatever the document says" \
-    "$(step --paper -m ebp -n 1 "$tmp/p.h5" | nsd-info - | jq -r '.overlap_rule // empty')" keep
+is "--protocol paper keeps, whatever the document says" \
+    "$(step --protocol paper -m ebp -n 1 "$tmp/p.h5" | nsd-info - | jq -r '.overlap_rule // empty')" keep
 is "the document says what is done" "$(nsd-info "$tmp/p.h5" | jq -r '.overlap_rule // empty')" project
 
 # ---- one step: by its parts and as a whole; threads ----
@@ -67,11 +67,11 @@ for mode in "${modes[@]}"; do
 done
 chain_paper()
 {
-    nsd-cat --last "$tmp/falling.h5" | nsd-detect | nsd-solve --paper -m ebp 2>/dev/null | nsd-move >"$tmp/3.h5"
-    step --paper -m ebp -n 1 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
+    nsd-cat --last "$tmp/falling.h5" | nsd-detect | nsd-solve --protocol paper -m ebp 2>/dev/null | nsd-move >"$tmp/3.h5"
+    step --protocol paper -m ebp -n 1 "$tmp/falling.h5" | nsd-cat --last >"$tmp/whole.h5"
     same_particles "$tmp/3.h5" "$tmp/whole.h5"
 }
-ok "so with --paper, which nsd-solve hands on to nsd-move" chain_paper
+ok "so with --protocol paper, which nsd-solve hands on to nsd-move" chain_paper
 nsd-gen 500 | step -n 300 --every 300 | nsd-cat --last >"$tmp/pile.h5"
 threads() { cmp <(step -j 1 "$@" "$tmp/pile.h5") <(step -j 2 "$@" "$tmp/pile.h5"); }
 judged() # MODE: what nsd-err finds of frames that have been moved is what their solves reported
@@ -104,7 +104,7 @@ done
 superball() # MODE: how much less than 3/7 v it leaves with
 {
     echo '{ "dt": 0.01, "gravity": [0, 0, 0], "mu": 10, "e_n": 1, "e_t": 1, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }],
-        "bodies": [{ "x": [0, 0, 1], "radius": 1, "v": [1, 0, -1] }] }' | nsd-gen - | step --overlap-rule "$1" --eps 1e-13 |
+        "bodies": [{ "x": [0, 0, 1], "radius": 1, "v": [1, 0, -1] }] }' | nsd-gen - | step --overlap-rule "$1" --tolerance 1e-13 |
         nsd-info -p - | jq 'select(.v) | 1 - .v[0] * 7 / 3'
 }
 ok "keep: a superball leaves with 1 % less than 3/7 v, its arm being short" holds "$(superball keep) | . > 0.009 and . < 0.010"
@@ -214,6 +214,6 @@ done
 refuses 64 "a way that there is not" nsd-step --overlap-rule magic "$tmp/twenty.h5"
 nsd-detect --overlap-rule gap "$tmp/falling.h5" >"$tmp/gaps.h5"
 refuses 64 "contacts that were detected for gaps solved without" nsd-solve --overlap-rule project "$tmp/gaps.h5"
-refuses 64 "or with --paper" nsd-solve --paper -m ebp "$tmp/gaps.h5"
+refuses 64 "or with --protocol paper" nsd-solve --protocol paper -m ebp "$tmp/gaps.h5"
 
 done_testing
