@@ -159,7 +159,7 @@ struct scene_cell {
 
 struct scene {
     int dim;
-    double dt, theta; /* dt 0: "auto" */
+    double dt, theta; /* dt 0: "auto"; NaN: none is given */
     vec3 g;
     uint64_t seed;
     bool allow_overlap;

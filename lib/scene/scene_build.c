@@ -248,18 +248,22 @@ static int name_wall(const struct scene *s, struct failure *failure)
     return failure->status;
 }
 
-/* The dt of a scene that leaves it to us, which adapts from then on */
+/* The dt of a scene that leaves it to us; "auto" adapts from then on */
 static int scene_build_set_dt(struct packing *p, const struct scene *s, struct failure *failure)
 {
     struct time_step t;
     if (s->dt > 0) return 0;
     time_step_of(&t, s, p);
-    p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
+    if (isnan(s->dt))
+        p->dt = t.interval;
+    else
+        p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : failure_set(failure, EX_DATAERR,
-                             "dt: auto: nothing in the scene moves, so no time step can be "
-                             "chosen: give a number of seconds");
+                             "dt: %snothing in the scene moves, so no time step can be "
+                             "chosen: give a number of seconds",
+                             isnan(s->dt) ? "is missing, and " : "auto: ");
 }
 
 static int scene_build_by_number(const void *a, const void *b)

@@ -77,8 +77,9 @@ static const struct key scene_key[] = {
       "3: balls and solids in space. 2: discs and polygons in the plane z = 0, which rotate "
       "about z.",
       .always = true, .read = read_dim },
-    { "dt", &key_dt, AT(dt), "s", REQUIRED, "5e-4",
-      "Time step. \"auto\": the one that nsd-gen --check suggests, adapted in the run.",
+    { "dt", &key_dt, AT(dt), "s", "chosen", "5e-4",
+      "Time step, which nsd-step makes of small ones. The default follows from the accelerations. "
+      "\"auto\": the one that nsd-gen --check suggests for one solve per step, adapted in the run.",
       .read = read_dt },
     { "theta", &key_share, AT(theta), "-", "0.5", "0.5",
       "Parameter of the theta-method, see nsd-methods(7)." },
@@ -125,7 +126,7 @@ int scene_parse(struct scene *s, const char *text, size_t length, struct scene_f
                 struct failure *failure)
 {
     struct json_doc t;
-    *s = (struct scene){ .dim = 3, .files = files };
+    *s = (struct scene){ .dim = 3, .dt = NAN, .files = files };
     if (json_doc_parse(&t, text, length, failure)) return failure->status;
     int bad = keys_read(json_doc_root(&t), &scene_keys, s, s);
     s->files = NULL, s->title = NULL;

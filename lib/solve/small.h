@@ -5,7 +5,7 @@
  *
  *     bodies    v <- v + h g + 0.98 (v - v^- - h g): free motion, and what persists of all r   200 per body
  *     walls     each body against the walls that are near it                                   600 per contact
- *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             500 per pair in reach,
+ *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             550 per pair in reach,
  *                                                                                              140 per other pair
  *     again     pairs of bodies that a sweep has changed by more than is allowed
  *     judge     what is missing to the law, where it is asked for                              400 per pair in reach
@@ -14,7 +14,9 @@
  *
  * Reactions are vectors in space, f on b. A step begins with a part of the reactions of the one before, SMALL_WARM. What these
  * have made of a body's velocity is v - v^- - h g, with v^- and v before and after that step of the same length, so that
- * no pass over the pairs has to apply them.
+ * no pass over the pairs has to apply them. What turns bodies is the couple d x f, which is kept with f: the next step takes
+ * that back, and not what f would do along the normal of that step, so that angular momentum is kept and frictionless balls
+ * do not turn. Of the impulse of an impact nothing persists.
  *
  * The law is that of rigid contacts, with a compliance C that is a small part of W_cc:
  *
@@ -44,9 +46,12 @@ struct small_place {
 struct small_bundle {
     int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies [solve/bundle.h] */
     double f[3][BUNDLE];          /* N s: of this step; between steps, what persists of it */
-    double kept[BUNDLE];          /* N s: of f along n, with which the step began */
-    double q[3][BUNDLE];          /* m/s: q - C f_0 */
-    double sum[3][BUNDLE];        /* N s: of f, in the steps before this one */
+    double
+        couple[3]
+              [BUNDLE]; /* N m s: d x f, d from a to b where f was made: central forces have none */
+    double kept[BUNDLE]; /* N s: of f along n, with which the step began; SMALL_HIT: of an impact */
+    double q[3][BUNDLE]; /* m/s: q - C f_0 */
+    double sum[3][BUNDLE]; /* N s: of f, in the steps before this one */
     double mu[BUNDLE];
     double e[2][BUNDLE]; /* e_n, e_t */
 };
@@ -118,7 +123,7 @@ struct small_law {
     vd wn, wt, cn, ct, mu; /* 1/kg */
     vd f[3];               /* N s */
     vd q[3];               /* m/s */
-    vd rn;                 /* N s: f along n */
+    vd rn, rt[3];          /* N s: f along n, and across */
     vd calm;               /* m/s: the pair at rest does not approach faster */
 };
 
@@ -126,6 +131,12 @@ ALWAYS_INLINE void small_split(const vd n[3], const vd x[3], vd *along, vd acros
 {
     *along = dot3(n, x);
     for (int i = 0; i < 3; i++) across[i] = x[i] - *along * n[i];
+}
+
+/* x cross y */
+ALWAYS_INLINE void small_cross(const vd x[3], const vd y[3], vd to[3])
+{
+    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) to[i] = x[j] * y[k] - x[k] * y[j];
 }
 
 /* x on the disc of radius most */
@@ -142,7 +153,7 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
     small_split(l->n, l->f, &rn, t);
     vd most = o->push + 2 * l->cn * larger(rn, zero);
     vd qn = pick(lt(l->gap, zero), larger(l->gap * o->relax, -most), l->gap * o->per_h);
-    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) turn[i] = l->n[j] * t[k] - l->n[k] * t[j];
+    small_cross(l->n, t, turn);
     for (int i = 0; i < 3; i++) l->q[i] = qn * l->n[i] - l->ct * (t[i] + l->spin * turn[i]);
 }
 
@@ -151,6 +162,9 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01
+
+/* In place of what was kept: a pair that meets, of whose impulse nothing persists */
+#define SMALL_HIT (-INFINITY)
 
 /* q of pairs that meet, and of those that wait; before: u^-. Returns which ones meet. */
 ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
@@ -175,7 +189,7 @@ ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, co
 /* f in closed form, where f makes u; df: its change */
 ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
 {
-    vd un, ut[3], qn, qt[3], rn, rt[3];
+    vd un, ut[3], qn, qt[3], rn, *rt = l->rt;
     small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
     small_split(l->n, l->f, &rn, rt);
     l->rn = larger(rn - (un + qn + l->cn * rn) / (l->wn + l->cn), splat(0));
@@ -208,6 +222,7 @@ ALWAYS_INLINE void small_roll(const vd n[3], vd rn, const vd w[3], vd wr, const 
    rest; where nothing falls, an eighth of it, rn, at least. w (1/kg): of the pair along n */
 ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, double w, double rn)
 {
+    if (kept < 0) return 0;
     const double most = 2 * (kept + o->calm / w);
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }

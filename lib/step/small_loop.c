@@ -65,7 +65,8 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
 static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small_law l;
-    double df[3], dp = 0;
+    double df[3];
+    vec3 dp = v3(0, 0, 0);
     if (again ? !t->near : !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
     if (!again) dp = small_touch_begin(r, t, &l);
@@ -131,8 +132,9 @@ static void push_reactions(struct small_run *r, int me, int threads)
         if (small_look_at_touch(r, t, l->margin))
             small_touch_push(r, t);
         else
-            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
-                memset(t->sum, 0, sizeof t->sum), memset(t->turned, 0, sizeof t->turned);
+            memset(t->f, 0, sizeof t->f), memset(t->couple, 0, sizeof t->couple),
+                memset(t->m, 0, sizeof t->m), memset(t->sum, 0, sizeof t->sum),
+                memset(t->turned, 0, sizeof t->turned);
     }
 }
 
@@ -146,22 +148,26 @@ static void settle_slot(struct small *s, int64_t slot)
     if (a >= s->bodies) return;
     const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const vec3 n = small_normal(d);
-    const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
+    const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
     const double most = small_persists(&s->rate, held, w, rn);
     if (rn <= most) return;
     const double left = most / rn, back = 1 - left;
-    vec3 m = v3(0, 0, 0);
-    for (int j = 0; j < 3; j++) c->sum[j][k] += back * c->f[j][k], c->f[j][k] *= left;
+    vec3 m = v3(0, 0, 0), couple = v3(c->couple[0][k], c->couple[1][k], c->couple[2][k]);
+    couple = v3_scale(length > 0 ? back / length : 0, couple);
+    for (int j = 0; j < 3; j++) {
+        c->sum[j][k] += back * c->f[j][k];
+        c->f[j][k] *= left, c->couple[j][k] *= left;
+    }
     if (s->turn) {
         struct small_turn *t = &s->turn[i];
         m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
         for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
     }
-    small_body_push(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
-    small_body_push(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),
-                    v3_scale(-back, m));
+    small_body_push(&s->before[b], v3_scale(back, f),
+                    v3_axpy(v3_scale(back, m), -(s->place[b].r + half), couple));
+    small_body_push(&s->before[a], v3_scale(-back, f),
+                    v3_axpy(v3_scale(-back, m), -(s->place[a].r + half), couple));
 }
 
 static void settle_pairs(struct small *s)

@@ -482,7 +482,8 @@ static void test_bad_scenes(void)
         { "{\"dt\": 1,\n \"dt\": 2}", "2:5: duplicate object key near '\"dt\"'" },
         { "{\"dt\": 1,\n  oops}", "2:6: string or '}' expected near 'oops'" },
         { "[1]", "1:1: needs an object {...}" },
-        { "{}", "1:1: dt: is missing" },
+        { "{}", "dt: is missing, and nothing in the scene moves, so no time step can be chosen: "
+                "give a number of seconds" },
         { "{\"dt\": 0}", "1:2: dt: must be positive" },
         { "{\n \"dt\": \"1\"}", "2:2: dt: needs a number of seconds, or \"auto\"" },
         { "{\"dt\": 1, \"mu\": -0.1}", "1:11: mu: must not be negative" },
