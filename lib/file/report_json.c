@@ -117,9 +117,7 @@ json_t *json_account(const struct account *a, const struct names *names)
 
 void json_line(json_t *j)
 {
-    char *text = ferror(stdout) ? NULL : json_dumps(j, JSON_COMPACT);
-    if (text && fputs(text, stdout) != EOF) putchar('\n');
+    if (!ferror(stdout) && !json_write(stdout, j)) putchar('\n');
     if (ferror(stdout)) __fpurge(stdout); // nothing comes after a piece that is missing
-    free(text);
     json_decref(j);
 }

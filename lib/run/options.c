@@ -203,8 +203,7 @@ void options_log(const struct report *rep, const struct account *account, const 
         json_object_set_new(j, "device", there_too);
     }
     if (account) json_object_set_new(j, "account", json_account(account, names));
-    int failed =
-        json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
+    int failed = json_write(log_file, j) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
     if (failed) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }

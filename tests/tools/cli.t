@@ -83,6 +83,9 @@ refuses 64 "an argument to an option without one" nsd-step --in-place=3
 like "names the option" "$(head -1 "$tmp/err")" ': --in-place: takes no argument$'
 refuses 64 "an unknown measure" nsd-stat -m energy,sterss "$tmp/heap.h5"
 like "names the nearest" "$(head -1 "$tmp/err")" "no 'sterss'; did you mean stress\\?"
+echo '{"dt": 0.1, "gravity": [0, 0, -9.81], "bodies": [{"x": [0.30000000000000004, 1e-5, -3], "radius": 1e22}]}' | nsd-gen - >"$tmp/digits.h5"
+like "JSON has the fewest digits that are read as the same number" "$(nsd-info -p "$tmp/digits.h5") $(nsd-info "$tmp/digits.h5")" \
+    '"radius":1e\+22,.*"x":\[0.30000000000000004,1e-05,-3.0\].*"dt":0.1,.*"gravity":\[0.0,0.0,-9.81\]'
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {
