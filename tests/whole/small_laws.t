@@ -246,7 +246,7 @@ travel=$(load .travel)
 ok "a lid at a constant pressure comes to rest on balls" near "$(load .speed)" 0 3e-3
 nsd-step --small-steps 0.01 -n 100 --every 100 --sums -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"
 ok "which carry p A" near "$(sums '.normal[5]') / 3.969" 1 1e-3
-nsd-step --overlap gap -n 400 --every 400 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+nsd-step --overlap-rule gap -n 400 --every 400 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "where steps that are made at once leave it" near "$travel / $(load .travel)" 1 0.1
 lid "pressure: 1000, mass: 1"
 nsd-step --small-steps 0.01 -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"

@@ -144,8 +144,8 @@ done <<'END'
 --solver auto
 -m sbp
 -m auto
---paper -m sbp
---eps 1
+--protocol paper -m sbp
+--tolerance 1
 --criterion velocity
 --max-sweeps 100
 --max-seconds 100
@@ -156,7 +156,7 @@ done <<'END'
 --order colour
 --every-sweep
 --gap 0
---overlap project
+--overlap-rule project
 --dt 5e-5
 --dt auto:0.01
 --substeps 1000
@@ -167,14 +167,14 @@ while read -ra option; do
 done <<'END'
 
 --small-steps 0.02
---small-steps 0.02 --solver nlgs --eps 1e-3 --overlap keep
+--small-steps 0.02 --solver nlgs --tolerance 1e-3 --overlap-rule keep
 --theta 0.7
 --cold
 --warm
 -j 2
 --contacts --sums
 END
-nsd-step --paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
+nsd-step --protocol paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
 ok "one solve per step: a document with another rule of overlaps" makes once
 nsd-gen 20 | nsd-step --solver auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
 ok "small steps: one with the default rule" makes small
