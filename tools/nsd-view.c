@@ -89,7 +89,7 @@ static const struct cli_option own[] = {
       .help = "draw this direction upwards [against gravity; else z, in 2D y]" },
     { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
       .help = "use perspective with this angle of view; 3D [0, none]" },
-    { CLI_TEXT, 0, "cut", &cut, "NX,NY,NZ,D",
+    { CLI_TEXT, 0, "clip", &cut, "NX,NY,NZ,D",
       .help = "cut away bodies beyond NX x + NY y + NZ z = D, m [nothing]" },
     { CLI_INT, 0, "follow", &follow, "ID", .min = 0, .max = INT32_MAX,
       .help = "keep the body with this id in its place in a series [none]" },
@@ -162,13 +162,13 @@ static void set_box(struct view *v)
     v->region = (struct extent){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
 }
 
-/* --cut: the plane's normal of any length, and the distance that goes with it. */
+/* --clip: the plane's normal of any length, and the distance that goes with it. */
 static void set_cut(struct view *v)
 {
     double x[4];
     vec3 n;
     if (!numbers(cut, 4, x) || !((n = v3(x[0], x[1], x[2])), v3_norm(n) > 1e-150))
-        die_usage("--cut: '%s' is not NX,NY,NZ,D with a normal that is not zero", cut);
+        die_usage("--clip: '%s' is not NX,NY,NZ,D with a normal that is not zero", cut);
     double length = v3_norm(n);
     v->cuts = true, v->cut = v3_scale(1 / length, n), v->cut_at = x[3] / length;
 }

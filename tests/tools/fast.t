@@ -9,7 +9,7 @@ stops() # WALLS BODIES PLACE: the ball, from x = 0 with 20 000 m/s and steps of 
 {
     jq -n "{ dt: 1e-3, gravity: [0, 0, 0], shapes: { thin: { box: [0.01, 2, 2] } }, walls: ($1),
         bodies: ([{ x: [0, 0.1, 0.2], radius: 0.01, v: [20000, 0, 0] }] + ($2)) }" >"$tmp/fast.json"
-    nsd-gen "$tmp/fast.json" | nsd-step --global auto -n 5 2>/dev/null | nsd-info --last -p | jq -se --argjson x "$3" '.[0].x[0] < $x and .[0].x[0] > $x - 0.03'
+    nsd-gen "$tmp/fast.json" | nsd-step --solver auto -n 5 2>/dev/null | nsd-info --last -p | jq -se --argjson x "$3" '.[0].x[0] < $x and .[0].x[0] > $x - 0.03'
 }
 for x in 15 15.003 17.2501; do
     printf 'v %s -1 -1\nv %s 1 -1\nv %s 1 1\nv %s -1 1\nf 1 2 3\nf 1 3 4\n' $x $x $x $x >"$tmp/sheet.obj"

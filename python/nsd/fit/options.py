@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import os
 import re
 import sys
@@ -53,6 +54,10 @@ class Options(argparse.ArgumentParser):
         return HELP
 
     def error(self, message: str) -> NoReturn:
+        unknown = re.match(r"unrecognized arguments: (--[^ =]+)", message)
+        if unknown:
+            near = difflib.get_close_matches(unknown[1], self._option_string_actions, 1)
+            message = f"{unknown[1]}: no such option" + (f"; did you mean {near[0]}?" if near else "")
         print(f"nsd-fit: {message}\nusage: nsd-fit [OPTION ...] PROBLEM.json, see nsd-fit --help", file=sys.stderr)
         sys.exit(64)
 
