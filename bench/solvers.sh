@@ -41,7 +41,7 @@ solve()
     local way=(--solver "$1")
     case $1 in sbp | sal | ebp | eal) way=(-m "$1") ;; esac
     rm -f "$work/log"
-    nsd-solve "${way[@]}" --criterion natural --eps "$2" --max-seconds "$limit" --max-sweeps 1000000000 \
+    nsd-solve "${way[@]}" --criterion natural --tolerance "$2" --max-seconds "$limit" --max-sweeps 1000000000 \
         --log "$work/log" "${@:3}" > "$work/r.h5" 2> /dev/null
 }
 

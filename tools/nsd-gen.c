@@ -359,7 +359,7 @@ static void tell(const struct scene *s, const struct packing *p)
              "default of nsd-step, "
              "do not need the suggestion; \"dt\": \"auto\" takes it",
              s->dt, s->dt / t.best);
-    if (json_dumpf(j, stdout, JSON_COMPACT) || putchar('\n') == EOF || fflush(stdout))
+    if (json_write(stdout, j) || putchar('\n') == EOF || fflush(stdout))
         die(EX_IOERR, "standard output: %s", strerror(errno));
     json_decref(j);
 }

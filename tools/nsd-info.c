@@ -132,7 +132,8 @@ static void show_document(const struct frame *f, int64_t frames)
         if (p->tolerance > 0)
             json_object_set_new(j, "time_step_tolerance", json_number(p->tolerance));
         json_object_set_new(j, "theta", json_number(p->theta));
-        if (p->overlap) json_object_set_new(j, "overlap", json_string(overlap_name[p->overlap]));
+        if (p->overlap)
+            json_object_set_new(j, "overlap_rule", json_string(overlap_name[p->overlap]));
         json_object_set_new(j, "gravity", json_vec(p->g));
         json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
         json_object_set_new(j, "material", material(p));

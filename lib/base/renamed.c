@@ -8,6 +8,14 @@ static const struct renamed table[] = {
     { "nsd-solve nsd-step nsd_set", "method", "local", false },
     { "nsd-cat nsd-export nsd-info nsd-stat nsd-web", "steps", "frames", false },
     { "nsd-view", "cut", "clip", false },
+    { "nsd-detect nsd-solve nsd-step", "overlap", "overlap-rule", true },
+    { "nsd_set", "overlap", "overlap-rule", false },
+    { "nsd-solve nsd-step", "eps", "tolerance", true },
+    { "nsd_set document", "eps", "tolerance", false },
+    { "nsd-solve nsd-step nsd_set", "newton-eps", "newton-tolerance", false },
+    { "document", "newton_eps", "newton_tolerance", false },
+    { "nsd-solve nsd-step nsd_set", "paper", "protocol=paper", false },
+    { "scene", "overlap", "allow_overlap", true },
 };
 enum { RENAMED = sizeof table / sizeof table[0] };
 

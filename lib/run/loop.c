@@ -251,7 +251,7 @@ static void put_report(FILE *out, const struct frame *f)
     fprintf(out, ",\"converged\":%s", !f ? "null" : f->report.converged ? "true" : "false");
     fputs(",\"account\":", out);
     json_t *j = f ? json_account(&f->account, &f->packing.names) : json_null();
-    json_dumpf(j, out, JSON_COMPACT | JSON_ENCODE_ANY);
+    json_write(out, j);
     json_decref(j);
 }
 

@@ -208,7 +208,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
                          const bool *settled, struct failure *failure)
 {
     struct contacts found = { 0 };
-    const char *cure = "; \"overlap\": true allows it)";
+    const char *cure = "; \"allow_overlap\": true allows it)";
     char a[PLACE], b[PLACE];
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, failure);
     for (int64_t i = 0; !e && i < found.n; i++) {
@@ -298,7 +298,7 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
     if (packing_check(p, failure)) return name_wall(s, failure);
     if (check_names(p, s, failure)) return failure->status;
     if (packing_check_clock(p, failure)) return failure->status;
-    if (s->overlap) return 0;
+    if (s->allow_overlap) return 0;
     bool *settled = from_documents(p, s, list);
     if (!settled) return failure_set(failure, EX_SOFTWARE, "no memory to look for overlaps");
     check_overlap(p, s, list, settled, failure);
@@ -442,7 +442,7 @@ static int make_walls(struct packing *walls, bool *any, const struct scene *s,
                       struct failure *failure)
 {
     *any = false;
-    for (int64_t g = 0; g < s->groups && !s->overlap; g++)
+    for (int64_t g = 0; g < s->groups && !s->allow_overlap; g++)
         *any = *any || s->bodies[g].from == SCENE_RANDOM;
     if (!*any || packing_init(walls, s->dim, 0, failure)) return failure->status;
     if (set_parameters(walls, s, failure) || scene_carry_walls(walls, s, failure))

@@ -96,13 +96,13 @@ static const struct key scene_key[] = {
       "Kinds of material by name. The kinds ball and wall always exist.",
       .object = &scene_material_keys, .always = true, .read = scene_read_materials },
     { LIST(pairs, pair, "Exceptions for pairs of kinds.") },
-    { "overlap", &key_bool, AT(overlap), "-", "false", "true",
+    { "allow_overlap", &key_bool, AT(allow_overlap), "-", "false", "true",
       "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "
       "the smaller radius is an error; of a tenth for bodies that come from a document or a "
       "table." },
     { "shapes", &key_forms, 0, "-", "none", "see below",
       "Shapes of grains by name, see Shapes of grains.", .read = scene_read_shapes },
-    { "cell", &key_cell, AT(cell), "-", "none", "{\"lengths\": [1, 1]}",
+    { "cell", &key_cell, AT(cell), "-", "none", "see below",
       "Periodic cell, see Periodic cells. Default: the cell of the first document among the "
       "bodies, in its last state; null: none.",
       .always = true, .read = scene_read_cell },

@@ -17,7 +17,7 @@ for alpha in ${ALPHAS:-0 1e-4 1e-3 1e-2}; do
     for way in '--solver auto' '--solver nlgs -m exact --order random'; do
         rm -f "$work/log"
         # shellcheck disable=SC2086 # a way is several words
-        nsd-solve --cold $way --criterion natural --eps 1e-10 --max-sweeps 100000 --max-seconds "${SOLVE_SECONDS:-15}" --log "$work/log" \
+        nsd-solve --cold $way --criterion natural --tolerance 1e-10 --max-sweeps 100000 --max-seconds "${SOLVE_SECONDS:-15}" --log "$work/log" \
             "$work/found.h5" 2>/dev/null | nsd-info -c >"$work/${way##* }"
         row+=$'\t'$(map)
     done

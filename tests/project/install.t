@@ -27,7 +27,7 @@ build_step() # [--static]
     cc -Wall -Wextra -Werror -o "$tmp/step" docs/step.c $(config --cflags --libs "$@" | if [ $# = 0 ]; then cat; else sed "s|-lnsd|$root/lib/libnsd.a|"; fi)
 }
 scene=scenes/paper/example3.json
-want=$(nsd-gen $scene | nsd-step --overlap keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
+want=$(nsd-gen $scene | nsd-step --overlap-rule keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --tolerance 1e-6 \
         --max-sweeps 10000 2>/dev/null >"$tmp/step.h5"
     nsd-info --last -p "$tmp/step.h5" | head -n 1 | jq -r ".x[2]" >"$tmp/z"
     nsd-info --last "$tmp/step.h5" | jq -r '[.step, .time, .contacts] | @tsv' | tr '\t' ' ' |
@@ -48,8 +48,8 @@ plus()
 ok "and in C++" plus
 python() { PYTHONPATH=$root/lib/python3/dist-packages /usr/bin/python3 -c "$1"; }
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
-    is "and in Python" "$(python "import nsd; r = nsd.Run.from_scene('$scene'); r.set(local='exact', criterion='natural', eps=1e-6, \
-max_sweeps=10000, order='natural', warm=True, overlap='keep'); r.step(200); print('%.17g' % r.position[0, 2])")" "${want##* }"
+    is "and in Python" "$(python "import nsd; r = nsd.Run.from_scene('$scene'); r.set(local='exact', criterion='natural', tolerance=1e-6, \
+max_sweeps=10000, order='natural', warm=True, overlap_rule='keep'); r.step(200); print('%.17g' % r.position[0, 2])")" "${want##* }"
 else
     skip "in Python" "no numpy"
 fi

@@ -54,7 +54,7 @@ jq -n '{ dt: 1e-3, gravity: [0.3, 0.2, -9.81], walls: [{ point: [0, 0, 0], norma
 nsd-detect --gap 1e-6 --fclib=local "$tmp/halves.h5" >"$tmp/lattice.h5"
 foreign "$tmp/lattice.h5" "$tmp/lattice.hdf5"
 h5copy -i "$tmp/lattice.hdf5" -o "$tmp/given.h5" -s /fclib_local -d /fclib_local
-nsd-gen 200 | nsd-step -n 900 --every 900 --eps 1e-6 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+nsd-gen 200 | nsd-step -n 900 --every 900 --tolerance 1e-6 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
 solve() # DOCUMENT ARGUMENT ...

@@ -14,28 +14,28 @@ pair()
 }
 row='(.overlap | [(.value * 1e9 | round) / 1e9, .step, .bodies, .fails]), .wedged.value, .unconverged.value'
 pair 0.05
-status 0 "5 % of a radius are no failure" nsd-step -e --overlap keep -n 3 "$tmp/pair.h5"
+status 0 "5 % of a radius are no failure" nsd-step -e --overlap-rule keep -n 3 "$tmp/pair.h5"
 is "a line says them at once" "$(head -n 1 "$tmp/err")" \
     "nsd-step: overlap 0.05 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01"
 is "and the last line" "$(tail -n 1 "$tmp/err")" \
     "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 wedged, 0 went through a wall or another body, 0 steps not converged"
 is "the document has them, in the smaller radius" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.05,1,[1,2],false] 0 0'
 pair 0.12
-status 0 "12 % are one, but not without -e" nsd-step --overlap keep "$tmp/pair.h5"
+status 0 "12 % are one, but not without -e" nsd-step --overlap-rule keep "$tmp/pair.h5"
 is "which is said at once" "$(head -n 1 "$tmp/err")" \
     "nsd-step: overlap 0.12 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01: the step fails, and the run continues"
-status 1 "with -e they are" nsd-step -e --keep-going --overlap keep --log "$tmp/log" -n 3 "$tmp/pair.h5"
+status 1 "with -e they are" nsd-step -e --keep-going --overlap-rule keep --log "$tmp/log" -n 3 "$tmp/pair.h5"
 is "which the document says" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.12,1,[1,2],true] 0 0'
 is "and the last line of the log, and no other" "$(jq -s -c 'map(.account.overlap.bodies)' "$tmp/log")" '[null,null,[1,2]]'
 cp "$tmp/out" "$tmp/on.h5"
 ok "the same" [ "$(tail -n 1 "$tmp/log" | jq -c .account)" = "$(account "$tmp/out" .)" ]
-status 1 "without --keep-going the run ends with that step" nsd-step -e --overlap keep --log "$tmp/log" -n 3 --every 3 "$tmp/pair.h5"
+status 1 "without --keep-going the run ends with that step" nsd-step -e --overlap-rule keep --log "$tmp/log" -n 3 --every 3 "$tmp/pair.h5"
 is "which is kept, and no other" "$(nsd-info "$tmp/out" | jq -s -c '[.[1:][].step], .[-1].account.overlap.fails, .[-1].balance.kinetic' | paste -sd ' ')" '[1] true 0'
 is "the log has its account" "$(jq -s -c 'map(.account.overlap.bodies)' "$tmp/log")" '[[1,2]]'
 like "it is said at once" "$(head -n 1 "$tmp/err")" 'bodies 1 and 2\): .*: the step fails, and the run ends with it$'
 is "and in the last line" "$(tail -n 1 "$tmp/err")" "nsd-step: step 1, which is kept, fails and ends the run: --keep-going makes all steps"
 refuses 64 "--keep-going alone" nsd-step --keep-going "$tmp/pair.h5"
-status 0 "where dt adapts, --dt auto is no advice" nsd-step --dt auto:0.01 --overlap keep "$tmp/pair.h5"
+status 0 "where dt adapts, --dt auto is no advice" nsd-step --dt auto:0.01 --overlap-rule keep "$tmp/pair.h5"
 like "but a smaller TOL is" "$(head -n 1 "$tmp/err")" 'bodies 1 and 2\): a smaller TOL of --dt auto leaves less'
 pair 0
 status 0 "bodies that touch" nsd-step --solver auto -e "$tmp/pair.h5"
@@ -46,7 +46,7 @@ is "have no account but its last line" "$(grep -c . "$tmp/err"), $(tail -n 1 "$t
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], overlap: true, bodies: [{ x: [5, 0, 0.85], radius: 1 }, { x: [0, 0, 0.89], radius: 1 }, { x: [9, 0, 0.5], radius: 0.55 }],
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { rectangle: { center: [0, 0, 1.78], normal: [0, 0, -1], along: [1, 0, 0], sides: [2, 2] } }] }' |
     nsd-gen - >"$tmp/wedge.h5"
-nsd-step --overlap keep "$tmp/wedge.h5" 2>"$tmp/err" >"$tmp/wedged.h5"
+nsd-step --overlap-rule keep "$tmp/wedge.h5" 2>"$tmp/err" >"$tmp/wedged.h5"
 is "a ball between walls is wedged, others are not" "$(account "$tmp/wedged.h5" '.wedged | [.value, .step, .bodies, .fails]')" '[1,1,[1],true]'
 is "the deepest is in the floor" "$(account "$tmp/wedged.h5" .overlap.bodies)" '["wall 0",0]'
 like "which has its number" "$(tail -n 1 "$tmp/err")" 'step 1, wall 0 and body 0\), approach [^,]*, 1 wedged \(step 1, body 1\)'
@@ -104,7 +104,7 @@ if have_ranks; then
     stop "two processes" ranks 2
     status 1 "in blocks, too" ranks 2 nsd-step -e -n 5 --every 5 --order block -o "$tmp/stop.h5" "$tmp/press.h5"
     is "in blocks the step is kept, without its report" "$(nsd-info -p --last "$tmp/stop.h5" | jq -c '.step')" 1
-    mpi -n 1 --order block --overlap keep -o "$tmp/blocks.h5" "$tmp/wedge.h5"
+    mpi -n 1 --order block --overlap-rule keep -o "$tmp/blocks.h5" "$tmp/wedge.h5"
     is "and in blocks" "$(account "$tmp/blocks.h5" .)" "$(account "$tmp/wedged.h5" .)"
 fi
 

@@ -129,7 +129,7 @@ claim()
     # steps
     *'nsd-step'*'--every 100'*'> column.h5') touching column.h5 && converged column.h5 && frames column.h5 "length == $2 / 100" ;;
     *'nsd-step'*'--every 10 > fast.h5') touching fast.h5 && converged fast.h5 && frames fast.h5 "length == $2 / 10" ;;
-    *'nsd-step'*'--paper'*'> half.h5') touching half.h5 && converged half.h5 && settings half.h5 '.options.solver == "nlgs"' ;;
+    *'nsd-step'*'--protocol paper'*'> half.h5') touching half.h5 && converged half.h5 && settings half.h5 '.options.solver == "nlgs"' ;;
     *'nsd-step'*'--log run.json'*) [ "$(wc -l <run.json)" = "$2" ] && frames out.h5 "length == $2" ;;
     *'nsd-step'*'--every '*' -o out.h5') touching out.h5 && converged out.h5 ;;
     *'nsd-step -n '*'-o more.h5 out.h5') frames more.h5 "length == $2 and .[0] > 1" && touching more.h5 ;;
@@ -153,8 +153,8 @@ claim()
         output 'length == 1 and .[0] > 0 and .[0] <= 1e-4' ;;
     *'| nsd-err | jq .self_stress') output 'length == 1 and .[0] > 0.001 and .[0] < 0.3' ;;
     'nsd-solve -m eal < contacts.h5 > solved.h5') converged solved.h5 ;;
-    *'nsd-detect --overlap keep > keep.h5') settings keep.h5 '.overlap == "keep"' && touching keep.h5 ;;
-    'nsd-solve --paper'*'> paper.h5')
+    *'nsd-detect --overlap-rule keep > keep.h5') settings keep.h5 '.overlap_rule == "keep"' && touching keep.h5 ;;
+    'nsd-solve --protocol paper'*'> paper.h5')
         settings paper.h5 '.options | .solver == "nlgs" and .order == "natural" and .alpha' && grep -q 'NOT CONVERGED' stderr ;;
     'for m in '*) output 'map(.[0]) == ["sbp", "sal", "ebp", "eal", "exact"] and all(.[1] <= 1e-4)' ;;
     *'-m sal --history'*'> curve.tsv') table 3 '' curve.tsv && falls curve.tsv ;;

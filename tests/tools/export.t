@@ -138,7 +138,7 @@ if has h5py; then ok "nsd.py reads a trajectory that grows" grows_too; else skip
 other "nsd.py reads a pipe" h5py stream "$tmp/out.h5"
 nsd-cat --last "$tmp/out.h5" | nsd-detect --fclib=local | tail -c +513 >"$tmp/both.hdf5"
 h5copy -i "$tmp/both.hdf5" -o "$tmp/problem.hdf5" -s /fclib_local -d /fclib_local
-nsd-solve --eps 1e-12 "$tmp/problem.hdf5" 2>/dev/null >"$tmp/problem.h5"
+nsd-solve --tolerance 1e-12 "$tmp/problem.hdf5" 2>/dev/null >"$tmp/problem.h5"
 other "nsd.py reads a problem of FCLIB's, and its solution" h5py fclib "$tmp/problem.h5"
 
 # until nsd 0.1 the report was elsewhere

@@ -89,7 +89,7 @@ cat >slide.json <<'EOF'
 { "scene": { "dim": 2, "dt": 1e-3, "mu": 0.3, "seed": 1, "walls": [{ "point": [0, 0], "normal": [0, 1] }],
              "bodies": [{ "x": [0, 0.01], "radius": 0.01, "v": [1, 0] }] },
   "parameters": { "mu": { "keys": "mu", "range": [0.05, 0.6] } },
-  "command": "nsd-gen - | nsd-step -n 50 -j 1 --overlap keep | nsd-cat --last | nsd-info --particles - | jq -s '{v: .[-1].v[0]}'",
+  "command": "nsd-gen - | nsd-step -n 50 -j 1 --overlap-rule keep | nsd-cat --last | nsd-info --particles - | jq -s '{v: .[-1].v[0]}'",
   "targets": { "v": { "value": 0.901855, "error": 1e-3 } } }
 EOF
 nsd-fit --quiet slide.json >slide.out 2>&1 || true # v = 1 - mu g t: 0.2

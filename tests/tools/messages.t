@@ -12,9 +12,9 @@ says() { like "$1" "$(cat err)" "$2"; }
 walls='"walls": [{"box": {"x": [0, 1], "y": [0, 1], "z": [0, null]}}, {"point": [0, 0, 0.3], "normal": [0, 0, 1]}]'
 ball='{"x": [0.5, 0.5, 0.2], "radius": 0.1}' above='{"x": [0.5, 0.5, 0.3], "radius": 0.1}'
 refuses 65 "a body in a wall" gen "{\"dt\": 1, $walls, \"bodies\": [$ball]}"
-says "has its place in the scene, and the wall's" 'body 0 is 0.2 m deep in wall 5 \(bodies\[0\], walls\[1\]; "overlap": true allows it\)'
+says "has its place in the scene, and the wall's" 'body 0 is 0.2 m deep in wall 5 \(bodies\[0\], walls\[1\]; "allow_overlap": true allows it\)'
 refuses 65 "bodies of two groups" gen "{\"dt\": 1, \"bodies\": [$ball, $above]}"
-says "have theirs" 'bodies 0 and 1 overlap by 0.1 m \(bodies\[0\], bodies\[1\]; "overlap": true allows it\)'
+says "have theirs" 'bodies 0 and 1 overlap by 0.1 m \(bodies\[0\], bodies\[1\]; "allow_overlap": true allows it\)'
 refuses 65 "a wall that the cell repeats across" gen '{"dt": 1, "cell": {"lengths": [1, 1, 1]}, "bodies": [],
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}'
 says "is named by its place" 'walls\[0\]: wall 0: crosses a periodic edge of the cell'

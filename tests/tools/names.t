@@ -118,7 +118,7 @@ if have_ranks; then
 else
     skip "two processes write the bytes of one" "no MPI"
 fi
-like "messages have them" "$(jq '.bodies = [{ x: [-1.95, 0, 3], radius: 0.1, v: [-50, 0, 0] }] | .overlap = true' "$tmp/scene.json" | nsd-gen - | nsd-step -n 3 2>&1 >/dev/null)" 'wall 1 \(side\)'
+like "messages have them" "$(jq '.bodies = [{ x: [-1.95, 0, 3], radius: 0.1, v: [-50, 0, 0] }] | .allow_overlap = true' "$tmp/scene.json" | nsd-gen - | nsd-step -n 3 2>&1 >/dev/null)" 'wall 1 \(side\)'
 jq -n '{ dim: 2, dt: 1e-3, walls: [{ polygon: { points: [[0, 0], [1, 0], [1, 1]], closed: false, parts: [{ name: "slab", faces: [0, 0] }, { name: "slab", faces: [1, 1] }] } }] }' |
     nsd-gen - >"$tmp/plane.h5"
 is "ranges of faces in the scene, which join" "$(nsd-info -w "$tmp/plane.h5" | jq -c .parts)" '{"slab":[[0,1]]}'

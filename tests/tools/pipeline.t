@@ -15,7 +15,7 @@ solve() { nsd-solve "$@" 2>/dev/null; }
 stock heap20 >"$tmp/heap.h5"
 stock heap4 >"$tmp/four.h5"
 nsd-gen -d 2 20 |
-    step -n 600 --every 600 --eps 1e-8 |
+    step -n 600 --every 600 --tolerance 1e-8 |
     nsd-cat --last >"$tmp/discs.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 like "the heap has settled: more contacts than balls" \
@@ -75,7 +75,7 @@ ok "two steps with another theta, too" two
 
 # ---- streams and trajectories ----
 
-gen() { step -n 30 --eps 1e-8 "$@" "$tmp/heap.h5"; }
+gen() { step -n 30 --tolerance 1e-8 "$@" "$tmp/heap.h5"; }
 for option in --cold --contacts --warm --every=7; do
     gen $option >"$tmp/trajectory.h5"
     gen $option | cat >"$tmp/stream.h5"
@@ -150,13 +150,13 @@ ok "and so does another time of day" cmp "$tmp/one" <(nsd-detect "$tmp/heap.h5")
 # ---- resuming ----
 
 half=$((frames / 2))
-nsd-gen 20 | step -n $((2 * half)) --cold --eps 1e-8 >"$tmp/all.h5"
-nsd-gen 20 | step -n $half --cold --eps 1e-8 >"$tmp/first.h5"
-step -n $half --cold --eps 1e-8 -o "$tmp/second.h5" "$tmp/first.h5"
+nsd-gen 20 | step -n $((2 * half)) --cold --tolerance 1e-8 >"$tmp/all.h5"
+nsd-gen 20 | step -n $half --cold --tolerance 1e-8 >"$tmp/first.h5"
+step -n $half --cold --tolerance 1e-8 -o "$tmp/second.h5" "$tmp/first.h5"
 ok "half the steps and then the other half are all the steps" cmp \
     <(nsd-info -p "$tmp/all.h5") <(nsd-info -p "$tmp/first.h5" "$tmp/second.h5")
 ok "in a pipe as well" cmp <(nsd-info -p --last "$tmp/all.h5") \
-    <(nsd-gen 20 | step -n $half --cold --eps 1e-8 | step -n $half --cold --eps 1e-8 | nsd-info -p --last)
+    <(nsd-gen 20 | step -n $half --cold --tolerance 1e-8 | step -n $half --cold --tolerance 1e-8 | nsd-info -p --last)
 ok "nsd-step -n 0 is the last frame alone" cmp \
     <(step -n 0 "$tmp/first.h5" | nsd-info -p) <(nsd-info -p --last "$tmp/first.h5")
 
@@ -200,7 +200,7 @@ alike() # file dataset file dataset tolerance, relative to the largest
             END { print NR " numbers, the largest " most ", they differ by " worst
                   exit !(NR > 0 && most > 0 && worst <= tolerance * most) }'
 }
-sweeps=(--eps 0 --max-sweeps 50 --criterion glob)
+sweeps=(--tolerance 0 --max-sweeps 50 --criterion glob)
 for form in local global; do
     nsd-detect --fclib=$form <"$tmp/heap.h5" >"$tmp/both.h5"
     like "nsd-detect --fclib=$form adds /fclib_$form" "$(h5ls "$tmp/both.h5")" "fclib_$form +Group"
@@ -245,7 +245,7 @@ fi
 
 # ---- methods and orders ----
 
-tight() { solve --eps 1e-13 --max-sweeps 50000 "$@" "$tmp/contacts.h5"; }
+tight() { solve --tolerance 1e-13 --max-sweeps 50000 "$@" "$tmp/contacts.h5"; }
 tight >"$tmp/exact.h5"
 for m in "${methods[@]}"; do
     for order in "${orders[@]}"; do
@@ -308,7 +308,7 @@ done
 ok "mu = 0: no friction in a heap" jq -e -n '[inputs | .r[1] == 0 and .r[2] == 0] | all and length > 20' <(
     jq '.mu = 0 | .bodies[0].count = 20' scenes/paper/example2.json |
         nsd-gen - |
-        step -n 600 --every 600 --contacts --eps 1e-8 |
+        step -n 600 --every 600 --contacts --tolerance 1e-8 |
         nsd-info --last -c)
 bounce() # e [OPTION ...]: how fast a ball leaves that has fallen on the floor with 1 m/s, without gravity
 {
@@ -323,7 +323,7 @@ ok "e = 1: what falls on the floor leaves as fast" jq -e '(. - 1 | fabs) < 1e-9'
 ok "e = 0.5: half as fast" jq -e '(. - 0.5 | fabs) < 1e-9' <(bounce 0.5)
 ok "e = 0: not at all" jq -e 'fabs < 1e-9' <(bounce 0 --solver auto)
 ok "e = 1, mu = 0: a gas keeps its energy" jq -e -s '[.[] | select(.step != null).kinetic_energy] |
-    length == 100 and (max - min) / max < 1e-9' <(nsd-gen scenes/gas.json | step -n 100 --eps 1e-13 | nsd-info)
+    length == 100 and (max - min) / max < 1e-9' <(nsd-gen scenes/gas.json | step -n 100 --tolerance 1e-13 | nsd-info)
 
 diverging() # a ball so fast that its place after the third step overflows
 {

@@ -50,9 +50,9 @@ is "of balls both are one" "$(nsd-stat -m coordination "$tmp/fcc.h5" 2>/dev/null
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: [range(10) | { x: [0, 0, 0.01 * (2 * . + 1)], radius: 0.01 }] }' | nsd-gen - |
-    step -n 50 --contacts --eps 1e-12 --max-sweeps 100000 >"$tmp/column.h5"
+    step -n 50 --contacts --tolerance 1e-12 --max-sweeps 100000 >"$tmp/column.h5"
 ok "a column at rest: the floor's load, and the stress" truth column "$tmp/column.h5"
-nsd-gen 200 | step -n 500 --every 100 --contacts --eps 1e-8 --max-sweeps 20000 -o "$tmp/heap.h5"
+nsd-gen 200 | step -n 500 --every 100 --contacts --tolerance 1e-8 --max-sweeps 20000 -o "$tmp/heap.h5"
 ok "numpy finds the same in a heap: stress, forces, fabric, energies, distributions" truth same_as_numpy "$tmp/heap.h5"
 ok "energies, and what a step dissipates, are what its report says" truth balances "$tmp/heap.h5"
 jq '.walls[0].drives = [{ along: [0, 0, 1], amplitude: 5e-4, frequency: 20 }] | .bodies[0].count = 100' scenes/shaken.json |
@@ -66,21 +66,21 @@ jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes
         { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.3 }, drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: -2 }] }],
     bodies: [{ count: 20, radius: 0.005, box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.001, 0.02] } },
         { count: 10, radius: 0.006, shape: "block", orientation: "random", box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.02, 0.05] } }] }' >"$tmp/works.json"
-nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap keep --eps 1e-8 -o "$tmp/works.h5"
+nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap-rule keep --tolerance 1e-8 -o "$tmp/works.h5"
 ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
-nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --eps 1e-8 -o "$tmp/works.h5"
+nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --tolerance 1e-8 -o "$tmp/works.h5"
 ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
-step -n 120 --sums --eps 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
+step -n 120 --sums --tolerance 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
 opposite() { jq -ne --argjson a "$1" --argjson b "$2" '(($a + $b) | fabs) < 1e-9 * ($b | fabs) and $b != 0'; }
 ok "the sums of the walls have the work of all steps" opposite \
     "$(nsd-stat --last -m sums "$tmp/works.h5" 2>/dev/null | jq '.sums | (.power | add) * .span[0]')" \
     "$(nsd-info "$tmp/works.h5" 2>/dev/null | jq -s 'map(.balance.drives // 0) | add')"
 jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, cell: { lengths: [1, 1], stress: { pressure: 1000, mass: 20 } },
     bodies: [{ count: 60, radius: { uniform: [0.03, 0.05] }, box: { x: [0, 1], y: [0, 1] } }] }' | nsd-gen - |
-    step -n 150 --every 30 --contacts --overlap keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
+    step -n 150 --every 30 --contacts --overlap-rule keep --tolerance 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
 ok "and a cell that yields to a stress" truth balances "$tmp/servo.h5" edges
 if [ -z "${NSD_THIN-}" ]; then
-    nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
+    nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --tolerance 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"
 fi
 
@@ -136,7 +136,7 @@ ok "and a cone of 30 degrees" truth cone "$tmp/cone.h5" 30
 # bonded, wet and cohesive discs that a gravity of its own pulls apart from the floor that holds them
 tied() { jq -n "$1"' + { dim: 2, dt: 1e-4, mu: 0.5, gravity: [2, 9.81], density: 1000, walls: [{ point: [0, 0], normal: [0, 1] }],
     bodies: [range(16) | { x: [0.002 * (. % 4), 0.001 + 0.00199999 * (. / 4 | floor)], radius: 0.001 }], overlap: true }' | nsd-gen - |
-    step -n 60 --every 20 --contacts --eps 1e-10 --max-sweeps 100000 -o "$tmp/tied.h5" && truth tied "$tmp/tied.h5"; }
+    step -n 60 --every 20 --contacts --tolerance 1e-10 --max-sweeps 100000 -o "$tmp/tied.h5" && truth tied "$tmp/tied.h5"; }
 ok "bonds: pairs in tension count, and store" tied '{ adhesion: { c_n: 1e7, w: 10, forever: true, area: 1e-3, beta: 0.9 } }'
 ok "liquid: the same" tied '{ capillary: { volume: 1e-11, tension: 0.072 } }'
 ok "cohesion: the same" tied '{ cohesion: { force: 0.4, range: 1e-5 } }'

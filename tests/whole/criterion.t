@@ -19,7 +19,7 @@ jq -n '{dt: 5e-5, gravity: [0, 0, -9.8], density: 2500, mu: 0.3, e_n: 0.4, overl
             {x: [0.002 * $i + 0.001, 0.002 * $j + 0.001, 0.0024142], radius: 0.001}] +
         [{x: [2e-4, 1e-4, 0.0134], radius: 0.01, v: [0, 0, -2], kind: "steel"}])}' | nsd-gen - >"$tmp/bed.h5"
 rebound() { nsd-step --solver auto "$@" -n 60 "$tmp/bed.h5" 2>/dev/null | bodies | jq 'select(.radius > 0.009).v[2]'; }
-exact=$(rebound --cold --criterion natural --eps 1e-9)
+exact=$(rebound --cold --criterion natural --tolerance 1e-9)
 for o in "" --cold "--order natural"; do
     up=$(rebound $o)
     ok "a ball on a bed rebounds with $exact m/s, with ${o:-the defaults} $up" near "$up" "$exact" "0.02 * $exact"
@@ -31,7 +31,7 @@ for e in 0 0.5 0.9; do
         walls: [{point: [0, 0, 0], normal: [0, 0, 1]}], bodies: ([range(4) | {x: [0, 0, 0.001 + 0.002 * .], radius: 0.001}] +
         [{x: [5e-5, 0, 0.00901], radius: 0.001, v: [0, 0, -2]}])}' | nsd-gen - >"$tmp/column.h5"
     top() { nsd-step --solver auto "$@" -n 10 "$tmp/column.h5" 2>/dev/null | bodies | jq -s '.[-1].v[2]'; }
-    exact=$(top --cold --criterion natural --eps 1e-11) up=$(top)
+    exact=$(top --cold --criterion natural --tolerance 1e-11) up=$(top)
     ok "the top ball of a column, e_n $e: $exact m/s, by default $up" near "$up" "$exact" 0.02
 done
 
@@ -45,7 +45,7 @@ mass='($b.radius | . * . * .)'
 is "its momentum is kept" "$(after | sum "$mass * \$b.v[0]" | jq '. * 1e15 | round')" \
     "$(nsd-cat "$tmp/cluster.h5" | sum "$mass * \$b.v[0]" | jq '. * 1e15 | round')"
 kinetic() { nsd-info --last | jq -s '.[-1].kinetic_energy'; }
-is_energy=$(after | kinetic) exact=$(after --cold --criterion natural --eps 1e-10 | kinetic)
+is_energy=$(after | kinetic) exact=$(after --cold --criterion natural --tolerance 1e-10 | kinetic)
 ok "its energy is what an exact solve leaves: $exact J, $is_energy" near "$is_energy" "$exact" "0.02 * $exact"
 
 # ---- mass ratios ----
@@ -94,7 +94,7 @@ status 0 "an iterate that is no number leaves none behind" nsd-step -e --solver 
 if command -v h5copy >/dev/null; then
     pinch 3 1e12 3 | nsd-step --solver auto -n 1 2>/dev/null | nsd-cat --last | nsd-detect --fclib=local >"$tmp/both.h5"
     h5copy -i "$tmp/both.h5" -o "$tmp/pinch.h5" -s fclib_local -d fclib_local
-    status 0 "nor has an FCLIB problem of them no solution" nsd-solve -e --criterion velocity --eps 0.01 "$tmp/pinch.h5"
+    status 0 "nor has an FCLIB problem of them no solution" nsd-solve -e --criterion velocity --tolerance 0.01 "$tmp/pinch.h5"
 fi
 
 # ---- no solution ----
@@ -127,7 +127,7 @@ fi
 # What needs no more leaps is not multiplied by infinity.
 jq -n '{dt: 1e-3, mu: 1000, bodies: [{x: [0, 0, 0.125], radius: 0.1, mass: 1}],
     walls: [{point: [0, 0, 0], normal: [0.6, 0, 0.8]}]}' | nsd-gen - | nsd-detect --gap 1 >"$tmp/one.h5"
-nsd-solve --solver anderson --criterion natural --eps 0 "$tmp/one.h5" 2>/dev/null >"$tmp/out"
+nsd-solve --solver anderson --criterion natural --tolerance 0 "$tmp/one.h5" 2>/dev/null >"$tmp/out"
 ok "a report has numbers, however long its solve" jq -e -s '.[-1].natural | isnormal or . == 0' <(nsd-info "$tmp/out")
 
 # ---- rest ----

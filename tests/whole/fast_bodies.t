@@ -36,7 +36,7 @@ for theta in 0 0.25 1; do
 done
 for way in keep gap push gap-project; do
     scene "[{ x: [0, 0.1, 0.2], radius: 0.01, v: [2e4, 0, 0] }, { x: [10, 0.1, 0.2], radius: 0.01 }]" '{ e_n: 1, dt: 5.5e-4 }'
-    ok "--overlap $way" near "$(went 1 --overlap $way | jq -c '[.[] | .v[0], .x[0]]')" '[0, 9.98, 2e4, 11.02]' 1e-9
+    ok "--overlap-rule $way" near "$(went 1 --overlap-rule $way | jq -c '[.[] | .v[0], .x[0]]')" '[0, 9.98, 2e4, 11.02]' 1e-9
 done
 
 # ---- an oblique impact of two discs with friction ----

@@ -34,7 +34,7 @@ slide()
          bodies: ([{x: [0.6, 0.013, ($h + 2e-5)], v: [3, 0, 0]} + (if $s then {shape: "s", orientation: [0, 0, $yaw]} else {radius: $h} end)] +
             [$f[] | {x, shape, fixed: true}])} +
         (if $s or ($f | length > 0) then {shapes: ((if $s then {s: $s} else {} end) + ($f | map({key: .shape, value: .is}) | from_entries))} else {} end)' >"$tmp/s.json"
-    nsd-gen "$tmp/s.json" | nsd-step --until 0.3 --every 10 --overlap "$way" 2>/dev/null |
+    nsd-gen "$tmp/s.json" | nsd-step --until 0.3 --every 10 --overlap-rule "$way" 2>/dev/null |
         nsd-info -p | jq -sc 'map(select(.body == 0 or .id == 0)) | [.[-1].v[0], .[-1].x[0], (map(.x[2]) | max)]'
 }
 alike() { jq -n --argjson a "$1" --argjson b "$2" '[range(3)] | all(($a[.] - $b[.] | fabs) < 3e-4)'; }
@@ -95,7 +95,7 @@ through() # WALL-OR-BOX SHAPE SPEED OVERLAP: the height after 0.2 s
 {
     printf '%s\n' "$1" | jq -c --argjson s "$2" --argjson v "$3" '. as $p | {dt: 0.0166666, e_n: 0.3, shapes: ({a: {box: [1, 1, 1]}} + (if $p.is then {f: $p.is} else {} end) + (if $s then {s: $s} else {} end)),
         walls: (if $p.is then [] else [$p] end), bodies: ([{x: [0.01, 0.02, 1.07], v: [0.1, 0, -$v]} + (if $s then {shape: "s"} else {radius: 0.05} end)] + (if $p.is then [{x: $p.x, shape: "f", fixed: true}] else [] end))}' >"$tmp/t.json"
-    nsd-gen "$tmp/t.json" | nsd-step --until 0.2 --overlap "$4" 2>/dev/null | nsd-info -p | jq -s 'map(select(.body == 0 or .id == 0).x[2]) | min > 0'
+    nsd-gen "$tmp/t.json" | nsd-step --until 0.2 --overlap-rule "$4" 2>/dev/null | nsd-info -p | jq -s 'map(select(.body == 0 or .id == 0).x[2]) | min > 0'
 }
 thin='{"is": {"box": [0.6, 0.6, 0.004]}, "x": [0, 0, -0.002]}'
 for way in gap-project keep project; do
