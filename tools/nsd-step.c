@@ -124,7 +124,7 @@ static const char *cure(enum account_row row, const struct report *r)
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_PASSED && options.substeps == 1 && !r->small)
+    if (row == ACCOUNT_TUNNELLED && options.substeps == 1 && !r->small)
         return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
