@@ -222,6 +222,7 @@ static const struct cli_option run_options[] = {
     { CLI_FLAG, .name = "warm", .to = &options.warm },
     { CLI_INT, .name = "substeps", .to = &options.substeps, .min = 1, .max = 1e6 },
     { CLI_REAL, .name = "small-steps", .to = &options.small, .min = 0, .max = 0.1 },
+    { CLI_REAL, .name = "missing-impulse", .to = &options.bound, .min = 0, .max = 1 },
     { 0 },
 };
 static const struct cli_option *const run_tables[] = { run_options, options_solve, options_detect,

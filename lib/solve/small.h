@@ -16,7 +16,7 @@
  * have made of a body's velocity is v - v^- - h g, with v^- and v before and after that step of the same length, so that
  * no pass over the pairs has to apply them. What turns bodies is the couple d x f, which is kept with f: the next step takes
  * that back, and not what f would do along the normal of that step, so that angular momentum is kept and frictionless balls
- * do not turn. Of the impulse of an impact nothing persists.
+ * do not turn.
  *
  * The law is that of rigid contacts, with a compliance C that is a small part of W_cc:
  *
@@ -49,8 +49,8 @@ struct small_bundle {
     double
         couple[3]
               [BUNDLE]; /* N m s: d x f, d from a to b where f was made: central forces have none */
-    double kept[BUNDLE]; /* N s: of f along n, with which the step began; SMALL_HIT: of an impact */
-    double q[3][BUNDLE]; /* m/s: q - C f_0 */
+    double kept[BUNDLE];   /* N s: of f along n, with which the step began */
+    double q[3][BUNDLE];   /* m/s: q - C f_0 */
     double sum[3][BUNDLE]; /* N s: of f, in the steps before this one */
     double mu[BUNDLE];
     double e[2][BUNDLE]; /* e_n, e_t */
@@ -163,9 +163,6 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01
 
-/* In place of what was kept: a pair that meets, of whose impulse nothing persists */
-#define SMALL_HIT (-INFINITY)
-
 /* q of pairs that meet, and of those that wait; before: u^-. Returns which ones meet. */
 ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
                             vd kept, vd en, vd et)
@@ -222,7 +219,6 @@ ALWAYS_INLINE void small_roll(const vd n[3], vd rn, const vd w[3], vd wr, const 
    rest; where nothing falls, an eighth of it, rn, at least. w (1/kg): of the pair along n */
 ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, double w, double rn)
 {
-    if (kept < 0) return 0;
     const double most = 2 * (kept + o->calm / w);
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }

@@ -120,8 +120,7 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
         vd before[3];
         bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
         small_velocity_image(y, s, &ma, &mb, before);
-        vm hits = small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
-        if (any(hits)) vstore(c->kept + k, pick(hits, splat(SMALL_HIT), kept));
+        small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
     }
     small_store(c->q, k, l->q);
 }

@@ -125,9 +125,13 @@ struct report {
     int64_t small;             /* small steps, of which it is made; 0: it was made at once */
     int64_t small_limited;     /* those of them that have ended at the limit of their sweeps */
     bool fine;                 /* small steps were asked for, and what follows is known */
+    bool judged;               /* and reactions are compared with converged ones */
     double missing_mean,
         missing; /* what is missing of reactions, over the load: of all bodies, and of the worst */
-    int32_t missing_id;      /* the worst */
+    int32_t missing_id; /* the worst */
+    int32_t
+        compared; /* sweeps in which the last small step's reactions have converged, on a copy; 0: not looked at */
+    double distance;         /* |f - f_c| over |f_c| of all of them, f_c converged */
     struct endless endless;  /* for which the step was not made */
     double work;             /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *given_up;    /* why it ended before its limits, a literal; or NULL */

@@ -12,6 +12,8 @@
 int small_error_init(struct small_run *r, struct failure *failure);
 /* By all threads, where r is judged: adds the small step in hand, after its sweeps. */
 void small_error_step(struct small_run *r, int me, int threads);
+/* By all threads, between sweeps: is more than r->bound of the load of all bodies missing? */
+bool small_error_exceeds(struct small_run *r, int me, int threads);
 /* Writes what is missing into the report. */
 void small_error_give(const struct small_run *r, struct report *rep);
 /*

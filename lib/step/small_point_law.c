@@ -95,7 +95,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
     small_array(before, u);
     l.cn = l.ct = 0;
-    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0, t->kept = SMALL_HIT;
+    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);
 }
 

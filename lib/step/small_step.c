@@ -157,7 +157,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_set_rates(r), take_bodies(r), small_walls_set(r);
-            if (!o->bare && small_error_init(r, failure)) break;
+            if ((!o->bare || o->bound > 0) && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
             if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
@@ -243,6 +243,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .err = { .contacts = s->n, .max_overlap = contacts_max_overlap(s) },
                             .balanced = !bare,
                             .fine = true,
+                            .judged = rep->judged,
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
@@ -291,6 +292,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
     r.n = count, r.kernel = backend_widest()->small;
+    r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);

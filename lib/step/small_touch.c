@@ -40,7 +40,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
     small_array(before, small_touch_before(r, t));
-    if (small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1])) t->kept = SMALL_HIT;
+    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
 

@@ -424,11 +424,14 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
     bool impulsive = false; // its reactions are no loads, from which small steps could begin
     rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
     rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
+    rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
     if (o->small > 0 && kept && !small_lacks(p)) {
         const struct small_opt small = { .overlap = o->small,
                                          .threads = o->solve.threads,
                                          .near = &kept->near,
                                          .bare = o->bare,
+                                         .compare = o->compare,
+                                         .bound = o->bound,
                                          .warm = o->warm };
         bool made;
         rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;

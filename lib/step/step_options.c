@@ -199,8 +199,9 @@ const struct cli_option options_detect[] = {
 /* ---- which of them are given ---- */
 
 /* Members of which tools have options of their own */
-const void *const options_others[] = { &options.warm,     &options.small,  &options.dt,
-                                       &options.substeps, &options.device, NULL };
+const void *const options_others[] = { &options.warm, &options.small,    &options.bound,
+                                       &options.dt,   &options.substeps, &options.device,
+                                       NULL };
 
 /* One bit for each row of both tables, and for each of the others */
 static uint64_t bit_of(const void *to)
@@ -262,6 +263,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
         .alpha = o->alpha,
         .order = order,
         .as_is = o->protocol,
+        .bound = o->bound,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->local ? methods[o->local - 1] : &local_exact,
@@ -306,6 +308,8 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     json_object_set_new(j, "warm", json_boolean(o->warm));
     if (o->substeps != SUBSTEPS_MOST) json_object_set_new(j, "substeps", json_integer(o->substeps));
     if (o->small > 0) json_object_set_new(j, "small_steps", json_real(o->small));
+    if (o->small > 0 && o->bound > 0)
+        json_object_set_new(j, "missing_impulse", json_real(o->bound));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
     return text;
@@ -320,7 +324,8 @@ static enum overlap overlap_usual(const struct packing *p)
 /* Is an option given that chooses how a step is solved? Those that small steps have, too, do not. */
 static bool options_solve_once(const struct options *o)
 {
-    const uint64_t both = bit_of(&options.theta) | bit_of(&options.warm) | bit_of(&options.small);
+    const uint64_t both = bit_of(&options.theta) | bit_of(&options.warm) | bit_of(&options.small) |
+                          bit_of(&options.bound);
     return o->given & ~both;
 }
 

@@ -124,6 +124,20 @@ for v in 0.15 0.11; do
     ok "a ball leaves a liquid bridge with what is left of its energy, or comes back: $v m/s" near "$(body '.v[2]' 1)" \
         "(2e-10 / 3.14159265358979 / 1e-3) as \$c2 | ($v * $v - 2 * $bridge / ($mass * 1e-3)) | if . > 0 then -sqrt else 0 end" 4e-4
 done
+# a rebound with e_n v = 0.15 m/s, or 0.05 m/s at a ceiling, whose bridge has more energy than that, and pulls with 9 times the weight
+scene "dt: 1e-5, gravity: [0, 0, 0], $wet, e_n: 0.5, bodies: [{ x: [0, 0, 0], radius: 1e-3, fixed: true },
+    { x: [0, 0, -2.1e-3], radius: 1e-3, density: 2500, v: [0, 0, 0.3] }]"
+small_alone 3000
+ok "the impact of a dry ball makes a bridge, which the rebound has to break" near "$(body '.v[2]' 1)" \
+    "(2e-10 / 3.14159265358979 / 1e-3) as \$c2 | -(0.15 * 0.15 - 2 * $bridge / ($mass * 1e-3) | sqrt)" 3e-3
+for n in 49 50 51 3000; do # the impact is in step 50
+    scene "dt: 1e-5, $wet, e_n: 0.5, walls: [{ point: [0, 0, 2.05e-3], normal: [0, 0, -1] }], bodies: [{ x: [0, 0, 1e-3], radius: 1e-3, v: [0, 0, 0.1] }]"
+    small $n
+    mv "$tmp/out.h5" "$tmp/in.h5"
+    small $((6000 - n))
+    ok "a wet ball that rebounds from a ceiling hangs there, in two runs of $n steps and the others" near "$(body '.x[2]')" 1.05e-3 1e-5
+done
+
 is "a ball that comes back stays wet" "$(small_alone 3000 --contacts && nsd-info --last -c "$tmp/out.h5" | jq .wet)" true
 
 scene "dt: 1e-3, gravity: [6.9367, 0, -6.9367], mu: 0.1, mu_s: 0.4, v_s: 0.01, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
