@@ -45,7 +45,7 @@ static const struct cli_option own[] = {
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
-      .help = "sweep small steps until at most the part B of the impulses is missing [no bound]" },
+      .help = "sweep small steps until at most a part B of impulses is missing [none]" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
