@@ -366,6 +366,7 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     for (int k = 0; k < 3; k++) b->shift[k] = c->shift[k];
     b->pressed = contact_law_is_pressed(p, c, t, &s->found[i], &e);
     if (b->pressed) b->rest = spring_rest_after(p, c, t);
+    if (b->pressed && law_of(p, c)->soft > 0) b->spring = t->spring[0];
     b->gap = e.gap, b->beta = made.bonded ? law_of(p, c)->beta : e.beta;
     b->wet = e.wet ? BOND_WET : made.wet && e.gap < bridge_reach(law_of(p, c)) ? BOND_WETTED : 0;
     if (!b->wet && !(b->beta > 0) && !rests && !b->pressed) return false;

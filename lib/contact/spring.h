@@ -37,6 +37,12 @@
  * rebound with a part of about c/W of its speed. Instead of C r it has C (r - r^): r^, the impulse of the impact, were
  * the pair alone. A pair alone then has Newton's law exactly, and where others hold it C bounds r. Its moment has no spring. e is 0
  * unless the pair is new: it has not pushed in the step before.
+ *
+ * Where a pair has a compliance alpha instead, k_n = 1/(alpha W h^2), W = 1/m_a + 1/m_b, so that C = alpha W whatever h is.
+ * Such springs are no property of the bodies. When k changes they push as before: x_t and phi change by the ratio of k, and
+ * g_0 takes the difference along n. g_0 rises by alpha g h^2, by which the push grows by a weight. An impact is any pair
+ * that approaches so fast, also one that has pushed; e is that of rigid contacts; and r^ of all contacts is found by
+ * step/hit_bound.h, so that springs leave nothing of impacts.
  */
 #pragma once
 
