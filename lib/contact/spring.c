@@ -171,9 +171,17 @@ void spring_seen(double dt, const struct contact *c, const struct contact_law *t
     }
 }
 
-struct spring_end spring_end(double dt, const struct contact *c, const struct contact_law *t,
-                             const struct found *found, double before)
+/* Has the spring no part in an impact of its contact? */
+static bool spring_rests(const struct packing *p, const struct contact *c,
+                         const struct contact_law *t)
 {
+    return packing_complies(p, c) && (t->state & CONTACT_LAW_MEETS || c->en > 0);
+}
+
+struct spring_end spring_end(const struct packing *p, const struct contact *c,
+                             const struct contact_law *t, const struct found *found, double before)
+{
+    const double dt = p->dt;
     double law[3], compliance[2];
     struct spring_end e;
     spring_seen(dt, c, t, law, compliance);
@@ -182,6 +190,11 @@ struct spring_end spring_end(double dt, const struct contact *c, const struct co
     const bool meets = t->state & CONTACT_LAW_MEETS;
     for (int k = 1; k < 3; k++)
         e.stretch[k] = meets ? 0 : -(found->r[k] - t->hit[k]) / (dt * t->spring[1]);
+    if (spring_rests(p, c, t)) {
+        e.stretch[0] = fmax(fmin(0, t->jump[0]), e.stretch[0]);
+        for (int k = 1; k < 3; k++) e.stretch[k] = t->jump[k];
+    }
+    for (int k = 1; k < 3 && packing_complies(p, c) && !(found->r[0] > 0); k++) e.stretch[k] = 0;
     return e;
 }
 
@@ -218,20 +231,27 @@ double spring_implicit(const struct contact_law *t, const double end[3], const d
                   t->roll * square_of(turn));
 }
 
+/* m: g_0 when the step is over, before it rises */
+static double spring_rest_end(const struct packing *p, const struct contact *c,
+                              const struct contact_law *t, double gap, double stretch)
+{
+    return spring_rests(p, c, t) ? gap - stretch : c->gap - t->jump[0];
+}
+
 double spring_rest_after(const struct packing *p, const struct contact *c,
-                         const struct contact_law *t)
+                         const struct contact_law *t, double gap, double stretch)
 {
     const double soft = p->law[packing_pair(p, c->a, c->b)].soft;
     // a spring whose stiffness follows from dt then pushes by the weight of its pair more
     const double rise = (soft > 0 ? soft : 1) * p->dt * packing_most_fall(p);
-    return fmin(0, c->gap - t->jump[0] + rise);
+    return fmin(0, spring_rest_end(p, c, t, gap, stretch) + rise);
 }
 
 double spring_rise(const struct packing *p, const struct contact *c, const struct contact_law *t,
-                   double x)
+                   double end, double x)
 {
-    const double rest = c->gap - t->jump[0], gap = rest + x;
-    const double risen = gap - fmin(0, fmax(spring_rest_after(p, c, t), gap));
+    const double rest = spring_rest_end(p, c, t, end, x), gap = rest + x;
+    const double risen = gap - fmin(0, fmax(spring_rest_after(p, c, t, end, x), gap));
     const double before = fmin(0, x), after = fmin(0, risen);
     return rest < 0 ? 0.5 * t->spring[0] * (after * after - before * before) : 0;
 }

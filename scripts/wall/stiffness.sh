@@ -2,7 +2,7 @@
 # stiffness.sh BALLS=DOCUMENT ...: what a stiffness of contacts does to the solves of piles. A row of tab-separated numbers for
 # each pile, compliance and tolerance: balls, contacts, alpha, static overlap (radii), eps, sweeps, Newton steps, CPU s, the
 # map reached. alpha is that of --stiffness auto:ALPHA; 0: rigid. Each pile makes STEPS [300] steps with its stiffness first, so
-# that it is loaded, rigid ones a tenth and those of 100 000 balls a third of them; the last contacts are solved cold.
+# that it is loaded, rigid ones and those of 32 000 balls and more a tenth of them; the last contacts are solved cold.
 set -euo pipefail
 work=$(mktemp -d)
 steps=${STEPS:-300} # 0.03 s, in which loads come
@@ -14,8 +14,7 @@ for pile in "$@"; do
         k=auto:$alpha
         [ "$alpha" != 0 ] || k=rigid
         n=$steps
-        [ "$balls" -lt 100000 ] || n=$((steps / 3))
-        [ "$k" != rigid ] || n=$((steps / 10))
+        [ "$k" != rigid ] && [ "$balls" -lt 32000 ] || n=$((steps / 10))
         nsd-step --stiffness "$k" --dt 1e-4 -n "$n" --every "$n" "$work/pile.h5" 2>/dev/null | nsd-cat --last | nsd-detect >"$work/found.h5"
         deep=$(nsd-info -c "$work/found.h5" | jq -n '[inputs | if .stretch then -.stretch[0] else 0 end] | max / 4.7e-4')
         for eps in 1e-4 1e-6 1e-8; do

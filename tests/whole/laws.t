@@ -604,6 +604,9 @@ for dt in 1e-3 1e-4 1e-5; do
     done
 done | sort -u >"$tmp/rebounds"
 is "auto: a ball rebounds with e of its speed at any time step" "$(cat "$tmp/rebounds")" true
+jq '.e_n = 0.5' scenes/heap.json | nsd-gen - | step --small-steps 0 --stiffness auto --criterion natural --eps 1e-8 -n 300 --every 300 --log "$tmp/heap.log" -o "$tmp/fallen.h5"
+like "auto: discs that rebound gain no energy" "$(jq -s 'all(.converged) and (map(.balance | .dissipation / (.kinetic + 1e-9)) | min) > -1e-6' "$tmp/heap.log")" true
+rm "$tmp/fallen.h5"
 # with C r the heavy ball would keep 0.8 of its speed: C is ten times its 1/m
 for dt in 1e-3 1e-5; do
     light 2500000 0 1 '{ "dt": '$dt' }' | step -n 1 -o "$tmp/heavy.h5"
