@@ -45,7 +45,7 @@ static const struct cli_option own[] = {
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
-      .help = "sweep small steps until at most the part B of the impulses is missing [no bound]" },
+      .help = "sweep small steps until at most a part B of impulses is missing [none]" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -128,7 +128,7 @@ static const char *cure(enum account_row row, const struct report *r)
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_PASSED && options.substeps == 1 && !r->small)
+    if (row == ACCOUNT_TUNNELLED && options.substeps == 1 && !r->small)
         return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
