@@ -45,7 +45,7 @@ static const struct cli_option own[] = {
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
-      .help = "sweep small steps until at most the part B of the impulses is missing [no bound]" },
+      .help = "sweep small steps until at most a part B of impulses is missing [none]" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -128,7 +128,7 @@ static const char *cure(enum account_row row, const struct report *r)
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_PASSED && options.substeps == 1 && !r->small)
+    if (row == ACCOUNT_TUNNELLED && options.substeps == 1 && !r->small)
         return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
@@ -241,21 +241,31 @@ static void summary(int64_t made)
              (long long)total.growing, total.approach);
 }
 
+static const char *range_text(char *text, size_t size, double least, double most)
+{
+    if (least < most)
+        snprintf(text, size, "%.3g to %.3g", least, most);
+    else
+        snprintf(text, size, "%.3g", most);
+    return text;
+}
+
 /* With which stiffness the contacts were solved, where they have one */
 static void say_stiffness(const struct packing *p)
 {
-    double k[2];
+    struct stiffness of[2];
     const double soft = stiffness_softness(p);
-    stiffness_range(p, k);
-    if (!(k[1] > 0)) return;
     char range[60];
-    if (k[0] < k[1])
-        snprintf(range, sizeof range, "%.3g to %.3g", k[0], k[1]);
-    else
-        snprintf(range, sizeof range, "%.3g", k[1]);
-    warn("stiffness of contacts %s N/m, compliance %.2g of W%s", range, soft,
-         soft < STIFFNESS_SOFT ? ": too stiff for dt to keep sweeps from growing with the packing"
-                               : "");
+    stiffness_range(p, of);
+    if (of[1].soft > 0)
+        warn("stiffness of contacts auto: compliance %s of the W of each",
+             range_text(range, sizeof range, of[0].soft, of[1].soft));
+    if (of[1].k > 0)
+        warn("stiffness of contacts %s N/m, compliance %.2g of W%s",
+             range_text(range, sizeof range, of[0].k, of[1].k), soft,
+             soft < COMPLIANCE_SOFT
+                 ? ": too stiff for dt to keep sweeps from growing with the packing"
+                 : "");
 }
 
 /* ---- how far it is ---- */

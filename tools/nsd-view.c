@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static int64_t step = -1, every, samples = 3, threads, follow = -1, rate = 25;
+static int64_t step = -1, every, samples = 3, threads = 1, follow = -1, rate = 25;
 static int colour = COLOUR_RADIUS, walls;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
@@ -111,7 +111,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "average N x N samples per pixel [3]" },
     { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
-      .help = "use N threads; pictures do not depend on N [all]" },
+      .help = "use N threads; pictures do not depend on N [1]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -188,7 +188,7 @@ static vec3 up_of_option(void)
 static struct view view_of_options(void)
 {
     struct view v = { .samples = (int)samples,
-                      .threads = threads ? (int)threads : team_cores(),
+                      .threads = (int)threads,
                       .angle = perspective,
                       .up = up_of_option(),
                       .strays = strays,

@@ -178,8 +178,8 @@ static void help(void)
     }
     printf("\n  %-*s  accept documents that unpack to GB [64 times their size, >= 0.067]\n", LEFT,
            "    --unpack GB");
-    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "    --help", LEFT,
-           "    --version");
+    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "-h, --help", LEFT,
+           "-V, --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();
@@ -257,7 +257,7 @@ int cli_parse(int argc, char **argv)
                                                                { "version", 0, NULL, VERSION },
                                                                { "unpack", 1, NULL, UNPACK } };
     const struct cli_option *at[OPTIONS];
-    char letters[2 * OPTIONS + 2] = ":";
+    char letters[2 * OPTIONS + 4] = ":hV";
     int n = 0;
     for (const struct cli_option *const *t = tool.tables; *t; t++)
         for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
@@ -276,13 +276,13 @@ int cli_parse(int argc, char **argv)
     memcpy(arguments, argv, size);
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
-        if (c == HELP) help();
+        if (c == HELP || c == 'h') help();
         if (c == UNPACK) {
             cli_set(&unpack, optarg);
             reader_unpack(1e9 * gigabytes);
             continue;
         }
-        if (c == VERSION) {
+        if (c == VERSION || c == 'V') {
             printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
             finish_stdout();
             exit(0);

@@ -166,10 +166,10 @@ void step_forget(struct step_memory *m)
 
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
 {
-    if (passed->n && (!rep->passed || passed->id < rep->passed_id))
-        rep->passed_id = passed->id, rep->passed_through = passed->through;
-    rep->passed += passed->n;
-    rep->watched = tunnelling_watches(p) || rep->passed;
+    if (passed->n && (!rep->tunnelled || passed->id < rep->tunnelled_id))
+        rep->tunnelled_id = passed->id, rep->tunnelled_through = passed->through;
+    rep->tunnelled += passed->n;
+    rep->watched = tunnelling_watches(p) || rep->tunnelled;
 }
 
 int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
@@ -341,7 +341,7 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     if (m->detect(m, p, s, o, failure)) return failure->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && step_begin(m, m->measure, p, s, rep, failure)) return failure->status;
-    rep->passed = 0, rep->endless = (struct endless){ 0 };
+    rep->tunnelled = 0, rep->endless = (struct endless){ 0 };
     if (!m->helps && (!p->step || m->substeps->made) &&
         m->watch(m, p, watch_before(m, p), rep, failure))
         return failure->status;

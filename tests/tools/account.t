@@ -12,13 +12,13 @@ pair()
     jq -n --argjson depth "$1" '{ dt: 1e-3, gravity: [0, 0, 0], overlap: true, bodies: [{ x: [9, 0, 0], radius: 1 },
         { x: [0, 0, 0], radius: 1 }, { x: [3 - $depth, 0, 0], radius: 2 }] }' | nsd-gen - >"$tmp/pair.h5"
 }
-row='(.overlap | [(.value * 1e9 | round) / 1e9, .step, .bodies, .fails]), .wedged.value, .unconverged.value'
+row='(.overlap | [(.value * 1e9 | round) / 1e9, .step, .bodies, .fails]), .pinched.value, .unconverged.value'
 pair 0.05
 status 0 "5 % of a radius are no failure" nsd-step -e --overlap-rule keep -n 3 "$tmp/pair.h5"
 is "a line says them at once" "$(head -n 1 "$tmp/err")" \
     "nsd-step: overlap 0.05 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01"
 is "and the last line" "$(tail -n 1 "$tmp/err")" \
-    "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 wedged, 0 went through a wall or another body, 0 steps not converged"
+    "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 pinched, 0 tunnelled through a wall or another body, 0 steps not converged"
 is "the document has them, in the smaller radius" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.05,1,[1,2],false] 0 0'
 pair 0.12
 status 0 "12 % are one, but not without -e" nsd-step --overlap-rule keep "$tmp/pair.h5"
@@ -40,16 +40,16 @@ like "but a smaller TOL is" "$(head -n 1 "$tmp/err")" 'bodies 1 and 2\): a small
 pair 0
 status 0 "bodies that touch" nsd-step --solver auto -e "$tmp/pair.h5"
 is "have no account but its last line" "$(grep -c . "$tmp/err"), $(tail -n 1 "$tmp/err")" \
-    "2, nsd-step: worst: overlap 0 of a radius, approach 0 m/s, 0 wedged, 0 went through a wall or another body, 0 steps not converged"
+    "2, nsd-step: worst: overlap 0 of a radius, approach 0 m/s, 0 pinched, 0 tunnelled through a wall or another body, 0 steps not converged"
 
 # A ball between walls that are 0.22 of its radius too near; beside it one that only leans on one of them.
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], overlap: true, bodies: [{ x: [5, 0, 0.85], radius: 1 }, { x: [0, 0, 0.89], radius: 1 }, { x: [9, 0, 0.5], radius: 0.55 }],
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { rectangle: { center: [0, 0, 1.78], normal: [0, 0, -1], along: [1, 0, 0], sides: [2, 2] } }] }' |
     nsd-gen - >"$tmp/wedge.h5"
 nsd-step --overlap-rule keep "$tmp/wedge.h5" 2>"$tmp/err" >"$tmp/wedged.h5"
-is "a ball between walls is wedged, others are not" "$(account "$tmp/wedged.h5" '.wedged | [.value, .step, .bodies, .fails]')" '[1,1,[1],true]'
+is "a ball between walls is pinched, others are not" "$(account "$tmp/wedged.h5" '.pinched | [.value, .step, .bodies, .fails]')" '[1,1,[1],true]'
 is "the deepest is in the floor" "$(account "$tmp/wedged.h5" .overlap.bodies)" '["wall 0",0]'
-like "which has its number" "$(tail -n 1 "$tmp/err")" 'step 1, wall 0 and body 0\), approach [^,]*, 1 wedged \(step 1, body 1\)'
+like "which has its number" "$(tail -n 1 "$tmp/err")" 'step 1, wall 0 and body 0\), approach [^,]*, 1 pinched \(step 1, body 1\)'
 
 # A plate presses a ball onto the floor: no step has a solution.
 jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },

@@ -28,6 +28,7 @@ for tool in "${tools[@]}"; do
     done <"$tmp/options"
     refuses 64 "$tool --help=x" "$tool" --help=x
     status 0 "$tool --version" "$tool" --version
+    is "$tool -V is --version, -h --help" "$("$tool" -V; "$tool" -h)" "$(cat "$tmp/out"; "$tool" --help)"
     like "says the version" "$(cat "$tmp/out")" "^$tool \(nsd\) [0-9]+\.[0-9]+$"
 done
 for tool in "${tools[@]}"; do

@@ -121,7 +121,7 @@ is "of a part of the bodies it is not known, and nsd-stat says why" \
 scene "[{ x: [0, 0, 0], radius: 0.01, v: [1e14, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ time: 1e6, e_n: 1 }"
 nsd-step --solver auto -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" && s=0 || s=$?
 is "a meeting that the time cannot resolve does not end the run" "$s" 0
-like "and is counted" "$(cat "$tmp/err")" ' 1 went through a wall or another body'
+like "and is counted" "$(cat "$tmp/err")" ' 1 tunnelled through a wall or another body'
 scene "[{ x: [0, 0, 0], radius: 0.01, v: [1e6, 0, 0] }, { x: [0.1, 0, 0], radius: 0.01 }]" "{ time: 1e6, e_n: 1 }"
 ok "one that it can resolve is met" jq -n -e --argjson b "$(went 1)" '$b | (.[0].v[0] | fabs) < 1e-3 and (.[1].v[0] / 1e6 - 1 | fabs) < 1e-9'
 
@@ -183,7 +183,7 @@ refuses 64 "no substeps are none" nsd-step --substeps 0 -n 1 "$tmp/in.h5"
 # two plates that a ball bounces between: the limit is kept, and what passes then is counted
 scene "[{ x: [0.5, 0, 0], radius: 0.01, v: [1e5, 0, 0] }, { x: [0, 0, 0], radius: 0.4, fixed: true }, { x: [1, 0, 0], radius: 0.4, fixed: true }]" '{ e_n: 1, dt: 1 }'
 nsd-step --solver auto -n 1 --substeps 20 -o "$tmp/limit.h5" "$tmp/in.h5" 2>"$tmp/err"
-ok "beyond the limit of substeps bodies pass, and are counted" grep -q 'worst: .* [1-9] went through a wall or another body' "$tmp/err"
+ok "beyond the limit of substeps bodies pass, and are counted" grep -q 'worst: .* [1-9] tunnelled through a wall or another body' "$tmp/err"
 
 # ---- the same bytes ----
 

@@ -111,8 +111,8 @@ nsd-gen "$tmp/fast.json" >"$tmp/fast-in.h5"
 s=0
 nsd-step -e -n 2 "$tmp/fast-in.h5" >"$tmp/fast.h5" 2>"$tmp/err" || s=$?
 is 'what goes through gives status 1 under -e' $s 1
-ok 'and a line that says who, where and when' grep -q '1 went through a wall or another body (step 1, body 0 and wall 0)' "$tmp/err"
-is 'and is counted in the document' "$(nsd-info --last "$tmp/fast.h5" | jq 'select(.account).account.passed.value')" 1
+ok 'and a line that says who, where and when' grep -q '1 tunnelled through a wall or another body (step 1, body 0 and wall 0)' "$tmp/err"
+is 'and is counted in the document' "$(nsd-info --last "$tmp/fast.h5" | jq 'select(.account).account.tunnelled.value')" 1
 
 # a weld tolerance of a scene is kept
 jq -cn --argjson r "$(rect -1 1 0)" '{dt: 1e-3, walls: [$r + {weld: 1e-3}]}' >"$tmp/weld.json"
