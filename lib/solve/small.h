@@ -166,9 +166,10 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01
 
-/* In place of what was kept: an impact across a gap, of which nothing persists. Without restitution the pair closes the gap in
-   this step and stops in the next one. */
+/* In place of what was kept: an impact across a gap, of which a trace persists: the next step sees by it that the pair has pushed
+   [solve/small_hold.h]. Without restitution the pair closes the gap in this step and stops in the next one. */
 #define SMALL_MEETS (-INFINITY)
+#define SMALL_TRACE 1e-12
 
 /* q of pairs that meet, and of those that wait; before: u^-. kept: of f, or SMALL_MEETS. Returns which ones meet. */
 ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
@@ -178,7 +179,8 @@ ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, co
     small_split(l->n, before, &un, ut);
     vm meets =
         lt(un, -l->calm) & lt(un + l->gap * o->per_h, zero) & le(l->wn * *kept, -SMALL_SLIGHT * un);
-    vm waits = le(*kept, zero) & lt(zero, l->gap) & lt(zero, en) & ~meets;
+    vm waits = le(l->wn * *kept, splat(4 * SMALL_TRACE * o->reach * o->per_h)) & lt(zero, l->gap) &
+               lt(zero, en) & ~meets;
     vd open = pick(le(en, zero), larger(l->gap, zero) * o->per_h, zero);
     vd rn = larger(-(un + en * un + open) / l->wn, zero);
     for (int i = 0; i < 3; i++) hit[i] = -(1 + et) * ut[i] / l->wt;
@@ -233,10 +235,10 @@ ALWAYS_INLINE void small_roll(const vd n[3], vd rn, const vd w[3], vd wr, const 
 }
 
 /* N s: so much at most persists of a reaction of which so much was kept before: twice that and what holds a body at
-   rest; where nothing falls, an eighth of it, rn, at least; of an impact across a gap nothing. w (1/kg): of the pair along n */
+   rest; where nothing falls, an eighth of it, rn, at least; of an impact across a gap a trace. w (1/kg): of the pair along n */
 ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, double w, double rn)
 {
-    if (kept < 0) return 0;
+    if (kept < 0) return SMALL_TRACE * rn;
     const double most = 2 * (kept + o->calm / w);
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }
