@@ -109,7 +109,6 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
     vd kept = dot3(l->n, l->f);
     for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j];
     small_store(c->sum, k, sum);
-    vstore(c->kept + k, kept);
     l->spin = 0.5 * o->h * dot3(w, l->n);
     small_press(l, o);
     vm near =
@@ -120,8 +119,9 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
         vd before[3];
         bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
         small_velocity_image(y, s, &ma, &mb, before);
-        small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
+        small_meet(l, o, before, &kept, vload(c->e[0] + k), vload(c->e[1] + k));
     }
+    vstore(c->kept + k, kept);
     small_store(c->q, k, l->q);
 }
 
@@ -175,6 +175,7 @@ ALWAYS_INLINE bool small_mark(const struct small_pairs *y, struct small *s, vd c
     double x[LANES], top[LANES];
     bool far = false;
     if (!again && !any(lt(allowed, change))) return false;
+    if (!again) change = change / (1 + vload(y->c->e[0] + y->k));
     vstore(x, change), vstore(top, allowed);
     for (int j = 0; j < LANES; j++) {
         if (!(x[j] > (again ? 0 : top[j]))) continue;
@@ -289,6 +290,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
         small_load(l.q, y.c->q, k), acts = acts & *hot;
     else
         small_begin(&y, s, &l), small_turned(&y, &l, couple);
+    l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     small_solve(&l, df);
     small_keep(&y, &l, had, couple, acts, df, dc);
     small_store(y.c->f, k, l.f), small_store(y.c->couple, k, couple);
@@ -362,6 +364,9 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
     small_load(had, y.c->f, k), small_load(l.q, y.c->q, k);
     small_set_law(&l, &y, s);
+    l.calm = splat(s->rate.calm);
+    if (s->hold) l.calm += 2 * l.wn * vload(s->hold[i].x[HOLD_PULL] + k);
+    l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     for (int j = 0; j < 3; j++) l.f[j] = had[j];
     vd pushes = norm3(had);
     small_solve(&l, df);

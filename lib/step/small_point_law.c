@@ -95,7 +95,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
     small_array(before, u);
     l.cn = l.ct = 0;
-    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
+    if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);
 }
 
@@ -186,6 +186,7 @@ static void mark_meeting(struct small_run *r, const struct small_meeting *m, dou
     const int32_t a = m->key.a, b = m->key.b;
     const double ia = a < 0 ? 0 : s->body[a].im, ib = s->body[b].im, least = fmin(ia, ib);
     const double allowed = s->rate.allowed[again] * (least > 0 ? sqrt(least / fmax(ia, ib)) : 1);
+    if (!again) change /= 1 + m->point[0].e[0];
     if (!(change > (again ? 0 : allowed))) return;
     const bool far = mark_body(s, a, change, allowed);
     if (mark_body(s, b, change, allowed) || far) r->far = true;

@@ -40,7 +40,7 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
     small_array(before, small_touch_before(r, t));
-    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
+    small_meet(l, &s->rate, before, &t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
 
@@ -63,7 +63,7 @@ static vec3 hold_touch(const struct small_run *r, struct small_touch *t, struct 
     const double pull =
         small_hold_pull(t->hold, l->n, l->gap, lt(0, dot3(l->n, l->f)), r->h, SMALL_WARM, dp);
     for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp[k];
-    l->calm += 2 * l->wn * pull;
+    l->calm = r->l->s.rate.calm + 2 * l->wn * pull;
     return small_vec(dp);
 }
 
@@ -113,6 +113,7 @@ vec3 small_touch_begin(const struct small_run *r, struct small_touch *t, struct 
     if (s->stick) stick_touch(r, t);
     l->mu = t->mu;
     begin_touch(r, t, l);
+    l->most = small_most(l, &s->rate, t->kept);
     return dp;
 }
 
@@ -128,7 +129,7 @@ void small_touch_give(struct small_run *r, struct small_touch *t, const struct s
     small_body_push(&s->body[t->body], given, v3_add(dc, small_vec(dm)));
     const double turn = t->arm * s->body[t->body].ii * norm3(dm);
     const double change = heavy * (l->wn * v3_norm(given) + turn);
-    if (!again && !(change > s->rate.allowed[0])) return;
+    if (!again && !(change > (1 + t->e[0]) * s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;
     s->change[t->body] = 0, s->hot[t->body] = s->sweep;

@@ -56,7 +56,16 @@ like "targets out of reach" "$(cat far.out)" 'no parameters in their ranges reac
 # ---- the same table: after kills, for other numbers of processes ----
 
 nsd-fit --quiet -j 1 -n 34 -o once known.json >once.out 2>&1 || true
-for _ in 1 2 3; do timeout -s KILL 1.5 nsd-fit --quiet -j 3 -n 34 -o killed known.json >/dev/null 2>&1 || true; done
+killed_at() # LINES: a run that is killed as soon as its table has so many
+{
+    nsd-fit --quiet -j 3 -n 34 -o killed known.json >/dev/null 2>&1 &
+    local pid=$!
+    until { [ -e killed/table.tsv ] && [ "$(wc -l <killed/table.tsv)" -ge "$1" ]; } || ! kill -0 $pid 2>/dev/null; do sleep 0.02; done
+    kill -KILL $pid 2>/dev/null || true
+    wait $pid 2>/dev/null || true
+}
+for lines in 3 9 20; do killed_at $lines; done
+ok "runs are killed before they end" [ "$(wc -l <killed/table.tsv)" -lt 34 ]
 printf '7\t' >>killed/table.tsv # a line that was being written
 nsd-fit --quiet -j 2 -n 34 -o killed known.json >killed.out 2>&1 || true
 ok "after kills" cmp once/table.tsv killed/table.tsv

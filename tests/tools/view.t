@@ -290,6 +290,10 @@ stand '[0, 0, 9.81]' '[.[0], -.[1], -.[2]]' >"$tmp/over.h5"
 stand '[9.81, 0, 0]' '[-.[2], .[1], .[0]]' >"$tmp/turned.h5"
 view --plain "$tmp/down.h5" >"$tmp/down.png"
 ok "in space gravity points down in a picture" cmp "$tmp/down.png" <(view --plain "$tmp/over.h5")
+jq -n '{ dt: 1e-3, bodies: [{ x: [0, 0, 5.04e-4], radius: 5e-4 }, { x: [0, 0, 0.0132], radius: 5e-4 }] }' | nsd-gen - >"$tmp/tall.h5"
+view --size 200x900 -c height "$tmp/tall.h5" >"$tmp/tall.png"
+picture "the ends of a palette are two numbers, also in a narrow picture" "$tmp/tall.png" \
+    "(lambda ink: max(b - a for a, b in zip(ink, ink[1:])))([x for x in range(int(0.45 * w)) if any(max(at(x, y)) < 130 for y in range(h - 14, h))]) > 8"
 # the rows and columns that coloured grains fill, above the legend
 grains='[[f(k) for f in (min, max) for k in [[(x, y)[j] for x in range(w) for y in range(h - 100) if max(at(x, y)) - min(at(x, y)) > 40]]] for j in (0, 1)]'
 /usr/bin/python3 -c '' 2>/dev/null && python "$tmp/down.png" "print($grains, file=open('$tmp/grains', 'w')) or 1"

@@ -49,6 +49,23 @@ for dt in 5e-5 1e-5; do
         "$(nsd-info --last -p "$tmp/out.h5" | jq 'select(.radius > 0.009) | .v[2]')" 0.67 0.05
 done
 
+# A column of five on the floor is struck from above at 2 m/s: by Newton's law for simultaneous impacts the top ball rebounds
+# with 2 e, but for gravity, and the others rest. In whatever order the balls are.
+for e in 0 0.5 0.9; do
+    for order in '0, 1, 2, 3, 4, 5' '3, 0, 5, 1, 4, 2'; do
+        scene "$floor, mu: 0.3, e_n: $e, bodies: [$order | { x: [0, 0, (0.01 + 0.02 * .)], radius: 0.01 } + (if . == 5 then { x: [0, 0, 0.1105], v: [0, 0, -2] } else {} end)]"
+        small_alone 2
+        ok "a column is struck, e $e: the top ball rebounds with 2 e, order $order" near \
+            "$(nsd-info --last -p "$tmp/out.h5" | jq -s 'map(select(.id != null)) | max_by(.x[2]).v[2]')" "2 * $e" 0.25
+    done
+done
+
+for ratio in 300 3000; do
+    scene "$floor, kinds: { heavy: { density: ($ratio * 2600) } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }, { x: [0, 0, 0.03], radius: 0.01, kind: \"heavy\" }]"
+    ok "a ball that carries $ratio times its mass sinks by less than 0.003 radii, in small steps" \
+        eval 'small_alone 200 && near "$(last .max_overlap)" 0 3e-3 && near "$(body ".x[2]")" 0.01 3e-5'
+done
+
 jq -n '{ dim: 3, dt: 1e-3, gravity: [0, 0, 0], density: 2500, mu: 0, e_n: 1, seed: 3, cell: { lengths: [0.05, 0.05, 0.05] },
     bodies: [range(6) as $i | range(6) as $j | range(6) as $k | { radius: 0.002, x: [$i, $j, $k] | map((. + 0.5) * 0.0083),
     } | .v = [(.x[0] * 7e4 | sin), (.x[1] * 5e4 + 1 | sin), (.x[2] * 6e4 + 2 | sin)]] | map(.v |= map(. * 0.5)) }' | nsd-gen - >"$tmp/in.h5"
