@@ -565,13 +565,13 @@ stated() # DIM STIFFNESS
     jq -n --argjson dim "$1" --argjson k "$2" '{ dim: $dim, dt: 1e-3, walls: [{ point: [0, 0, 0][:$dim], normal: [0, 0, 1][-$dim:] }],
         bodies: [{ x: [0, 0, 0.01][-$dim:], radius: 0.01 }, { x: [0.1, 0.02, 0.02][:$dim], radius: 0.02 }] } +
         if $k then { stiffness: $k } else {} end' | nsd-gen - >"$tmp/stated.h5"
-    nsd-info "$tmp/stated.h5" | jq -c 'select(.kind == "packing").material[0].stiffness // empty'
+    nsd-info "$tmp/stated.h5" | jq -c 'select(.type == "packing").material[0].stiffness // empty'
 }
 for dim in 2 3; do
     k=$(stated $dim '"auto"' | jq .normal)
     stated $dim null
     nsd-detect --stiffness auto "$tmp/stated.h5" >"$tmp/found.h5"
-    ok "in ${dim}D \"auto\" in a scene is --stiffness auto" near "$(nsd-info "$tmp/found.h5" | jq 'select(.kind == "packing").material[0].stiffness.normal')" "$k" 1e-15
+    ok "in ${dim}D \"auto\" in a scene is --stiffness auto" near "$(nsd-info "$tmp/found.h5" | jq 'select(.type == "packing").material[0].stiffness.normal')" "$k" 1e-15
 done
 ok "Young's modulus E: pi/4 E d of the smallest ball" near "$(stated 3 '{ "young": 1e7 }' | jq .normal)" "$(jq -n '3.141592653589793 / 4 * 1e7 * 0.02')" 1e-15
 is "in the plane E; and 2/7 of it across, or what is given" "$(stated 2 '{ "young": 7e6 }')$(stated 2 '{ "young": 7e6, "tangential": 5e3 }')" \
