@@ -53,7 +53,8 @@ static void warn_of_other_solver(const struct report *r, const char *where)
         !strcmp(first.method, r->method) && first.criterion == r->criterion && first.eps == r->eps;
     if (same || warned) return;
     warned = true;
-    warn("%s: solved by -m %s --criterion %s --tolerance %g; the trajectory states -m %s --criterion %s "
+    warn("%s: solved by -m %s --criterion %s --tolerance %g; the trajectory states -m %s "
+         "--criterion %s "
          "--tolerance %g for all: --stream keeps each",
          where, r->method, criterion_name[r->criterion], r->eps, first.method,
          criterion_name[first.criterion], first.eps);

@@ -115,7 +115,7 @@ static json_t *solve_options(const char *text)
 static void show_document(const struct frame *f, int64_t frames)
 {
     json_t *j = json_object();
-    json_object_set_new(j, "kind", json_string(f->foreign ? "problem" : "packing"));
+    json_object_set_new(j, "type", json_string(f->foreign ? "problem" : "packing"));
     json_object_set_new(j, "frames", json_integer(frames));
     if (f->foreign) {
         const struct delassus *W = &f->problem.W;

@@ -31,25 +31,26 @@ enum {
 
 static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where dt adapts */
 static struct cli_every every = { 1, 0 };
-static double until, lines; /* s: of the motion; of real time */
+static double until;             /* s of the motion */
+static double lines, save_every; /* s of real time */
 static bool contacts, forces, sums, in_place;
-static const char *output, *save;
+static const char *output;
 static double tol; /* radii: TOL; 0: dt does not adapt */
 
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
-    { CLI_REAL, 0, "until", &until, "T", "make steps until the time is T, s [by -n]", .min = -1e300,
-      .max = 1e300 },
+    { CLI_TIME, 0, "until", &until, "T", "make steps until the time is T: 2 or 2s, 5ms [by -n]",
+      .min = -1e300, .max = 1e300 },
     { CLI_TEXT, 0, "dt", &options.dt, "DT|auto:TOL",
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
-      .help = "sweep small steps until at most a part B of impulses is missing [none]" },
+      .help = "sweep until at most a part B of the impulses is missing [none]" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
-    { CLI_EVERY, 0, "every", &every, "K|Ts",
-      "keep every K-th step, or one per T s of time, and the last [1]", .max = 1e15 },
+    { CLI_EVERY, 0, "every", &every, "K|T",
+      "keep every K-th step, or one per time T: 0.1s, 5ms, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
     { CLI_FLAG, 0, "forces", &forces,
       .help = "also keep their forces as vectors in N; implies --contacts" },
@@ -61,12 +62,12 @@ static const struct cli_option own[] = {
       .help = "start each solve from reactions 0, as in the paper", .usual = options_usual },
     { CLI_FLAG, 'i', "in-place", &in_place, .silent = true,
       .help = "append to FILE; default if standard output is a terminal" },
-    { CLI_ABOVE, 0, "progress", &lines, "S", .max = 1e9, .silent = true,
-      .help = "report progress every S seconds [only on a terminal]" },
+    { CLI_TIME, 0, "progress", &lines, "T", .max = 1e9, .silent = true,
+      .help = "report every T of real time: 30 or 30s, 10min [only on a terminal]" },
     { CLI_FLAG, 'k', "keep-going", &options.keep_going, .silent = true,
       .help = "under -e, make all steps, also after one that fails" },
-    { CLI_TEXT, 0, "save", &save, "TIME", .silent = true,
-      .help = "write a checkpoint OUTPUT.save every TIME, e.g. 10min [never]" },
+    { CLI_TIME, 0, "save", &save_every, "T", .max = 1e9, .silent = true,
+      .help = "checkpoint to OUTPUT.save every T of real time: 90s, 10min [never]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", "write to FILE [standard output]", .silent = true },
     { 0 },
 };
@@ -364,26 +365,9 @@ struct run {
 
 /* ---- checkpoints ---- */
 
-static double save_every; /* s of real time */
-
-/* "90s", "10min", "2h" */
-static void parse_save(void)
-{
-    static const struct {
-        const char *name;
-        double seconds;
-    } units[] = { { "s", 1 }, { "min", 60 }, { "h", 3600 }, { NULL, 0 } };
-    char *end;
-    double x = strtod(save, &end);
-    for (int k = 0; units[k].name && end != save; k++)
-        if (!strcmp(end, units[k].name)) save_every = x * units[k].seconds;
-    if (!(save_every > 0 && save_every < 1e9))
-        die_usage("--save: '%s' is no time as 90s, 10min or 2h", save);
-}
-
 static void save_begin(struct run *r, const char *path)
 {
-    if (!save) return;
+    if (!(save_every > 0)) return;
     if (!path) die_usage("--save requires -o FILE or -i");
     size_t room = strlen(path) + sizeof ".save";
     if (!(r->save_path = malloc(room))) die(EX_SOFTWARE, "no memory");
@@ -751,7 +735,6 @@ int tool_main(int argc, char **argv)
         die_usage("--device: needs a single process, without mpirun");
     if (options.keep_going && !options.strict) die_usage("--keep-going: needs -e");
     if (cli_given(&until) && cli_given(&steps)) die_usage("-n and --until exclude each other");
-    if (save) parse_save();
     if (in_place && output) die_usage("-i and -o exclude each other");
     if (in_place && !file) die_usage("-i: one FILE, to which it appends");
     if (file && !output && isatty(STDOUT_FILENO) && !processes_started()) in_place = true;

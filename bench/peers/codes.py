@@ -113,7 +113,7 @@ def balls_of(document):
     frame = nsd.last(document)
     names = frame.file["nsd/material"].attrs["kinds"]
     names = (names.decode() if isinstance(names, bytes) else names).split("\n")
-    return {"x": frame.x[:], "v": frame.v[:], "radius": frame.radius[:], "mass": frame.mass[:],
+    return {"x": frame.position[:], "v": frame.velocity[:], "radius": frame.radius[:], "mass": frame.mass[:],
             "kind": np.array([names[k] for k in frame.kind])}
 
 
@@ -140,7 +140,7 @@ def run_nsd(folder, start, span, options, threads, bound, **_):
         for frame in nsd.frames(out):
             yield frame.time, frame
 
-    return cost, ((t, {"x": f.x, "v": f.v, "radius": f.radius, "mass": f.mass}) for t, f in frames())
+    return cost, ((t, {"x": f.position, "v": f.velocity, "radius": f.radius, "mass": f.mass}) for t, f in frames())
 
 
 def run_liggghts(folder, start, span, scene, modulus, threads, bound, velocities, skin=None, **_):

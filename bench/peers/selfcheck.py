@@ -92,8 +92,8 @@ def rest(peers, balls=500, settle=3.0, steps=100000):
     start, r = first.x[:], first.radius[:]
     rows = []
     for frame in codes.nsd.frames(long):
-        way = np.sqrt(((frame.x[:] - start) ** 2).sum(1)) / (2 * r.mean())
-        kinetic = (0.5 * frame.mass[:] * (frame.v[:] ** 2).sum(1)).mean() / (frame.mass[:].mean() * about["g"] * 2 * r.mean())
+        way = np.sqrt(((frame.position[:] - start) ** 2).sum(1)) / (2 * r.mean())
+        kinetic = (0.5 * frame.mass[:] * (frame.velocity[:] ** 2).sum(1)).mean() / (frame.mass[:].mean() * about["g"] * 2 * r.mean())
         rows.append({"step": frame.step - first.step, "kinetic": float(kinetic), "median": float(np.median(way[held])),
                      "held": float(way[held].max()), "largest": float(way.max()),
                      "overlap": float(frame.report["max_overlap"] / r.min())})

@@ -61,19 +61,46 @@ static int option_set_number(const struct cli_option *o, void *to, const char *t
     return 0;
 }
 
+/* A number and a unit of time, or none. Returns the unit in s; 0: there is none; below 0: it is no number, or no unit */
+static double read_time(const char *text, double *x)
+{
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = { { "", 0 }, { "ms", 1e-3 }, { "s", 1 }, { "min", 60 }, { "h", 3600 } };
+    char *end;
+    *x = number_read(text, &end);
+    if (end == text || !isfinite(*x) || isspace((unsigned char)*text)) return -1;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (!strcmp(end, units[k].name)) return units[k].seconds;
+    return -1;
+}
+
+static int set_time(const struct cli_option *o, double *to, const char *text,
+                    struct failure *failure)
+{
+    double x, unit = read_time(text, &x);
+    if (unit < 0)
+        return option_wrong(o, failure, text, "is no time as 90 (seconds), 5ms, 90s, 10min or 2h");
+    if (unit > 0) x *= unit;
+    if (!(x > o->min && x <= o->max))
+        return failure_set(failure, EX_USAGE, "--%s: %s must be above %g s and at most %g s",
+                           o->name, text, o->min, o->max);
+    *to = x;
+    return 0;
+}
+
 static int set_every(const struct cli_option *o, struct cli_every *e, const char *text,
                      struct failure *failure)
 {
-    char *end;
-    double x = number_read(text, &end);
-    bool seconds = !strcmp(end, "s");
-    if (end == text || (*end && !seconds) || !isfinite(x) || isspace((unsigned char)*text))
+    double x, unit = read_time(text, &x);
+    if (unit < 0)
         return option_wrong(o, failure, text,
-                            "is neither a number of steps nor, as 0.01s, of seconds");
-    if (seconds ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
+                            "is neither a number of steps nor, as 0.01s or 5ms, a time");
+    if (unit > 0 ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
         return failure_set(failure, EX_USAGE, "--%s: %s must be %s", o->name, text,
-                           seconds ? "above 0" : "a whole number, at least 1");
-    *e = (struct cli_every){ seconds ? 0 : (int64_t)x, seconds ? x : 0 };
+                           unit > 0 ? "above 0" : "a whole number, at least 1");
+    *e = unit > 0 ? (struct cli_every){ 0, x * unit } : (struct cli_every){ (int64_t)x, 0 };
     return 0;
 }
 
@@ -98,6 +125,8 @@ int option_set(const struct cli_option *o, void *to, const char *text, struct fa
         return 0;
     case CLI_CHOICE:
         return set_choice(o, to, text, failure);
+    case CLI_TIME:
+        return set_time(o, to, text, failure);
     case CLI_EVERY:
         return set_every(o, to, text, failure);
     default:

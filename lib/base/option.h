@@ -18,7 +18,8 @@ enum cli_kind {
     CLI_REAL,    /* double in [min, max] */
     CLI_ABOVE,   /* double in (min, max] */
     CLI_BETWEEN, /* double in (min, max) */
-    CLI_EVERY,   /* struct cli_every: "10" steps or "0.01s" */
+    CLI_TIME,    /* double, s, in (min, max]: "90", "90s", "10min", "2h", "5ms" */
+    CLI_EVERY,   /* struct cli_every: "10" steps or, with a unit of time, "0.01s" */
     CLI_CHOICE,  /* int: the index of the word among its choices */
     CLI_TEXT     /* const char * */
 };

@@ -5,7 +5,7 @@
     run.step(100)
     print(run.position[:, 2].max())
     for frame in nsd.frames("out.h5"):          # frames of documents [nsd-format(5)]
-        print(frame.step, frame.time, frame.x[:, 2].max())
+        print(frame.step, frame.time, frame.position[:, 2].max())
 
 It needs libnsd.so.1 and numpy, which are loaded when they are first used.
 """

@@ -2,7 +2,7 @@
 
     import nsd
     for frame in nsd.frames("out.h5"):          # a trajectory, documents back to back, or "-"
-        print(frame.step, frame.time, frame.x[:, 2].max())
+        print(frame.step, frame.time, frame.position[:, 2].max())
     contacts = nsd.last("out.h5").contacts      # None: the document keeps none
     print(contacts.force[:3])                   # N, on b, in space
     problem = nsd.fclib("problem.hdf5")         # W, q, mu ...
@@ -74,6 +74,10 @@ class Contacts:
         return None if self.reaction is None else np.hypot(*self.reaction[:, 1:].T) / self._dt
 
 
+# Names of version 1, for programs that have them
+_BEFORE = {"x": "position", "v": "velocity", "w": "angular_velocity", "q": "orientation"}
+
+
 class Frame:
     """One frame of a document."""
 
@@ -104,14 +108,16 @@ class Frame:
 
     def __getattr__(self, name):
         """Any other number of the bodies, by the name of its dataset in nsd-format(5)."""
+        if name in _BEFORE:
+            return getattr(self, _BEFORE[name])
         if name.startswith("_") or name not in self._all:
             raise AttributeError(f"the document has no {name} of bodies", name=name, obj=self)
         return self._moving(name) if isinstance(self._all[name], Group) else self._fixed(name)
 
-    x = cached_property(lambda self: self._moving("position"))  # m
-    v = cached_property(lambda self: self._moving("velocity"))  # m/s
-    w = cached_property(lambda self: self._moving("angular_velocity"))  # rad/s
-    q = cached_property(lambda self: self._moving("orientation"))  # unit quaternions (w, x, y, z)
+    position = cached_property(lambda self: self._moving("position"))  # m
+    velocity = cached_property(lambda self: self._moving("velocity"))  # m/s
+    angular_velocity = cached_property(lambda self: self._moving("angular_velocity"))  # rad/s
+    orientation = cached_property(lambda self: self._moving("orientation"))  # unit quaternions (w, x, y, z)
     radius = cached_property(lambda self: self._fixed("radius"))  # m
     mass = cached_property(lambda self: self._fixed("mass"))  # kg
     inertia = cached_property(lambda self: self._fixed("inertia"))  # kg m^2

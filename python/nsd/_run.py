@@ -465,8 +465,8 @@ class Run:
 
     # ---- acting ----
 
-    def push(self, id: int, force: ArrayLike | None = None, torque: ArrayLike | None = None, *,
-             once: bool = False) -> None:
+    def apply_force(self, id: int, force: ArrayLike | None = None, torque: ArrayLike | None = None, *,
+                    once: bool = False) -> None:
         """Applies a force [3] (N) and a torque [3] (N m), in the axes of space, to the body with this id, in the next step only or
         until they are changed; None: zero. Raises Error (status 65) if there is no such body."""
         self._call("nsd_force", check.whole(id, "id"), _vector(force, "force"), _vector(torque, "torque"),
@@ -486,10 +486,12 @@ class Run:
         for wall in self._whole_walls(boundary):
             self._call("nsd_boundary_velocity", wall, vector)
 
-    def throw(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
+    def set_velocity(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
         """Gives the body with this id a velocity [3] (m/s) and an angular velocity [3] (rad/s), in the axes of space; None: unchanged."""
         self._call("nsd_velocity", check.whole(id, "id"), _vector(velocity, "velocity"),
                    _vector(angular_velocity, "angular_velocity"))
+
+    push, throw = apply_force, set_velocity  # names of version 1, for programs that have them
 
     def gravity(self, g: ArrayLike) -> None:
         """Sets gravity, [3] m/s^2."""

@@ -73,16 +73,19 @@ def _bodies(f: Frame, shapes: dict[str, Any]):
     inertia = np.zeros((len(r), 9))
     inertia[:, ::4] = f.inertia[:, None] * (moment / moment.mean(1)[:, None])[row]
     kind, ball, own = what[row], row == 0, np.where(row > 0, 1, np.nan)
-    rows = [_rows(len(r), x=f.x, body_id=f.id, shape_type=kind, material_id=np.where(kind == CLUMP, -1, f.kind), velocity=f.v,
-                  angular_velocity=f.w, orientation=f.q, mass=f.mass, volume=volume[row] * r ** 3, inertia=inertia, blocked_dofs=fixed,
+    rows = [_rows(len(r), x=f.position, body_id=f.id, shape_type=kind, material_id=np.where(kind == CLUMP, -1, f.kind),
+                  velocity=f.velocity, angular_velocity=f.angular_velocity, orientation=f.orientation, mass=f.mass,
+                  volume=volume[row] * r ** 3, inertia=inertia, blocked_dofs=fixed,
                   radius=np.where(ball, r, np.nan), dimensions=sides[row] * r[:, None], nsd_shape=np.where(ball, -1, row),
                   nsd_radius=own * r, nsd_inertia=own * f.inertia)]
     start = int(f.id.max(initial=-1)) + 1
     for i in np.flatnonzero(kind == CLUMP):
         at, n = corners[row[i]] * r[i], len(corners[row[i]])
-        away = _turn(f.q[i], at)
-        rows.append(_rows(n, x=f.x[i] + away, body_id=np.arange(start, start + n), shape_type=SPHERE, material_id=f.kind[i], clump_id=f.id[i],
-                          velocity=f.v[i] + np.cross(f.w[i], away), angular_velocity=f.w[i], orientation=f.q[i], blocked_dofs=fixed[i],
+        away = _turn(f.orientation[i], at)
+        rows.append(_rows(n, x=f.position[i] + away, body_id=np.arange(start, start + n), shape_type=SPHERE,
+                          material_id=f.kind[i], clump_id=f.id[i],
+                          velocity=f.velocity[i] + np.cross(f.angular_velocity[i], away), angular_velocity=f.angular_velocity[i],
+                          orientation=f.orientation[i], blocked_dofs=fixed[i],
                           radius=r[i] * np.split(shapes["ball"], ends[:-1])[row[i] - 1], clump_relative_position=at,
                           clump_relative_orientation=[1, 0, 0, 0]))
         start += n

@@ -328,7 +328,7 @@ for path in sorted(glob.glob(sys.argv[1] + "/hostile.*.h5")):
                 assert not hasattr(o, "shape") or "secret" not in str(o[()]), (path, name)
                 o.attrs
         for frame in nsd.frames(path):
-            frame.x, frame.report, frame.contacts
+            frame.position, frame.report, frame.contacts
         other += 1
     except nsd.Error as e:
         assert e.status in (64, 65), (path, e.status, e)
@@ -336,7 +336,7 @@ for path in sorted(glob.glob(sys.argv[1] + "/hostile.*.h5")):
     except (KeyError, ValueError, IndexError, TypeError, MemoryError, EOFError):
         other += 1
 assert refused > 2, (refused, other)
-assert nsd.last(sys.argv[1] + "/four.h5").x.shape == (4, 3)
+assert nsd.last(sys.argv[1] + "/four.h5").position.shape == (4, 3)
 PYTHON
 }
 if grep -q __asan_init "$(command -v nsd-gen)"; then

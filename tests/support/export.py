@@ -39,9 +39,9 @@ def same(a, b):
 
 def check_grains(path, frame):
     x, cells, data, _, field = vtk_read(path)
-    same(x, frame.x), same(cells, np.arange(len(x))[:, None])
+    same(x, frame.position), same(cells, np.arange(len(x))[:, None])
     for name, value in dict(id=frame.id, kind=frame.kind, radius=frame.radius, mass=frame.mass,
-                            velocity=frame.v, angular_velocity=frame.w, orientation=frame.q).items():
+                            velocity=frame.velocity, angular_velocity=frame.angular_velocity, orientation=frame.orientation).items():
         same(data[name], value)
     same(field["step"], [frame.step]), same(field["TimeValue"], [frame.time])
     return data
@@ -54,8 +54,8 @@ def check_contacts(path, frame):
     if not len(c):
         return
     ends = x[np.array(cells)]
-    same(ends[:, 1], frame.x[c.b])
-    same(ends[:, 0], np.where(c.a[:, None] >= 0, frame.x[c.a], c.point))
+    same(ends[:, 1], frame.position[c.b])
+    same(ends[:, 0], np.where(c.a[:, None] >= 0, frame.position[c.a], c.point))
     same(data["body"], np.stack([c.a, c.b], 1)), same(data["gap"], c.gap), same(data["status"], c.status)
     same(data["normal"], c.normal), same(data["point"], c.point)
     largest = abs(c.force).max()
@@ -74,7 +74,7 @@ def check_boundary(path, frame):
         assert len(corners) >= 3
         off = (x[corners] - data["point"][k]) @ data["normal"][k]
         assert abs(off).max() < 1e-9
-        inside = ((frame.x - data["point"][k]) @ data["normal"][k])
+        inside = ((frame.position - data["point"][k]) @ data["normal"][k])
         assert inside.min() > 0  # the grains are on the side of the normal
 
 
@@ -128,9 +128,9 @@ def stl(path, document, detail):
     out = reader.GetOutput()
     x = vtk_to_numpy(out.GetPoints().GetData()).astype(float).reshape(-1, 3, 3)
     each = 20 * 4 ** detail
-    balls = x[:each * len(frame.x)].reshape(len(frame.x), each, 3, 3)
+    balls = x[:each * len(frame.position)].reshape(len(frame.position), each, 3, 3)
     # by the divergence theorem: positive where triangles are seen from outside
-    off = balls - frame.x[:, None, None]
+    off = balls - frame.position[:, None, None]
     volume = np.einsum("bti,bti->b", off[:, :, 0], np.cross(off[:, :, 1], off[:, :, 2])) / 6
     share = volume / (4 / 3 * np.pi * frame.radius ** 3)
     # the icosahedron in a unit ball has 2.53615 m^3 of 4.18879
@@ -138,7 +138,7 @@ def stl(path, document, detail):
     assert np.ptp(share) < 1e-3 and abs(share.mean() - expected) < 0.03, (share.mean(), expected)
     reach = np.linalg.norm(off, axis=-1) / frame.radius[:, None, None]
     assert abs(reach - 1).max() < 1e-3  # corners are on the ball
-    assert len(x) - each * len(frame.x) >= 10  # five walls
+    assert len(x) - each * len(frame.position) >= 10  # five walls
 
 
 def surfaces(path, document, density):
@@ -146,16 +146,16 @@ def surfaces(path, document, density):
     x, cells, _, data, field = vtk_read(path)
     frame = nsd.last(document)
     same(field["step"], [frame.step])
-    volume, first = np.zeros(len(frame.x)), np.zeros((len(frame.x), 3))
+    volume, first = np.zeros(len(frame.position)), np.zeros((len(frame.position), 3))
     row = {id: i for i, id in enumerate(frame.id)}
     for k, corners in enumerate(cells):
         i = row[data["id"][k]]
-        p = x[corners] - frame.x[i]
+        p = x[corners] - frame.position[i]
         for a, b in zip(p[1:], p[2:]):
             v = np.dot(p[0], np.cross(a, b)) / 6
             volume[i] += v
             first[i] += v * (p[0] + a + b) / 4
-        same(data["velocity"][k], frame.v[i]), same(data["mass"][k], frame.mass[i])
+        same(data["velocity"][k], frame.velocity[i]), same(data["mass"][k], frame.mass[i])
     seen = volume > 0
     assert seen.sum() == (data["shape"].max() > 0) * len(set(data["id"])) > 0
     assert abs(volume * density / frame.mass - 1)[seen].max() < 1e-6
@@ -168,8 +168,8 @@ def xyz(path, document):
     frames = list(nsd.frames(document))
     same(len(read), len(frames))
     for a, f in zip(read, frames):
-        same(a.positions, f.x), same(a.arrays["radius"], f.radius), same(a.arrays["id"], f.id)
-        same(a.arrays["velo"], f.v), same(a.arrays["orientation"], np.roll(f.q, -1, 1))
+        same(a.positions, f.position), same(a.arrays["radius"], f.radius), same(a.arrays["id"], f.id)
+        same(a.arrays["velo"], f.velocity), same(a.arrays["orientation"], np.roll(f.orientation, -1, 1))
         same(a.info["Step"], f.step), same(a.info["Time"], f.time), same(a.pbc, [False] * 3)
 
 
@@ -180,7 +180,7 @@ def lammps(path, document):
     read = ase.io.read(path, index=":", format="lammps-dump-text")
     same(len(read), len(frames))
     for a, f in zip(read, frames):
-        same(a.positions, f.x[np.argsort(f.id, kind="stable")])
+        same(a.positions, f.position[np.argsort(f.id, kind="stable")])
     u = MDAnalysis.Universe(path, format="LAMMPSDUMP", topology_format="LAMMPSDUMP")
     same(len(u.trajectory), len(frames))
     x, mine = u.trajectory[-1].positions, frames[-1].x  # it begins at the box's corner
@@ -190,11 +190,11 @@ def lammps(path, document):
 def table(path, document, part, by):
     frames = [f for f in nsd.frames(document) if part == "grains" or f.contacts is not None]
     read = np.genfromtxt(path, delimiter=by.replace("\\t", "\t"), names=True)
-    same(read["step"], np.concatenate([[f.step] * len(f.x if part == "grains" else f.contacts) for f in frames]))
+    same(read["step"], np.concatenate([[f.step] * len(f.position if part == "grains" else f.contacts) for f in frames]))
     xyz_of = lambda name: np.stack([read[name + k] for k in ("_x", "_y", "_z")], 1)  # noqa: E731
     if part == "grains":
-        same(np.stack([read[k] for k in "xyz"], 1), np.concatenate([f.x for f in frames]))
-        same(xyz_of("velocity"), np.concatenate([f.v for f in frames]))
+        same(np.stack([read[k] for k in "xyz"], 1), np.concatenate([f.position for f in frames]))
+        same(xyz_of("velocity"), np.concatenate([f.velocity for f in frames]))
         return
     force = np.concatenate([f.contacts.force for f in frames])
     assert abs(xyz_of("force") - force).max() <= 1e-14 * abs(force).max()
@@ -230,7 +230,7 @@ def images(document, folder):
         reach = frame.radius[a] + frame.radius[b]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         assert len(a) and (abs(length - reach) < 0.05 * reach).all(), (length / reach)
-        across += (np.linalg.norm(frame.x[b] - frame.x[a], axis=1) > 1.5 * reach).sum()
+        across += (np.linalg.norm(frame.position[b] - frame.position[a], axis=1) > 1.5 * reach).sum()
     assert across > 10  # by images
 
 
@@ -260,7 +260,7 @@ def ase_cell(document, *files):
 
 def box(document):
     import MDAnalysis
-    u = MDAnalysis.Universe.empty(len(nsd.last(document).x), trajectory=True)
+    u = MDAnalysis.Universe.empty(len(nsd.last(document).position), trajectory=True)
     u.load_new(document, format="H5MD", convert_units=False)
     for ts, edge in zip(u.trajectory, edges(document)):
         length = np.linalg.norm(edge, axis=1)
@@ -287,7 +287,7 @@ def mdanalysis(document):
     same(len(u.trajectory), len(frames))
     for ts, f in zip(u.trajectory, frames):
         same(ts.data["step"], f.step), same(ts.time, f.time)
-        same(ts.positions, f.x.astype("f4"))
+        same(ts.positions, f.position.astype("f4"))
 
 
 def readable(document):
@@ -300,7 +300,7 @@ def readable(document):
     u.load_new(document, format="H5MD", convert_units=False)
     for ts, f in zip(u.trajectory, frames):
         there = np.isfinite(ts.positions[:, 0])
-        same(ts.positions[there], f.x.astype("f4"))
+        same(ts.positions[there], f.position.astype("f4"))
 
 
 def looks_on(document):
@@ -309,7 +309,7 @@ def looks_on(document):
     for _ in range(2000):
         try:
             frame = nsd.last(document)
-            if frame and np.isfinite(frame.x).all() and (not seen or frame.step > seen[-1]):
+            if frame and np.isfinite(frame.position).all() and (not seen or frame.step > seen[-1]):
                 seen.append(frame.step)
         except (OSError, KeyError, nsd.Error):  # in the midst of a frame, or of the very first
             failed += 1

@@ -47,16 +47,16 @@ def gsd(document, path):
             assert s.log["configuration/time"][0] == f.time
             assert np.array_equal(s.log["particles/nsd_id"], f.id)
             assert np.array_equal(p.typeid[p.typeid < 2], f.kind[p.typeid < 2])
-            near(p.mass, f.mass), near(p.diameter, 2 * f.radius), near(p.velocity, f.v), near(p.orientation, f.q)
+            near(p.mass, f.mass), near(p.diameter, 2 * f.radius), near(p.velocity, f.velocity), near(p.orientation, f.orientation)
             edges, image = gsd_edges(s.configuration.box), np.asarray(p.image, float)
             if "image" in a:
                 image = image - a["image/value"][f.row]
             size = np.abs(edges).max()
-            shift = f.x - (p.position + image @ edges)  # the centre of the box, for all the same
+            shift = f.position - (p.position + image @ edges)  # the centre of the box, for all the same
             near(shift, np.broadcast_to(shift[0], shift.shape), size)
             for k in range(3):
                 assert "image" not in a or np.all(np.abs(p.position[:, k]) <= 0.5001 * np.abs(edges[:, k]).sum())
-            spin = turn(p.orientation * [1, -1, -1, -1], f.w)
+            spin = turn(p.orientation * [1, -1, -1, -1], f.angular_velocity)
             L = times(np.asarray(p.orientation, float), np.column_stack([np.zeros(p.N), 2 * p.moment_inertia * spin]))
             near(p.angmom, L, np.abs(L).max(), 1e-6)
 
@@ -171,10 +171,10 @@ def check_grains(block, frames):
     for f, frame in enumerate(frames):
         s = vtk_step(block, f)
         assert block["Steps/Values"][f] == frame.time
-        same(s["points"], frame.x)
+        same(s["points"], frame.position)
         same(np.concatenate(s.get("Vertices", [np.zeros(0)])), np.arange(len(frame.id)))
-        for name, value in dict(radius=frame.radius, mass=frame.mass, id=frame.id, kind=frame.kind, velocity=frame.v,
-                                angular_velocity=frame.w, orientation=frame.q).items():
+        for name, value in dict(radius=frame.radius, mass=frame.mass, id=frame.id, kind=frame.kind, velocity=frame.velocity,
+                                angular_velocity=frame.angular_velocity, orientation=frame.orientation).items():
             same(s[name], value)
 
 
@@ -268,9 +268,9 @@ def vtk_reads(document, copy):
     reader.SetFileName(copy)
     reader.Update()
     out = reader.GetOutput()
-    same(vtk_to_numpy(out.GetPoints().GetData()), frame.x)
+    same(vtk_to_numpy(out.GetPoints().GetData()), frame.position)
     assert out.GetNumberOfCells() == n
-    for name, value in dict(radius=frame.radius, id=frame.id, velocity=frame.v, orientation=frame.q).items():
+    for name, value in dict(radius=frame.radius, id=frame.id, velocity=frame.velocity, orientation=frame.orientation).items():
         same(vtk_to_numpy(out.GetPointData().GetArray(name)), value)
 
 
@@ -307,8 +307,8 @@ def ondem(document, path):
                 rows[int(row["body_id"])] = row
         for i, id_ in enumerate(frame.id):
             r = rows[id_]
-            same(r["x"], frame.x[i]), same(r["velocity"], frame.v[i]), same(r["angular_velocity"], frame.w[i])
-            same(r["orientation"], frame.q[i]), same(r["mass"], frame.mass[i])
+            same(r["x"], frame.position[i]), same(r["velocity"], frame.velocity[i]), same(r["angular_velocity"], frame.angular_velocity[i])
+            same(r["orientation"], frame.orientation[i]), same(r["mass"], frame.mass[i])
             assert r["clump_id"] == -1 and r["blocked_dofs"] == (0 if frame.mass[i] else 63)
             near(np.trace(r["inertia"].reshape(3, 3)) / 3, frame.inertia[i], frame.inertia[i], 1e-14)
             assert (r["group"] == "Points") == (r["shape"] == "sphere")
@@ -319,9 +319,9 @@ def ondem(document, path):
                 members = [m for m in rows.values() if m["clump_id"] == id_]
                 assert len(members) > 1
                 for m in members:
-                    away = turn(frame.q[i:i + 1], m["clump_relative_position"][None])[0]
-                    near(m["x"], frame.x[i] + away, 1, 1e-14)
-                    near(m["velocity"], frame.v[i] + np.cross(frame.w[i], away), 1, 1e-14)
+                    away = turn(frame.orientation[i:i + 1], m["clump_relative_position"][None])[0]
+                    near(m["x"], frame.position[i] + away, 1, 1e-14)
+                    near(m["velocity"], frame.velocity[i] + np.cross(frame.angular_velocity[i], away), 1, 1e-14)
         for r in rows.values():
             if r["shape"] == "wall":
                 assert r["wall_axis"] in (0, 1, 2) and abs(r["wall_sense"]) == 1

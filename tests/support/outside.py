@@ -93,10 +93,10 @@ for options in ({}, {"contacts": True}, {"forces": True, "tolerance": 1e-6, "cri
     ok([frame.step for frame in nsd.frames(path("mine.h5"))] == [20, 40, 60, 80], f"one that has not is: {options}")
 
 with nsd.Run.from_document(path("last.h5")) as run:
-    run.throw(3, angular_velocity=[0, 0, 2])
-    run.throw(4, [0.1, 0, 0])
+    run.set_velocity(3, angular_velocity=[0, 0, 2])
+    run.set_velocity(4, [0.1, 0, 0])
     ok((run.angular_velocity[3] == [0, 0, 2]).all() and (run.velocity[4] == [0.1, 0, 0]).all(), "bodies that are thrown")
-    ok(raises(nsd.Error, "is not finite", lambda: run.throw(3, [0, np.nan, 0])), "not to nowhere")
+    ok(raises(nsd.Error, "is not finite", lambda: run.set_velocity(3, [0, np.nan, 0])), "not to nowhere")
 
 # ---- forces that last ----
 
@@ -150,10 +150,10 @@ for name, call in {"step": run.step, "position": lambda: run.position, "save": l
 run, twin = nsd.Run.from_scene(heap), nsd.Run.from_scene(heap)
 run.step(100), twin.step(100)
 for kind, words, call in (
-        (ValueError, "shape", lambda: run.push(0, [1, 2])),
+        (ValueError, "shape", lambda: run.apply_force(0, [1, 2])),
         (ValueError, "broadcast", lambda: setattr(run, "force", np.zeros((3, 2)))),
-        (nsd.Error, "not finite", lambda: run.push(0, [np.nan, 0, 0])),
-        (nsd.Error, "no body 99", lambda: run.push(99, [0, 0, 1])),
+        (nsd.Error, "not finite", lambda: run.apply_force(0, [np.nan, 0, 0])),
+        (nsd.Error, "no body 99", lambda: run.apply_force(99, [0, 0, 1])),
         (nsd.Error, "no body 99", lambda: run.remove([1, 99])),
         (nsd.Error, "twice", lambda: run.remove([1, 1])),
         (ValueError, "shape", lambda: run.add(position=[[0, 0]], radius=[1], density=1)),
@@ -215,8 +215,8 @@ with warnings.catch_warnings():
        "measures have the number of such steps since the last")
 
 space = {"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 1], "radius": 1e-3}]}
-for what, act in (("velocity", lambda r: r.push(0, [1e308, 0, 0])), ("angular velocity", lambda r: r.push(0, torque=[1e308, 0, 0])),
-                  ("position", lambda r: (r.throw(0, [1e20, 0, 0]), r.set(dt=1e300))), ("energy", lambda r: r.throw(0, [1e160, 0, 0]))):
+for what, act in (("velocity", lambda r: r.apply_force(0, [1e308, 0, 0])), ("angular velocity", lambda r: r.apply_force(0, torque=[1e308, 0, 0])),
+                  ("position", lambda r: (r.set_velocity(0, [1e20, 0, 0]), r.set(dt=1e300))), ("energy", lambda r: r.set_velocity(0, [1e160, 0, 0]))):
     fast = nsd.Run.from_scene(space)
     fast.step(2)
     act(fast)
@@ -281,7 +281,8 @@ if h5py:
     ok(True, "documents are read while another thread uses libhdf5")
     frame = nsd.last(path("last.h5"))
     again = nsd.Run.from_document(path("last.h5"))
-    ok((frame.x == again.position).all(), "frames have the same places")
+    ok((frame.x == frame.position).all() and (frame.q == frame.orientation).all(), "by their names of version 1, too")
+    ok((frame.position == again.position).all(), "frames have the same places")
 names = []
 while (name := nsd._library.library.nsd_array_name(len(names))) is not None:
     names.append(name.decode())
@@ -296,7 +297,7 @@ run = nsd.Run.from_scene(heap)
 before = run.position.copy(), run.force.copy()
 a_ball = dict(position=[[2.5e-3, 2.5e-3, 7e-3]], radius=[2e-4], density=2500)
 for name, call in {
-        "n": lambda x: run.step(x), "ids": lambda x: run.remove(x), "id": lambda x: run.push(x, [0, 0, 1]),
+        "n": lambda x: run.step(x), "ids": lambda x: run.remove(x), "id": lambda x: run.apply_force(x, [0, 0, 1]),
         "boundary": lambda x: run.move_boundary(x, [0, 0, 1]), "kind": lambda x: run.add(**a_ball, kind=[x])}.items():
     for x in 1.5, float("nan"), float("inf"), True, None, "1", 1 << 70, -1 << 70, 1 + 2j, b"1":
         if name == "boundary" and x == "1":
@@ -306,7 +307,7 @@ for name, call in {"time": run.until, "force": lambda x: run.push_boundary(5, x)
                    "density": lambda x: run.add(position=[[0, 0, 1]], radius=[1e-4], density=x)}.items():
     for x in True, "1", b"1", [1], 1j:
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r} is refused by name")
-for name, call in {"force": lambda x: run.push(0, x), "velocity": lambda x: run.throw(0, x), "torque": lambda x: setattr(run, "torque", x),
+for name, call in {"force": lambda x: run.apply_force(0, x), "velocity": lambda x: run.set_velocity(0, x), "torque": lambda x: setattr(run, "torque", x),
                    "g": run.gravity, "radius": lambda x: run.add(position=[[0, 0, 1]] * 3, radius=x, density=1)}.items():
     for x in ["1", "2", "3"], [True, False, True], [1j, 0, 0], [None, 0, 0], [10 ** 400, 0, 0]:
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r:.40} is refused by name")
@@ -317,7 +318,7 @@ for name, call in {"path": run.save, "document": nsd.Run.from_document, "scene":
     ok(raises(TypeError, f"{name}: ", lambda: call(3j)), f"{name}: so is what is no text")
 ok((run.position == before[0]).all() and (run.force == before[1]).all() and run.step_number == 0 and len(run.id) == 40,
    "and the run is what it was")
-run.step(np.int64(2)), run.step(1.0), run.push(np.int32(3), [0, 0, 1]), run.remove(np.array([3, 4])), run.remove(5)
+run.step(np.int64(2)), run.step(1.0), run.apply_force(np.int32(3), [0, 0, 1]), run.remove(np.array([3, 4])), run.remove(5)
 ok(run.step_number == 3 and len(run.id) == 37, "whole numbers of any type are taken")
 run.close()
 
@@ -338,9 +339,9 @@ ok(nsd.Run.from_scene(heap).cell is None and nsd.last(path("last.h5")).cell is N
 
 run, twin = nsd.Run.from_scene(heap), nsd.Run.from_scene(heap)
 run.step(20), twin.step(20)
-run.push(3, [1e308, 0, 0], once=True)
+run.apply_force(3, [1e308, 0, 0], once=True)
 ok(raises(nsd.Diverged, "step 21: ", lambda: run.step(5)), "a step whose result is not finite fails, by its number")
-run.push(3, once=True)
+run.apply_force(3, once=True)
 run.save(path("a.h5")), twin.save(path("b.h5"))
 ok(read("a.h5") == read("b.h5"), "and the run, and its document, is what it was")
 
@@ -430,8 +431,8 @@ def child(k):
     with nsd.Run.from_scene(heap) as own:
         own.step(5 + k)
         own.save(path(f"own{k}.h5"))
-        same = (own.position == nsd.last(path(f"own{k}.h5")).x).all()
-        return float(frame.x.sum()) if same else "other places"
+        same = (own.position == nsd.last(path(f"own{k}.h5")).position).all()
+        return float(frame.position.sum()) if same else "other places"
 
 
 with multiprocessing.get_context("fork").Pool(3) as pool:
@@ -439,7 +440,7 @@ with multiprocessing.get_context("fork").Pool(3) as pool:
     run.step(5)
     run.append(path("forked.h5"))
     run.finish()
-    ok(got == [float(frame.x.sum())] * 6, f"multiprocessing: children are refused the run, read documents and make their own {got[:1]}")
+    ok(got == [float(frame.position.sum())] * 6, f"multiprocessing: children are refused the run, read documents and make their own {got[:1]}")
     ok([f.step for f in nsd.frames(path("forked.h5"))] == [5, 10], "and the trajectory is the parent's")
     run.step(5)
     run.append(path("forked.h5"))

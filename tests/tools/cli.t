@@ -87,6 +87,18 @@ like "names the nearest" "$(head -1 "$tmp/err")" "no 'sterss'; did you mean stre
 echo '{"dt": 0.1, "gravity": [0, 0, -9.81], "bodies": [{"x": [0.30000000000000004, 1e-5, -3], "radius": 1e22}]}' | nsd-gen - >"$tmp/digits.h5"
 like "JSON has the fewest digits that are read as the same number" "$(nsd-info -p "$tmp/digits.h5") $(nsd-info "$tmp/digits.h5")" \
     '"radius":1e\+22,.*"x":\[0.30000000000000004,1e-05,-3.0\].*"dt":0.1,.*"gravity":\[0.0,0.0,-9.81\]'
+is "nsd-info says what a document is" "$(nsd-info "$tmp/contacts.h5" | jq -r 'select(.frames).type')" packing
+# times with a unit; --every without one is of steps, others of seconds
+while read -r one other; do
+    is "$one is $other" "$(step ${one//,/ } "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')" \
+        "$(step ${other//,/ } "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')"
+done <<'END'
+-n40,--every=0.5ms -n40,--every=0.0005s
+--until=0.032 --until=32ms
+END
+for wrong in --until=1x --until=ms --progress=0 --save=-1s --every=1d --every=0ms --every=1.5; do
+    refuses 64 "$wrong" nsd-step "$wrong" -o "$tmp/none.h5" "$tmp/heap.h5"
+done
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {

@@ -111,7 +111,7 @@ nsd-step -n 1000 --every 500 --save 0.01s -j 2 -o saved.h5 start.h5 2>/dev/null
 nsd-step -n 1000 --every 500 -o plain.h5 start.h5 2>/dev/null
 ok "it does not change the output" cmp saved.h5 plain.h5
 ok "and is not left at the end" test ! -e saved.h5.save
-for wrong in 10 x -1s 0s 1d s; do refuses 64 "--save $wrong" nsd-step --save=$wrong -o w.h5 start.h5; done
+for wrong in x -1s 0s 1d s 0; do refuses 64 "--save $wrong" nsd-step --save=$wrong -o w.h5 start.h5; done
 refuses 64 "--save without a name" nsd-step --save 1s start.h5
 refuses 64 "--save to its input" eval 'cp start.h5 x.h5.save && nsd-step --save 1s -o x.h5 x.h5.save'
 

@@ -565,14 +565,14 @@ stated() # DIM STIFFNESS
     jq -n --argjson dim "$1" --argjson k "$2" '{ dim: $dim, dt: 1e-3, walls: [{ point: [0, 0, 0][:$dim], normal: [0, 0, 1][-$dim:] }],
         bodies: [{ x: [0, 0, 0.01][-$dim:], radius: 0.01 }, { x: [0.1, 0.02, 0.02][:$dim], radius: 0.02 }] } +
         if $k then { stiffness: $k } else {} end' | nsd-gen - >"$tmp/stated.h5"
-    nsd-info "$tmp/stated.h5" | jq -c 'select(.kind == "packing").material[0].stiffness // empty'
+    nsd-info "$tmp/stated.h5" | jq -c 'select(.type == "packing").material[0].stiffness // empty'
 }
 for dim in 2 3; do
     both=$(stated $dim '"auto"')$(stated $dim '{ "compliance": 1e-2 }')
     stated $dim null
     nsd-detect --stiffness auto "$tmp/stated.h5" >"$tmp/found.h5"
     is "in ${dim}D \"auto\" in a scene is --stiffness auto, and a compliance of 1e-2" "$both" \
-        "$(nsd-info "$tmp/found.h5" | jq -c 'select(.kind == "packing").material[0].stiffness | ., .' | paste -sd '')"
+        "$(nsd-info "$tmp/found.h5" | jq -c 'select(.type == "packing").material[0].stiffness | ., .' | paste -sd '')"
 done
 refuses 64 "a compliance above 1" nsd-step --stiffness auto:2 "$tmp/stated.h5"
 refuses 65 "a compliance with a tangential stiffness" nsd-gen <(jq -n '{ dt: 1e-3, stiffness: { compliance: 0.1, tangential: 1e3 }, bodies: [{ x: [0, 0, 0], radius: 1 }] }')
