@@ -32,10 +32,10 @@ height() { jq -s 'map(.x[2]) | add / length * 1e3' <(nsd-info --last -p "$1"); }
 
 nsd_half() # EPS
 {
-    nsd-step -j 1 -n $((steps - late)) --every "$steps" --criterion natural --warm --eps "$1" "$work/start.h5" 2> /dev/null | nsd-cat --last > "$work/rests.h5"
+    nsd-step -j 1 -n $((steps - late)) --every "$steps" --criterion natural --warm --tolerance "$1" "$work/start.h5" 2> /dev/null | nsd-cat --last > "$work/rests.h5"
     TIMEFORMAT='%U'
     local seconds natural
-    { time nsd-step -j 1 -n "$late" --every "$late" --contacts --criterion natural --warm --eps "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
+    { time nsd-step -j 1 -n "$late" --every "$late" --contacts --criterion natural --warm --tolerance "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
     seconds=$(cat "$work/time")
     nsd-info --last -p "$work/end.h5" | jq -s 'map({x, v, w})' > "$work/moving"
     natural=$(nsd-info --last -c "$work/end.h5" | jq -s --argjson dt $dt --slurpfile bodies "$work/moving" \
@@ -64,7 +64,7 @@ bullet_half() # ITERATIONS
     awk 'NR > 1 { s = sqrt($5 ^ 2 + $6 ^ 2 + $7 ^ 2); a = s > 0 ? 2 * atan2(s, $4) / s : 0
             printf("%s{\"shape\": \"brick\", \"x\": [%s, %s, %s], \"orientation\": [%.17g, %.17g, %.17g]}", NR == 2 ? "[" : ", ", $1, $2, $3, a * $5, a * $6, a * $7) }
         END { print "]" }' "$work/bullet" > "$work/bodies"
-    jq --slurpfile b "$work/bodies" '.bodies = $b[0] | .overlap = true' "$work/scene.json" | nsd-gen - > "$work/bullet.h5"
+    jq --slurpfile b "$work/bodies" '.bodies = $b[0] | .allow_overlap = true' "$work/scene.json" | nsd-gen - > "$work/bullet.h5"
     read -r seconds energy residual < "$work/bullet"
     row "Bullet, $1 iterations" "$(jq -n "$seconds * 1e3")" "$(judge "$work/bullet.h5")" \
         "$(jq -n "$energy / $mgd")" "$(height "$work/bullet.h5")" "$residual"

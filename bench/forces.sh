@@ -28,7 +28,7 @@ by_nsd()
     jq -n --slurpfile b "$work/bodies.json" --argjson a "$half" --argjson k "$1" --argjson dt "$2" --argjson mu $mu '{ dt: $dt,
         density: 2500, mu: $mu, stiffness: $k, bodies: $b[0], walls: [{ box: { x: [-$a, $a], y: [-$a, $a], z: [0, null] } }] }' |
         nsd-gen - > "$work/start.h5"
-    nsd-step -n "$steps" --every "$steps" --criterion natural --eps 1e-8 --contacts "${@:4}" "$work/start.h5" 2> "$work/said" |
+    nsd-step -n "$steps" --every "$steps" --criterion natural --tolerance 1e-8 --contacts "${@:4}" "$work/start.h5" 2> "$work/said" |
         nsd-cat --last | nsd-info -c > "$work/$3,_dt_$2.json"
 }
 # k e: by soft spheres with this restitution
@@ -40,7 +40,7 @@ by_dem()
 }
 
 for k in 2e3 2e4; do
-    by_nsd $k 1e-4 nsd,_rigid --stiffness rigid --eps 1e-4 --max-sweeps 500
+    by_nsd $k 1e-4 nsd,_rigid --stiffness rigid --tolerance 1e-4 --max-sweeps 500
     for dt in 1e-4 1e-5 2e-6; do by_nsd $k $dt nsd; done
     nsd-info -p "$work/start.h5" | jq -r '[.x[], .radius, .mass, 0, 0, 0, 0, 0, 0, 0] | @tsv' > "$work/start.txt"
     for e in 0.1 0.5; do by_dem $k $e; done

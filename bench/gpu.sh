@@ -27,7 +27,7 @@ solve()
     local method=$1 sweeps=$2
     shift 2
     rm -f "$work/log"
-    nsd-solve -m "$method" --order colour --criterion glob --eps 0 --max-sweeps "$sweeps" --log "$work/log" "$@" \
+    nsd-solve -m "$method" --order colour --criterion glob --tolerance 0 --max-sweeps "$sweeps" --log "$work/log" "$@" \
         "$work/heap.h5" > /dev/null 2>&1
     jq -r '[.elapsed, .sweeps, .contacts, .device.kernels // 0, .device.bytes_to // 0, .device.bytes_from // 0] | @tsv' "$work/log"
 }

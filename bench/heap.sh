@@ -8,7 +8,7 @@ settle()
 {
     [ -f "$work/pile.h5" ] && return
     nsd-gen 500 |
-        nsd-step --paper -m exact -n 1000 --every 1000 --eps 1e-8 2> /dev/null |
+        nsd-step --protocol paper -m exact -n 1000 --every 1000 --tolerance 1e-8 2> /dev/null |
         nsd-cat --last > "$work/pile.h5"
 }
 
@@ -25,6 +25,6 @@ heap()
                     for (i = 1; i <= NR; i++)
                         printf "%.17g %.17g %.17g %.17g\n", x[i] + k % side * 0.0063, y[i] + int(k / side) * 0.0063, z[i], r[i]
             }' > "$work/heap.txt"
-    jq --arg file "$work/heap.txt" '.overlap = true | .bodies = [{ file: $file }]
+    jq --arg file "$work/heap.txt" '.allow_overlap = true | .bodies = [{ file: $file }]
         | .walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }]' scenes/paper/example3.json | nsd-gen -
 }

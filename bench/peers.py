@@ -6,8 +6,8 @@ in DIR/JOB/VARIANT.json is not made again: remove the file to repeat it. The pag
 these files alone. In the environment: NSD_STARTS, a folder with starts that others have made [../shared/benchmarks]; LIGGGHTS, YADE,
 other names of these programs; N_JOB, T_JOB, another number of balls, another span in s, as N_DOSTA_SILO=10000.
 
-  cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with a small eps
-  effort  what dt and eps cost and change: QUICK's jobs               growth  CPU against the number of balls
+  cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with a small tolerance
+  effort  what dt and tolerance cost and change: QUICK's jobs         growth  CPU against the number of balls
   rest    a pile at rest over 1e5 steps                               profile where nsd's CPU goes, by perf
   page    DIR's page, of what is there                                keep    that in docs/peers
 """
@@ -82,7 +82,7 @@ def prepare(name, count, seed, quick, folder):
             os.rename(first, settled)
     scene = {k: v for k, v in start.items() if k not in ("bodies", "table")}
     scene.update({k: v for k, v in run.items() if k != "more"})
-    scene.update(dt=dt, overlap=True, bodies=[{"document": settled, "at_rest": True}] + run.get("more", []))
+    scene.update(dt=dt, allow_overlap=True, bodies=[{"document": settled, "at_rest": True}] + run.get("more", []))
     document = codes.gen(scene, folder, "start.h5")
     balls = codes.balls_of(document)
     about.update(mass=balls["mass"].sum(), g=-scene["gravity"][2])

@@ -16,7 +16,7 @@ one() {
     local file=$1 name form line eps
     name=$(basename "$file" .hdf5)
     for eps in 1e-4 1e-8 1e-12; do
-        nsd-solve -m exact --max-sweeps 20000 --eps "$eps" --criterion natural \
+        nsd-solve -m exact --max-sweeps 20000 --tolerance "$eps" --criterion natural \
             --log "$work/$$.log" "$file" > "$work/$$.h5" 2> /dev/null
         nsd-err "$work/$$.h5" > "$work/$$.err"
         if [ "$eps" = 1e-4 ]; then

@@ -40,7 +40,7 @@ a_sweep() {
         limit=10
         case $method in e[ab]*) limit=30 ;; esac
         for ((k = 0; k < runs; k++)); do
-            pile -m "$method" --eps 1e-8
+            pile -m "$method" --tolerance 1e-8
             cost
         done | figure "a sweep with its share of the criterion, $method, $steps steps of the settled pile" ns/contact "$limit"
     done
@@ -51,7 +51,7 @@ thousand() {
     local limit=$1
     shift
     for ((k = 0; k < runs; k++)); do
-        { time nsd-step -m exact -n 1000 --criterion glob --overlap keep "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
+        { time nsd-step -m exact -n 1000 --criterion glob --overlap-rule keep "$@" < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 |
             awk '{ print $1 }'
     done | figure "$start | nsd-step -m exact -n 1000 $*" s "$limit"
 }
@@ -61,23 +61,23 @@ whole_runs() {
     local balls=../shared/problems/example3-balls.txt
     start="nsd-gen 500"
     nsd-gen 500 > "$work/start.h5"
-    thousand 25 --eps 0 --max-sweeps 5000 --order colour
-    thousand "" --eps 1e-8
-    thousand 1.5 --eps 1e-8 --order colour --relax 1.5
-    thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
-    thousand 1.5 --eps 1e-8 --global auto
-    thousand 10 --eps 1e-12 --global auto
-    thousand 10 --eps 1e-12 --global auto --warm
+    thousand 25 --tolerance 0 --max-sweeps 5000 --order colour
+    thousand "" --tolerance 1e-8
+    thousand 1.5 --tolerance 1e-8 --order colour --relax 1.5
+    thousand 1.5 --tolerance 1e-8 --order colour --relax 1.5 --warm
+    thousand 1.5 --tolerance 1e-8 --solver auto
+    thousand 10 --tolerance 1e-12 --solver auto
+    thousand 10 --tolerance 1e-12 --solver auto --warm
     [ -f "$balls" ] || return 0
     start="nsd-gen example3-balls"
     jq --arg file "$PWD/$balls" '.bodies = [{ file: $file }]' scenes/paper/example3.json |
         nsd-gen - > "$work/start.h5"
-    thousand "" --eps 1e-8
-    thousand 1.5 --eps 1e-8 --order colour --relax 1.5
-    thousand 1.5 --eps 1e-8 --order colour --relax 1.5 --warm
-    thousand 1.5 --eps 1e-8 --global auto
-    thousand 10 --eps 1e-12 --global auto
-    thousand 10 --eps 1e-12 --global auto --warm
+    thousand "" --tolerance 1e-8
+    thousand 1.5 --tolerance 1e-8 --order colour --relax 1.5
+    thousand 1.5 --tolerance 1e-8 --order colour --relax 1.5 --warm
+    thousand 1.5 --tolerance 1e-8 --solver auto
+    thousand 10 --tolerance 1e-12 --solver auto
+    thousand 10 --tolerance 1e-12 --solver auto --warm
 }
 
 # Every frame or the last one only, in turn: what writing costs
@@ -86,7 +86,7 @@ writing() {
     nsd-gen 500 > "$work/start.h5"
     for ((k = 0; k < runs; k++)); do
         for every in 1 1000; do
-            { time nsd-step -m exact -n 1000 --criterion glob --overlap keep --eps 0 --max-sweeps 5000 --order colour --every $every \
+            { time nsd-step -m exact -n 1000 --criterion glob --overlap-rule keep --tolerance 0 --max-sweeps 5000 --order colour --every $every \
                 < "$work/start.h5" > "$work/out.h5" 2> /dev/null; } 2>&1 | awk '{ printf "%s ", $2 + $3 }'
         done | awk '{ print 100 * ($1 - $2) / $1 }'
     done | figure "writing 1000 frames of the run with 5000 sweeps a step" "% of its CPU" 5
@@ -99,19 +99,19 @@ reading() {
     done | figure "nsd-info, a frame of 20 balls" "ms of CPU" 0.3
 }
 
-# The criterion's share of a run. With the number of sweeps fixed (--eps 0 is never met) a sweep costs
+# The criterion's share of a run. With the number of sweeps fixed (--tolerance 0 is never met) a sweep costs
 # s + c with the criterion after each and s + c/25 as it comes: that gives s, a sweep with no criterion
 # at all. Of a run that stops by the criterion, as many sweeps of s are what is not the criterion's.
 criterion() {
     local sweeps each seldom run
-    pile -m exact --eps 1e-8
+    pile -m exact --tolerance 1e-8
     sweeps=$(sums "$work/log" | awk -v n="$steps" '{ print int($2 / n + 0.5) }')
     for ((k = 0; k < runs; k++)); do
-        pile -m exact --eps 0 --max-sweeps "$sweeps" --every-sweep
+        pile -m exact --tolerance 0 --max-sweeps "$sweeps" --every-sweep
         each=$(cost)
-        pile -m exact --eps 0 --max-sweeps "$sweeps"
+        pile -m exact --tolerance 0 --max-sweeps "$sweeps"
         seldom=$(cost)
-        pile -m exact --eps 1e-8
+        pile -m exact --tolerance 1e-8
         run=$(cost)
         awk -v each="$each" -v seldom="$seldom" -v run="$run" 'BEGIN {
             c = (each - seldom) / (1 - 1 / 25); s = seldom - c / 25
@@ -131,7 +131,7 @@ sizes() {
         heap $tiles > "$work/heap.h5"
         some=$((size < 100000 ? 500000 / size + 1 : 6)) # enough of them for a second
         for ((k = 0; k < runs; k++)); do
-            nsd-step -m exact -n $some --every $some --order colour --max-sweeps 100 --criterion glob --eps 0 --log "$work/log" \
+            nsd-step -m exact -n $some --every $some --order colour --max-sweeps 100 --criterion glob --tolerance 0 --log "$work/log" \
                 < "$work/heap.h5" 2> /dev/null > "$work/out.h5"
             # the first step makes the list of neighbours
             jq -rs --argjson n $size '.[1:] | [(map(.contacts) | add / length),
@@ -156,8 +156,8 @@ million() {
         for tool in "${tools[@]}"; do
             case $tool in
             nsd-detect) command=(nsd-detect "$work/heap.h5") ;;
-            nsd-solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --criterion glob --eps 0 "$work/nsd-detect") ;;
-            *auto) command=(nsd-solve --max-sweeps 100 --criterion glob --eps 0 "$work/nsd-detect") ;;
+            nsd-solve) command=(nsd-solve -m exact --order colour --max-sweeps 100 --criterion glob --tolerance 0 "$work/nsd-detect") ;;
+            *auto) command=(nsd-solve --max-sweeps 100 --criterion glob --tolerance 0 "$work/nsd-detect") ;;
             nsd-move) command=(nsd-move "$work/nsd-solve") ;;
             esac
             /usr/bin/time -a -f '%e %M' -o "$work/$tool.time" "${command[@]}" > "$work/$tool" 2> /dev/null

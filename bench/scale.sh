@@ -47,7 +47,7 @@ messages() # bytes and messages a sweep and rank, 8 ranks, and the fit c N^(2/3)
     local n order bytes many _rest
     for order in block colour; do
         for n in "${sizes[@]}"; do
-            read -r bytes many _rest < <(run 8 "$n" -n 1 -m exact --order $order --max-sweeps 100 --eps 1e-30 | said)
+            read -r bytes many _rest < <(run 8 "$n" -n 1 -m exact --order $order --max-sweeps 100 --tolerance 1e-30 | said)
             echo "$order $((n * n * n)) $((n * n * n / 8)) $bytes $many"
         done
     done | awk '{ c = $4 / $3 ^ (2 / 3); printf "| %s | %d | %d | %.0f | %.1f | %.1f |\n", $1, $2, $3, $4, $5, c }'
@@ -56,8 +56,8 @@ pair() # SIDE SIDE2 STEPS: one process on the one cube, two ranks on the other, 
 {
     local k t s t2 s2
     for ((k = 0; k < ${REPEATS:-3}; k++)); do
-        read -r s t < <(run 1 "$1" -n "$3" --order block --eps 1e-3 | sed -n 's/.* steps, \([0-9]*\) sweeps, \([^ ]*\) s in.*/\1 \2/p')
-        run 2 "$2" -n "$3" --order block --eps 1e-3 >"$tmp/said"
+        read -r s t < <(run 1 "$1" -n "$3" --order block --tolerance 1e-3 | sed -n 's/.* steps, \([0-9]*\) sweeps, \([^ ]*\) s in.*/\1 \2/p')
+        run 2 "$2" -n "$3" --order block --tolerance 1e-3 >"$tmp/said"
         s2=$(sed -n 's/.* steps, \([0-9]*\) sweeps, .*/\1/p' "$tmp/said")
         t2=$(sed -n 's/.* \([^ ]*\) s of them in the solver.*/\1/p' "$tmp/said")
         echo "$(($1 * $1 * $1)) $(($2 * $2 * $2)) $t $s $t2 $s2"
@@ -71,9 +71,9 @@ memory() # ORDER SIDE: MB of all, of the largest: one process, and 2, 4, 8
     f=$(cube "$2")
     one=$(/usr/bin/python3 -c 'import resource, subprocess, sys
 subprocess.run(sys.argv[1:], stderr=subprocess.DEVNULL)
-print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --criterion natural --gap 1e-8 -n 1 --every 1000 --order "$1" --eps 1e-2 -o "$tmp/one.h5" "$f")
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024)' nsd-step --criterion natural --gap 1e-8 -n 1 --every 1000 --order "$1" --tolerance 1e-2 -o "$tmp/one.h5" "$f")
     for k in 2 4 8; do
-        read -r _bytes _many all most < <(run "$k" "$2" -n 1 --order "$1" --eps 1e-2 | said)
+        read -r _bytes _many all most < <(run "$k" "$2" -n 1 --order "$1" --tolerance 1e-2 | said)
         echo "$1 $(($2 * $2 * $2)) $k $one $all $most"
     done | awk '{ printf "| %s | %d | %d | %.0f | %.0f | %.0f | %.2f |\n", $1, $2, $3, $4, $5, $6, $6 / ($4 / $3) }'
 }

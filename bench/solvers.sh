@@ -6,7 +6,7 @@
 #   PROBLEMS=DIR            another folder of problems; leaves solvers-DIR.{tsv,md,svg}
 #   ONLY=nsd|siconos        that half; the other as the results have it
 #   ONLY=draw               no run: the tables and the .svg again, from the .tsv in the folder RESULTS, of the SOLVERS alone
-#   SOLVERS="auto nlgs"     nsd's: of --global, or sbp, sal, ebp, eal for Gauss-Seidel with that local method
+#   SOLVERS="auto nlgs"     nsd's: of --solver, or sbp, sal, ebp, eal for Gauss-Seidel with that local method
 #   LIMIT=10                seconds of a solve
 #   FLOOR=1e-4              seconds: what is faster counts as this
 #
@@ -38,10 +38,10 @@ natural() { nsd-err "$1" | jq -r '.natural // 1e999'; }
 # solver tolerance file...: solves in one process, their log into $work/log
 solve()
 {
-    local way=(--global "$1")
+    local way=(--solver "$1")
     case $1 in sbp | sal | ebp | eal) way=(-m "$1") ;; esac
     rm -f "$work/log"
-    nsd-solve "${way[@]}" --criterion natural --eps "$2" --max-seconds "$limit" --max-sweeps 1000000000 \
+    nsd-solve "${way[@]}" --criterion natural --tolerance "$2" --max-seconds "$limit" --max-sweeps 1000000000 \
         --log "$work/log" "${@:3}" > "$work/r.h5" 2> /dev/null
 }
 
@@ -78,7 +78,7 @@ siconos()
             contacts=${contacts:-$(nsd-info "$1" | jq -rs '[.[].contacts // empty][0]')}
             while IFS=$'\t' read -r eps good seconds error steps how; do
                 if [ "$good" = 1 ]; then
-                    nsd-solve -w --global nlgs --max-sweeps 0 "$stem.$eps.h5" > "$work/r.h5" 2> /dev/null
+                    nsd-solve -w --solver nlgs --max-sweeps 0 "$stem.$eps.h5" > "$work/r.h5" 2> /dev/null
                     error=$(natural "$work/r.h5")
                     good=$(awk "BEGIN { print $error <= 1.01 * $eps ? 1 : 0 }")
                 fi

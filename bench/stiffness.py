@@ -99,7 +99,7 @@ def impacts(folder):
         with open(start, "wb") as out:
             subprocess.run(["nsd-gen", "-"], input=json.dumps(scene).encode(), stdout=out, stderr=subprocess.DEVNULL, check=True)
         for law, options in OPTIONS.items():
-            options = options + ["--criterion", "natural", "--eps", "1e-8", "--max-sweeps", "5000"]
+            options = options + ["--criterion", "natural", "--tolerance", "1e-8", "--max-sweeps", "5000"]
             run = os.path.join(folder, "run.h5")
             said = step(start, run, steps, options)
             lines = [json.loads(line) for line in open(run + ".log")]

@@ -21,7 +21,7 @@ measure()
     local n
     rm -f "$work/log"
     for n in 40 $((40 + $5)); do
-        NSD_LANES=$3 nsd-solve -m "$2" -j "$4" --order "$6" --criterion glob --eps 0 --max-sweeps "$n" --log "$work/one" "$1" \
+        NSD_LANES=$3 nsd-solve -m "$2" -j "$4" --order "$6" --criterion glob --tolerance 0 --max-sweeps "$n" --log "$work/one" "$1" \
             > /dev/null 2>&1
         cat "$work/one" >> "$work/log"
     done

@@ -52,7 +52,7 @@ steps='TIMEFORMAT=%R; { time nsd-step --criterion natural -j THREADS -n STEPS --
 outside='TIMEFORMAT=%R; t=$({ time nsd-step --criterion natural -j 2 -n 200 --every 200 --log "$work/log" "$work/column.h5" > /dev/null 2>&1; } 2>&1)
     jq -s --argjson t "$t" "100 * (1 - (map(.elapsed) | add) / \$t)" "$work/log"'
 # ns a contact and sweep: what sweeps beyond the first 40, each of which is judged, take
-sweep='for n in 40 SWEEPS; do nsd-solve -m exact -j THREADS --order colour --criterion glob --eps 0 --max-sweeps $n --log "$work/log$n" "$work/FILE.h5" \
+sweep='for n in 40 SWEEPS; do nsd-solve -m exact -j THREADS --order colour --criterion glob --tolerance 0 --max-sweeps $n --log "$work/log$n" "$work/FILE.h5" \
     > /dev/null 2>&1; done; jq -s "1e9 * (.[1].elapsed - .[0].elapsed) / (.[1].sweeps - .[0].sweeps) / .[0].contacts" "$work/log40" "$work/logSWEEPS"'
 
 rows()

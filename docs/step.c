@@ -7,9 +7,9 @@
 
 /* The settings of the run */
 static const char *const settings[][2] = {
-    { "method", "exact" },     { "criterion", "natural" }, { "eps", "1e-6" },
-    { "max-sweeps", "10000" }, { "order", "natural" },     { "warm", "true" },
-    { "overlap", "keep" },
+    { "local", "exact" },       { "criterion", "natural" }, { "tolerance", "1e-6" },
+    { "max-sweeps", "10000" },  { "order", "natural" },     { "warm", "true" },
+    { "overlap-rule", "keep" },
 };
 
 /* The number of that name */

@@ -8,7 +8,7 @@
 #   plain-A   table 4: alpha A, the plain Newton
 #   line-A    the same with nsd's line search
 #   bond      nsd's, with bonds of BOND weights wherever grains touch
-# Always the paper's protocol, whatever the tools' defaults: nsd-detect --overlap keep; nsd-solve and nsd-step --paper,
+# Always the paper's protocol, whatever the tools' defaults: nsd-detect --overlap-rule keep; nsd-solve and nsd-step --protocol paper,
 # which is Gauss-Seidel from 0, the paper's criterion, nothing done about overlap.
 #
 #   runs/*.h5, *.log   the last two frames of a run; a line for each of its solves
@@ -53,10 +53,10 @@ n_example3 := $(if $(QUICK),600,1000)
 n_alpha    := 500
 n_rest     := $(if $(QUICK),2000,6000)
 cap        := $(if $(QUICK),500,5000)
-limits_example1 := --paper --eps 1e-10 --max-sweeps 5000
-limits_example2 := --paper --eps 1e-12 --max-sweeps $(cap)
-limits_example3 := --paper --eps 1e-12 --max-sweeps $(cap)
-limits_alpha    := --paper --eps 1e-8 --max-sweeps $(cap)
+limits_example1 := --protocol paper --tolerance 1e-10 --max-sweeps 5000
+limits_example2 := --protocol paper --tolerance 1e-12 --max-sweeps $(cap)
+limits_example3 := --protocol paper --tolerance 1e-12 --max-sweeps $(cap)
+limits_alpha    := --protocol paper --tolerance 1e-8 --max-sweeps $(cap)
 
 all_of  = $(METHODS:%=$1_nsd_%) $1_nsd_exact $(METHODS:%=$1_paper_%)
 TABLES := $(foreach s,$(filter-out example2%,$(DIMS)),$(call all_of,$s))
@@ -122,7 +122,7 @@ fair = $(foreach k,$3,$(foreach m,$(METHODS) exact,$1_$(if $(filter exact,$m),ns
 SAME := $(call fair,example2,nsd,$(SEEDS)) $(call fair,example2-2d,paper,$(SEEDS)) \
         $(call fair,example3,nsd,$(PILES)) $(call fair,example3-2d,paper,$(PILES))
 
-last_problem_of = nsd-cat --steps $$(($2 - 1)):$$(($2 - 1)) $1 | nsd-detect
+last_problem_of = nsd-cat --frames $$(($2 - 1)):$$(($2 - 1)) $1 | nsd-detect
 last_problem    = $(call last_problem_of,$1,$(steps))
 
 $(OUT)/same/%.json: $(OUT)/runs.json | $(OUT)/same
@@ -156,7 +156,7 @@ $(OUT)/adhesion-same.json: $(BOND_SAME:%=$(OUT)/adhesion-same/%.json)
 # 500 sweeps of the last problem of example 3, the methods in turn, ROUND_METHOD
 $(OUT)/adhesion-times/%.json: $(OUT)/adhesion.json | $(OUT)/adhesion-times
 	@$(call last_problem_of,$(OUT)/runs/example3_bond_exact.h5,$(n_example3)) | \
-	    nsd-solve -m $(call part,2) --paper --max-sweeps 500 --eps 0 --log $@.part > /dev/null 2>&1
+	    nsd-solve -m $(call part,2) --protocol paper --max-sweeps 500 --tolerance 0 --log $@.part > /dev/null 2>&1
 	@jq -s -c '{ method: "$(call part,2)", round: $(call part,1), seconds: (map(.seconds) | add) }' $@.part > $@
 	@rm $@.part
 
@@ -194,7 +194,7 @@ $(foreach r,$(rounds_example1),$(eval $(call timed,$r)))
 define timed_sweeps
 $(OUT)/times/sweeps-$1/%.json: $(OUT)/runs.json | $(OUT)/times/sweeps-$1
 	@$$(call last_problem,$(OUT)/runs/$$(scene)_nsd_exact.h5) | \
-	    nsd-solve -m $$(method) $$(options_$$(settings)) --paper --max-sweeps 500 --eps 0 --log $$@.part > /dev/null 2>&1
+	    nsd-solve -m $$(method) $$(options_$$(settings)) --protocol paper --max-sweeps 500 --tolerance 0 --log $$@.part > /dev/null 2>&1
 	@$$(call seconds,sweeps,$1) $$@.part > $$@
 	@rm $$@.part
 endef
@@ -226,7 +226,7 @@ $(OUT)/tables/same.tsv: $(OUT)/same.json $P/same.jq $P/stats.jq | $(OUT)/tables
 # contacts that stick, sought from 0.06 s on: a ball rolls after 62 ms, a disc after 73.
 DTS    := 1e-3 5e-4 2e-4 1e-4 $(if $(QUICK),,5e-5 2e-5 1e-5)
 CLOSED := $(foreach s,example1 example1-2d,$(foreach m,$(METHODS) exact,$(DTS:%=$s_$m_%)))
-go      = nsd-step -m $(call part,2) --paper --eps 1e-14 --max-sweeps 5000 -n $$(jq -n '$1 / $(call part,3) | round')
+go      = nsd-step -m $(call part,2) --protocol paper --tolerance 1e-14 --max-sweeps 5000 -n $$(jq -n '$1 / $(call part,3) | round')
 throw   = jq -f $P/closed-scene.jq --argjson dt $(call part,3) scenes/paper/$(scene).json | nsd-gen - | $(call go,$1)
 
 $(OUT)/closed/%.tsv: $P/closed-scene.jq $P/closed.jq | $(OUT)/closed
@@ -251,8 +251,8 @@ PNG  := $(foreach s,$(DIMS),$s-start $s-end) $(PILED_UP:%=%-rest)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
 $(OUT)/data/%.tsv: $P/laws.jq | $(OUT)/data
-	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --overlap keep --gap 1e-4 | \
-	    nsd-solve -m exact --paper --eps 1e-10 --max-sweeps 5000 2> /dev/null | \
+	@jq -n -f $P/laws.jq --arg law $* | nsd-gen - | nsd-detect --overlap-rule keep --gap 1e-4 | \
+	    nsd-solve -m exact --protocol paper --tolerance 1e-10 --max-sweeps 5000 2> /dev/null | \
 	    nsd-info --contacts | \
 	    jq -r '[.u[], .r[]] | @tsv' > $@
 
@@ -307,7 +307,7 @@ $(DIMS:%=$(OUT)/figures/%-end.png): $(OUT)/figures/%-end.png: $(OUT)/runs.json |
 
 # The pile goes on until it rests: warm and relaxed, for speed, and not as the paper has it
 $(OUT)/rest/%.h5: $(OUT)/runs/%_nsd_exact.h5 | $(OUT)/rest
-	@nsd-cat --last $< | nsd-step -m exact --paper --eps 1e-6 --max-sweeps 5000 --warm --relax 1.5 --order colour \
+	@nsd-cat --last $< | nsd-step -m exact --protocol paper --tolerance 1e-6 --max-sweeps 5000 --warm --relax 1.5 --order colour \
 	    -n $(n_rest) --every $(n_rest) -o $@ 2> /dev/null
 
 $(OUT)/figures/%-rest.png: $(OUT)/rest/%.h5 | $(OUT)/figures

@@ -48,13 +48,13 @@ $(OUT)/%/global.h5: $(OUT)/%/pile.h5
 # sweeps without mixing or relaxation, each a continuation of the one before
 define sweeps
 $$(OUT)/%/sweeps-$(1).h5: $$(OUT)/%/$(if $(2),sweeps-$(2),pile).h5
-	nsd-solve --criterion natural --warm --global nlgs -m exact --order colour --eps 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
+	nsd-solve --criterion natural --warm --solver nlgs -m exact --order colour --tolerance 1e-13 --max-sweeps $(if $(2),$$$$(($(1) - $(2))),$(1)) $$< >$$@ 2>/dev/null
 endef
 before :=
 $(foreach k,$(EACH),$(eval $(call sweeps,$k,$(before)))$(eval before := $k))
 
 $(OUT)/%/auto.h5: $(OUT)/%/pile.h5
-	nsd-solve --criterion natural --eps 1e-8 $< >$@ 2>$(@D)/auto.log
+	nsd-solve --criterion natural --tolerance 1e-8 $< >$@ 2>$(@D)/auto.log
 
 $(OUT)/%/follow.jsonl: $(OUT)/%/global.h5 $(EACH:%=$(OUT)/\%/sweeps-%.h5) $(P)/wall.py
 	$(P)/wall.py follow $< $(EACH:%=$(OUT)/$*/sweeps-%.h5) >$@
@@ -73,7 +73,7 @@ $(OUT)/%/steps.jsonl: $(OUT)/%/global.h5 $(OUT)/%/sweeps-$(END).h5 $(P)/wall.py
 $(OUT)/%/soft.h5: $(OUT)/%/pile.h5
 	nsd-step --stiffness 5.45e4 -n 300 --every 300 $< 2>/dev/null | nsd-cat --last >$@
 $(OUT)/%/soft.jsonl: $(OUT)/%/soft.h5 $(P)/wall.py
-	nsd-detect $< | nsd-solve --cold --criterion natural --eps 1e-10 >$(@D)/soft-solved.h5 2>/dev/null
+	nsd-detect $< | nsd-solve --cold --criterion natural --tolerance 1e-10 >$(@D)/soft-solved.h5 2>/dev/null
 	nsd-detect --fclib=global <$< >$(@D)/soft-global.h5
 	$(P)/wall.py spectrum $(@D)/soft-global.h5 $(@D)/soft-solved.h5 $(COUNT) >$@
 $(OUT)/stiffness.tsv: $(SIZES:%=$(OUT)/%/pile.h5) $(LARGE:%=$(OUT)/%/pile.h5) $(P)/stiffness.sh
@@ -85,15 +85,15 @@ $(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json
 	mkdir -p $(@D)
-	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap keep 2>/dev/null | nsd-cat --steps 217 | nsd-detect --overlap keep >$@
+	jq '.seed = 7' $< | nsd-gen - | nsd-step --criterion natural -n 217 --overlap-rule keep 2>/dev/null | nsd-cat --frames 217 | nsd-detect --overlap-rule keep >$@
 $(OUT)/jam/eps-%.h5: $(OUT)/jam/jam.h5
-	nsd-solve --criterion natural --global nlgs -m exact --eps $* --max-sweeps 1000000 $< >$@ 2>/dev/null
+	nsd-solve --criterion natural --solver nlgs -m exact --tolerance $* --max-sweeps 1000000 $< >$@ 2>/dev/null
 $(OUT)/jam/eps-auto.h5: $(OUT)/jam/jam.h5
-	nsd-solve --criterion natural --eps 1e-10 $< >$@ 2>/dev/null
+	nsd-solve --criterion natural --tolerance 1e-10 $< >$@ 2>/dev/null
 $(OUT)/jam/follow.jsonl: $(OUT)/jam/global.h5 $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 $(P)/wall.py
 	$(P)/wall.py follow $< $(EPS:%=$(OUT)/jam/eps-%.h5) $(OUT)/jam/eps-auto.h5 >$@
 $(OUT)/jam/global.h5: $(OUT)/jam/jam.h5
-	nsd-detect --overlap keep --fclib=global <$< >$@
+	nsd-detect --overlap-rule keep --fclib=global <$< >$@
 
 $(OUT)/map.svg: $(P)/map.gp $(SIZES:%=$(OUT)/%/follow.jsonl) $(OUT)/$(LAST)/steps.jsonl
 	for n in $(SIZES); do jq -r '[(.file | capture("sweeps-(?<k>[0-9]+)").k), .natural, .dv] | @tsv' $(OUT)/$$n/follow.jsonl; echo; echo; done >$(OUT)/follow.tsv

@@ -21,7 +21,8 @@ static struct cli_choice vtk_choice(int k)
 
 static const struct cli_option own[] = {
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { CLI_FLAG, 0, "stream", &stream, .help = "write one document per frame, also to a file" },
     { CLI_CHOICE, 0, "vtk", &vtk, .choice = vtk_choice, .silent = true,
       .help = "add /VTKHDF, with which ParaView opens the document [no]" },
@@ -37,7 +38,7 @@ const struct cli_tool tool = {
     "pipe, one document per frame.",
     tables,
     "  nsd-cat --last out.h5 | nsd-detect > contacts.h5\n"
-    "  nsd-cat --steps 0:1000:100 out.h5 > thin.h5\n"
+    "  nsd-cat --frames 0:1000:100 out.h5 > thin.h5\n"
     "  nsd-cat --vtk grains out.h5 > paraview.h5\n"
 };
 
@@ -52,8 +53,8 @@ static void warn_of_other_solver(const struct report *r, const char *where)
         !strcmp(first.method, r->method) && first.criterion == r->criterion && first.eps == r->eps;
     if (same || warned) return;
     warned = true;
-    warn("%s: solved by -m %s --criterion %s --eps %g; the trajectory states -m %s --criterion %s "
-         "--eps %g for all: --stream keeps each",
+    warn("%s: solved by -m %s --criterion %s --tolerance %g; the trajectory states -m %s --criterion %s "
+         "--tolerance %g for all: --stream keeps each",
          where, r->method, criterion_name[r->criterion], r->eps, first.method,
          criterion_name[first.criterion], first.eps);
 }
@@ -67,8 +68,8 @@ int tool_main(int argc, char **argv)
     struct failure failure = { 0 };
     bool more;
     int64_t copied = 0;
-    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
-    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --frames exclude each other");
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);

@@ -14,7 +14,7 @@ const struct cli_tool tool = {
     "solutions, from the problem and the reactions alone. Reads documents, writes one line of\n"
     "JSON for each solution.",
     tables,
-    "  nsd-err solved.h5 | jq .natural\n  nsd-step --global auto --contacts -n 10 out.h5 | "
+    "  nsd-err solved.h5 | jq .natural\n  nsd-step --solver auto --contacts -n 10 out.h5 | "
     "nsd-err\n"
 };
 

@@ -41,7 +41,8 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "only", &only, "NAME,...",
       .help = "export only these walls, parts, groups, kinds [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { CLI_INT, 0, "detail", &detail, "N",
       .help = "use 20 * 4^N triangles for round grains in STL, surfaces [2]", .max = 6 },
     { 0 },
@@ -106,7 +107,7 @@ static void sheaf_add(struct sheaf *s, const struct format *format, enum part wh
                               &chosen,     show_rows };
     bool solved = m.contacts && m.contacts->found;
     if (s->moments && !format->joins)
-        die_usage("a %s file holds one frame: --last, --steps, or a series -o 'f%%05d.%s'",
+        die_usage("a %s file holds one frame: --last, --frames, or a series -o 'f%%05d.%s'",
                   format->name, format->ending);
     // the columns of a table are those of its first frame
     if (s->moments && what != PART_CONTACTS && s->solved && !solved)
@@ -296,8 +297,8 @@ static void run(struct reader *in, const struct format *format, enum target targ
     struct failure failure = { 0 };
     struct range range;
     bool more;
-    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
-    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --frames exclude each other");
     if (target == TARGET_FILE) sheaf_open(&single, output);
     int64_t k = 0;
     if (last && !reader_last(in, &f, &more, &failure) && more)

@@ -342,20 +342,24 @@ static void tell(const struct scene *s, const struct packing *p)
     json_t *limits = limits_json(&t), *masses = masses_json(p);
     json_t *j = json_pack("{s:o, s:o, s:o, s:o, s:o, s:o}", "dt", json_number(t.best), "by",
                           t.by < 0 ? json_null() : json_string(time_step_limit[t.by].name), "scene",
-                          s->dt > 0 ? json_real(s->dt) : json_string("auto"), "radius",
+                          s->dt == 0 ? json_string("auto") : json_real(p->dt), "radius",
                           json_number(t.radius), "limits", limits, "masses", masses);
     json_object_set_new(j, "heights", heights_json(s));
     json_object_set_new(j, "sizes", sizes_json(s, p));
     if (s->fits) json_object_set_new(j, "clumps", fits_json(s));
+    json_object_set_new(j, "interval", json_number(t.interval));
     if (t.by < 0)
         warn("dt: nothing moves, so no time step can be suggested");
     else
-        warn("dt = %.2g s is suggested, by %s", t.best, time_step_limit[t.by].name);
+        warn("dt = %.2g s is suggested for one solve per step, by %s; %g s for steps that are made "
+             "of small ones",
+             t.best, time_step_limit[t.by].name, t.interval);
     if (s->dt > FAR * t.best)
-        warn("warning: dt = %g s of the scene is %.2g times that: \"dt\": \"auto\" takes the "
-             "suggestion",
+        warn("dt = %g s of the scene is %.2g times that of one solve per step: small steps, the "
+             "default of nsd-step, "
+             "do not need the suggestion; \"dt\": \"auto\" takes it",
              s->dt, s->dt / t.best);
-    if (json_dumpf(j, stdout, JSON_COMPACT) || putchar('\n') == EOF || fflush(stdout))
+    if (json_write(stdout, j) || putchar('\n') == EOF || fflush(stdout))
         die(EX_IOERR, "standard output: %s", strerror(errno));
     json_decref(j);
 }

@@ -1,4 +1,5 @@
 /* nsd-info: shows any part of a document as JSON lines, for jq and gnuplot. */
+#include "base/renamed.h"
 #include "file/reader.h"
 #include "file/report_json.h"
 #include "measure/stress.h"
@@ -31,7 +32,8 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "only", &only, "NAME,...",
       .help = "print only these walls, parts, groups, kinds; for -p, -w, -c [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -96,6 +98,20 @@ static json_t *commands(const char *text)
     return list;
 }
 
+/* The options of the solve, which documents keep by their names of version 1 */
+static json_t *solve_options(const char *text)
+{
+    json_t *kept = json_loads(text, 0, NULL), *options = json_object(), *value;
+    const char *key;
+    json_object_foreach(kept, key, value)
+    {
+        const struct renamed *r = renamed_find("document", key, strlen(key));
+        json_object_set(options, r ? r->is : key, value);
+    }
+    json_decref(kept);
+    return options;
+}
+
 static void show_document(const struct frame *f, int64_t frames)
 {
     json_t *j = json_object();
@@ -116,13 +132,13 @@ static void show_document(const struct frame *f, int64_t frames)
         if (p->tolerance > 0)
             json_object_set_new(j, "time_step_tolerance", json_number(p->tolerance));
         json_object_set_new(j, "theta", json_number(p->theta));
-        if (p->overlap) json_object_set_new(j, "overlap", json_string(overlap_name[p->overlap]));
+        if (p->overlap)
+            json_object_set_new(j, "overlap_rule", json_string(overlap_name[p->overlap]));
         json_object_set_new(j, "gravity", json_vec(p->g));
         json_object_set_new(j, "seed", json_integer((json_int_t)p->seed));
         json_object_set_new(j, "material", material(p));
     }
-    if (f->report.options)
-        json_object_set_new(j, "options", json_loads(f->report.options, 0, NULL));
+    if (f->report.options) json_object_set_new(j, "options", solve_options(f->report.options));
     json_object_set_new(j, "history", commands(f->history));
     json_line(j);
 }
@@ -535,8 +551,8 @@ int tool_main(int argc, char **argv)
     struct failure failure = { 0 };
     bool more, part = particles || walls || contacts || history || events;
     int64_t frames = 0;
-    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
-    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --frames exclude each other");
     if (only && (scene || (!particles && !walls && !contacts)))
         die_usage("--only: needs -p, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))

@@ -11,7 +11,7 @@ static bool forces, verbose;
 static const struct cli_option own[] = {
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "check that the contacts were detected with T [document]" },
-    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+    { CLI_CHOICE, 0, "overlap-rule", &options.overlap, .choice = options_overlap_choice,
       .help = "change how nsd-move treats overlaps [document]" },
     { CLI_FLAG, 'w', "warm", &options.warm, .help = "start from the reactions in the document" },
     { CLI_UNFLAG, 0, "cold", &options.warm, .help = "start from reactions 0, as in the paper",

@@ -73,7 +73,8 @@ static const struct cli_option own[] = {
     { CLI_ABOVE, 0, "spacing", &spacing, "M",
       .help = "set the spacing of their grid, m [mean diameter, <= 32 points]", .max = 1e300 },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -283,7 +284,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct fai
         die_usage("--box: '%s' has four numbers, and the bodies are balls", box);
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &asked, failure);
     if (k) s.first = &first, s.before = &before;
-    s.unconverged = count_missed(f);
+    s.unconverged = count_missed(f), s.report = f->reported ? &f->report : NULL;
     if (fields_to && s.only.bodies)
         die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
     if (measured_run(t, chosen, &s, failure)) {
@@ -311,8 +312,8 @@ static void run(struct reader *in)
     struct range range;
     bool more;
     int64_t k = 0;
-    if (!range_parse(&range, steps ? steps : ":")) die_usage("--steps: '%s' is not A:B:K", steps);
-    if (last && steps) die_usage("--last and --steps exclude each other");
+    if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
+    if (last && steps) die_usage("--last and --frames exclude each other");
     if (tsv) head_tsv();
     if (last && !reader_last(in, &f, &more, &failure) && more)
         show(&f, reader_where(in), k++, &failure);

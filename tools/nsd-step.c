@@ -44,6 +44,8 @@ static const struct cli_option own[] = {
       .help = "set the time step, s; auto: overlaps of TOL radii [document]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
+    { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
+      .help = "sweep small steps until at most a part B of impulses is missing [none]" },
     { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
       .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|Ts",
@@ -99,6 +101,8 @@ static struct {
     int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all; */
     double missing, missing_mean; /* impulse, of the steps whose errors are known: the largest */
     int64_t missing_step, missing_id;
+    double distance; /* of reactions of kept frames from converged ones, the largest */
+    int64_t distance_step;
     int64_t limited; /* of those the ones that ended at the limit of their sweeps */
     double radii;    /* of small steps; 0: there are none */
     bool lacks;      /* small steps do not have all of the packing */
@@ -124,7 +128,7 @@ static const char *cure(enum account_row row, const struct report *r)
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_PASSED && options.substeps == 1 && !r->small)
+    if (row == ACCOUNT_TUNNELLED && options.substeps == 1 && !r->small)
         return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
@@ -181,6 +185,7 @@ static void count(const struct report *r)
     total.missing_mean = fmax(total.missing_mean, r->missing_mean);
     if (r->missing > total.missing)
         total.missing = r->missing, total.missing_step = r->step, total.missing_id = r->missing_id;
+    if (r->distance > total.distance) total.distance = r->distance, total.distance_step = r->step;
     if (r->converged) return;
     if (!total.missed++) total.first_missed = r->step;
     double error = err_of(&r->err, r->criterion);
@@ -209,6 +214,11 @@ static void summary(int64_t made)
              "%lld, body %lld)",
              total.missing_mean, total.missing, (long long)total.missing_step,
              (long long)total.missing_id);
+    if (total.distance > 0)
+        warn("reactions of kept frames differ from those of converged sweeps by up to %.2g of "
+             "these, root mean square "
+             "(step %lld)",
+             total.distance, (long long)total.distance_step);
     if (total.limited)
         warn("%lld small steps have ended at the limit of their sweeps", (long long)total.limited);
     if (total.radii > 0 && !total.lacks && total.small < made)
@@ -491,6 +501,7 @@ static bool advance(struct run *r, int64_t k, bool saves)
     const struct packing *p = &f->packing;
     bool last = is_last(p, p->step + 1, k);
     r->driver.o.bare = !saves && is_bare(r, k, last);
+    r->driver.o.compare = (contacts || forces) && !r->driver.o.bare && is_kept(p, p->step + 1, k);
     const struct changes changes = { r->driver.other_bodies,
                                      loop_asks() || control_any(&r->driver.acts) };
     if (processes_step(f, &r->driver.memory, changes, &r->driver.o, &failure)) die_why(&failure);

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static int64_t step = -1, every, samples = 3, threads, follow = -1, rate = 25;
+static int64_t step = -1, every, samples = 3, threads = 1, follow = -1, rate = 25;
 static int colour = COLOUR_RADIUS, walls;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
@@ -89,7 +89,7 @@ static const struct cli_option own[] = {
       .help = "draw this direction upwards [against gravity; else z, in 2D y]" },
     { CLI_REAL, 0, "perspective", &perspective, "DEG", .min = 0, .max = 120,
       .help = "use perspective with this angle of view; 3D [0, none]" },
-    { CLI_TEXT, 0, "cut", &cut, "NX,NY,NZ,D",
+    { CLI_TEXT, 0, "clip", &cut, "NX,NY,NZ,D",
       .help = "cut away bodies beyond NX x + NY y + NZ z = D, m [nothing]" },
     { CLI_INT, 0, "follow", &follow, "ID", .min = 0, .max = INT32_MAX,
       .help = "keep the body with this id in its place in a series [none]" },
@@ -111,7 +111,7 @@ static const struct cli_option own[] = {
     { CLI_INT, 0, "samples", &samples, "N", .min = 1, .max = 8,
       .help = "average N x N samples per pixel [3]" },
     { CLI_INT, 'j', "threads", &threads, "N", .min = 1, .max = 1024, .silent = true,
-      .help = "use N threads; pictures do not depend on N [all]" },
+      .help = "use N threads; pictures do not depend on N [1]" },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -162,13 +162,13 @@ static void set_box(struct view *v)
     v->region = (struct extent){ { x[0], x[2], x[4] }, { x[1], x[3], x[5] } };
 }
 
-/* --cut: the plane's normal of any length, and the distance that goes with it. */
+/* --clip: the plane's normal of any length, and the distance that goes with it. */
 static void set_cut(struct view *v)
 {
     double x[4];
     vec3 n;
     if (!numbers(cut, 4, x) || !((n = v3(x[0], x[1], x[2])), v3_norm(n) > 1e-150))
-        die_usage("--cut: '%s' is not NX,NY,NZ,D with a normal that is not zero", cut);
+        die_usage("--clip: '%s' is not NX,NY,NZ,D with a normal that is not zero", cut);
     double length = v3_norm(n);
     v->cuts = true, v->cut = v3_scale(1 / length, n), v->cut_at = x[3] / length;
 }
@@ -188,7 +188,7 @@ static vec3 up_of_option(void)
 static struct view view_of_options(void)
 {
     struct view v = { .samples = (int)samples,
-                      .threads = threads ? (int)threads : team_cores(),
+                      .threads = (int)threads,
                       .angle = perspective,
                       .up = up_of_option(),
                       .strays = strays,

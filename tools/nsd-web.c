@@ -18,7 +18,8 @@ static int64_t every = 1;
 static const char *output, *title, *stat, *steps;
 
 static const struct cli_option own[] = {
-    { CLI_TEXT, 's', "steps", &steps, "A:B:K", .help = "process steps A to B, every K-th [all]" },
+    { CLI_TEXT, 's', "frames", &steps, "A:B:K",
+      .help = "process the frames of steps A to B, every K-th [all]" },
     { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
       .help = "show every K-th frame [1]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
@@ -139,7 +140,7 @@ static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
     struct failure failure = { 0 };
     struct range range = { 0, INT64_MAX, 1 };
     bool more = false;
-    if (steps && !range_parse(&range, steps)) die_usage("--steps: '%s' is not A:B:K", steps);
+    if (steps && !range_parse(&range, steps)) die_usage("--frames: '%s' is not A:B:K", steps);
     for (int64_t k = 0; !reader_next(in, steps ? &range : NULL, &f, &more, &failure) && more; k++) {
         if (k % every) continue;
         tool_wants_packing(&f, reader_where(in));

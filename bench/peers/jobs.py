@@ -168,7 +168,7 @@ def given(job, path, axes, shift, span):
         for row in rows:
             x = [float(row[c]) if c >= 0 else -float(row[0]) for c in axes]
             table += " ".join(["%.12g" % (x[0] + shift), "%.12g" % x[1], "%.12g" % x[2], *row[3:]]) + "\n"
-        return {**start, "overlap": True, "table": table, "bodies": [{"file": "TABLE"}]}, run, about
+        return {**start, "allow_overlap": True, "table": table, "bodies": [{"file": "TABLE"}]}, run, about
 
     def from_above(count, seed):  # the whole flight
         start, run, about = scenes(count, seed)

@@ -111,7 +111,7 @@ def seen(job):
 
 
 def check_section(check):
-    out = ["## nsd against itself: defaults, and a quarter of dt with a small eps", "",
+    out = ["## nsd against itself: defaults, and a quarter of dt with a small tolerance", "",
            "The finer run has the same start, a quarter of `--dt`, and the option of the column. The observable is the mean over the second half of "
            "the run; the difference is relative to the finer run; the scatter is the standard deviation of single runs with different seeds. "
            "A difference below the scatter is not significant.", "",
@@ -124,7 +124,7 @@ def check_section(check):
 
 
 def effort_section(efforts):
-    out = ["## Cost and effect of dt and eps", "",
+    out = ["## Cost and effect of dt and the tolerance", "",
            "Means over the seeds, with the standard error of the mean.", ""]
     for e in efforts:
         out += [f"{e['job']}, {e['balls']} balls, {e['seeds']} seeds:", "",

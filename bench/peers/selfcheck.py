@@ -1,4 +1,4 @@
-"""What nsd is held against besides other codes: itself with a quarter of the time step and eps 1e-6; piles that rest;
+"""What nsd is held against besides other codes: itself with a quarter of the time step and tolerance 1e-6; piles that rest;
 CPU against the number of balls; where the CPU goes."""
 import os
 import shutil
@@ -8,9 +8,9 @@ import codes
 import numpy as np
 from jobs import COMPARED, JOBS
 
-# The finer run: a tenth of the default's eps, in a velocity |g| dt that a quarter of dt makes a quarter. (A natural map of
+# The finer run: a tenth of the default tolerance, in a velocity |g| dt that a quarter of dt makes a quarter. (A natural map of
 # 1e-6 takes 200 balls that settle 5400 sweeps a step, and 53 of 800 steps do not come to it in 20 000.)
-FINE = ["--eps", "0.1"]
+FINE = ["--tolerance", "0.1"]
 
 
 def compared(name, curve):
@@ -45,20 +45,21 @@ def check(name, peers, seeds):
             "cost": cost[1] / cost[0]}
 
 
-# What the effort is varied by: dt over the job's, or eps
+# What the effort is varied by: dt over the job's, or the tolerance
 VARIED = "settling", "drum"
-SETTINGS = [("dt", 2), ("dt", 1), ("dt", 0.5), ("dt", 0.25), ("eps", 10), ("eps", 3), ("eps", 0.3), ("eps", 0.1), ("eps", 0.01)]
+SETTINGS = [("dt", 2), ("dt", 1), ("dt", 0.5), ("dt", 0.25),
+            ("tolerance", 10), ("tolerance", 3), ("tolerance", 0.3), ("tolerance", 0.1), ("tolerance", 0.01)]
 
 
 def effort(name, peers, seeds):
-    """The observable, the CPU and the largest overlap by dt and by eps, means over seeds."""
+    """The observable, the CPU and the largest overlap by dt and by tolerance, means over seeds."""
     job = JOBS[name]
     rows = []
     for what, value in SETTINGS:
         found, cpu, sweeps, overlap = [], 0, 0, 0
         for seed in range(1, seeds + 1):
             scene, document, about = peers.prepare(name, job.balls[1], seed, 1, os.path.join(peers.OUT, "check", f"{name}-{job.balls[1]}-{seed}"))
-            options = ["--dt", repr(scene["dt"] * value)] if what == "dt" else ["--eps", repr(value)]
+            options = ["--dt", repr(scene["dt"] * value)] if what == "dt" else ["--tolerance", repr(value)]
             result = peers.one(name, "nsd", scene, document, about, job.span[1], os.path.join(peers.OUT, "effort", name), options,
                                bound=20 * peers.BOUND)
             found.append(compared(name, result["series"])[1])

@@ -3,7 +3,7 @@
 set -euo pipefail
 for mu in 0.8 0; do
     jq --argjson mu "$mu" '.pairs[].mu = $mu' scene.json | nsd-gen - |
-        nsd-step -j 1 --overlap gap --until "${UNTIL:-9}" --every 0.07s -o "nut-$mu.h5" &
+        nsd-step -j 1 --overlap-rule gap --until "${UNTIL:-9}" --every 0.07s -o "nut-$mu.h5" &
 done
 wait
 nsd-view -s 1120 -c kind nut-0.8.h5 >start.png

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 set -euo pipefail
-nsd-gen scene.json | nsd-step --overlap gap --until "${UNTIL:-0.18}" --every 20 --contacts -o shear.h5
+nsd-gen scene.json | nsd-step --overlap-rule gap --until "${UNTIL:-0.18}" --every 20 --contacts -o shear.h5
 nsd-view --network shear.h5 >direct-shear.png
 # the upper half and the lid: horizontal force over vertical load, displacement in mm, height of the lid in mm
 nsd-stat -m boundaries shear.h5 | jq -r '[(.time - 0.1) * 50, ([.boundaries.force[1:4][][0]] | add | fabs) / 50, .boundaries.force[3][1] / 50] |

@@ -12,7 +12,7 @@ for d in $orifices; do
         (map(.[0]) | add / length) as $t | (map(.[1]) | add / length) as $w |
         [$d, (map((.[0] - $t) * .[1]) | add) / (map(.[0] * (.[0] - $t)) | add)] | @tsv'
 done | tee rate.tsv
-nsd-view -s "$(jq -n "0.3 / $dt | round")" -c speed --cut 0,1,0,0 --boundaries lines "flow-${orifices##* }.h5" >funnel-flow.png
+nsd-view -s "$(jq -n "0.3 / $dt | round")" -c speed --clip 0,1,0,0 --boundaries lines "flow-${orifices##* }.h5" >funnel-flow.png
 # Beverloo: W = C rho sqrt(g) (D - k d)^2.5, a line of W^0.4 against D; rho: bulk density at a fraction of 0.58. And k at his C of 0.58.
 awk -v d="$grain" 'BEGIN { d *= 1.22e-3; s = 0.58 * 1580 * sqrt(9.81) }
     { x = $1 / 1000; y = ($2 / 1000) ^ 0.4; n++; sx += x; sy += y; sxx += x * x; sxy += x * y; k += (x - ($2 / 1000 / (0.58 * s)) ^ 0.4) / d }

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 set -euo pipefail
-# the size of the instrument: GRAIN=1 SIZE=1 DT=1e-4 SPEED=0.002 LOAD=4.6
+# the size of the instrument: GRAIN=1 SIZE=1 DT=1e-4 LOAD=4.6
 grain=${GRAIN:-1.8} size=${SIZE:-0.4} dt=${DT:-4e-4} speed=${SPEED:-0.045} load=${LOAD:-0.8}
-read -ra step <<<"${STEP-}" # options of nsd-step; small steps have no stiffness of contacts
+read -ra step <<<"${STEP---stiffness $(jq -n "600 * $load")}" # options of nsd-step
 step() # LOAD ARGUMENT ...: steps under a load, N
 {
     local load=$1
     nsd-step "${step[@]}" --sums --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-boundaries head "${@:2}"
 }
-jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson speed "$speed" --argjson load "$load" |
-    jq --arg step "${step[*]}" 'if $step | test("small-steps") then del(.stiffness) else . end' | nsd-gen - >filled.h5
+jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson speed "$speed" |
+    nsd-gen - >filled.h5
 step "$load" --until "${UNTIL:-0.3}" -o preshear.h5 filled.h5
 # the stresses on the head, Pa
 stresses() { nsd-stat -m sums_by_name "$1" | jq -r --argjson s "$size" '(.sums_by_name.name | index("head")) as $k | (2300e-6 * $s * $s) as $a |

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 set -euo pipefail
 nsd-gen scene.json >start.h5
-nsd-step --overlap gap --until "${UNTIL:-0.48}" --every 20 --contacts -o oedometer.h5 start.h5
+nsd-step --overlap-rule gap --until "${UNTIL:-0.48}" --every 20 --contacts -o oedometer.h5 start.h5
 nsd-view --network oedometer.h5 >oedometer.png
 # each stage once its load is constant, from 40 ms on: means
 nsd-stat -m strain,stress,fraction,boundaries start.h5 oedometer.h5 | jq -rs 'def mean: add / length;

@@ -9,7 +9,7 @@ for rpm in 15 45; do
     nsd-cat --last -o "start-$rpm.h5" "${FROM:-drum}-$rpm.h5"
     there=$(nsd-info "start-$rpm.h5" | jq -s '.[-1].bodies')
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson rpm $rpm --argjson count "$3" --argjson mu "$1" --argjson mu_r_ratio "$2" |
-        jq --arg start "start-$rpm.h5" --argjson there "$there" '.overlap = true | (.bodies[0].random.count -= $there) |
+        jq --arg start "start-$rpm.h5" --argjson there "$there" '.allow_overlap = true | (.bodies[0].random.count -= $there) |
             .bodies[0].box = { x: [0.006, 0.028], y: [0, 0.02], z: [0.002, 0.026] } |
             .bodies = [{ document: $start }] + (.bodies | map(select(.random.count > 0)))' >"refined-$rpm.json"
     nsd-gen "refined-$rpm.json" | nsd-step "${step[@]}" --until "$span" --every 0.01s -j 1 -o "refined-$rpm.h5"

@@ -13,7 +13,7 @@ def strip($side): [3.5, 8, 10], [8, 12, 20], [12, 16, 37], [16, 20, 50], [20, 24
     { name: "blade", rectangle: { center: [$side * ($a + $b) / 2 * 1e-3, 0, $top], normal: [0, -$side * ($t | sin), ($t | cos)],
                                   along: [1, 0, 0], sides: [($b - $a | mm), (10 | mm)] } } + down;
 { title: "A powder rheometer: a twisted blade descends through the powder",
-  dt: $dt, density: 1580, mu: 0.561, rolling: { mu_r_ratio: 0.293 }, e_n: 0.3, stiffness: 5e3, seed: 1,
+  dt: $dt, density: 1580, mu: 0.561, rolling: { mu_r_ratio: 0.293 }, e_n: 0.3, seed: 1,
   walls: ((if $surfaces != "" then [stl("vessel")] else
       [{ name: "vessel", cylinder: { point: [0, 0, (2 | mm)], axis: [0, 0, 1], radius: (25 | mm), length: (100 | mm) } },
        { name: "bottom", disc: { center: [0, 0, (2 | mm)], normal: [0, 0, 1], radius: (25 | mm) } }] end) +

@@ -3,7 +3,7 @@ set -euo pipefail
 # the instrument itself: GRAIN=1 SIZE=1 DT=1e-4 OMEGA=0.1 LOAD=45 SURFACES=FOLDER, where FOLDER has the STL files
 # the shear head of a powder rheometer, in its vessel of 50 mm: CELL=ft4 SIZE=1 GRAIN=2.8 OMEGA=1.5 LOAD=4; DT=1e-4 GRAIN=1 for the powder
 grain=${GRAIN:-1.8} size=${SIZE:-0.2} dt=${DT:-4e-4} omega=${OMEGA:-3} load=${LOAD:-1.8} surfaces=${SURFACES:-} name=${CELL:-schulze}
-read -ra step <<<"${STEP-}" # options of nsd-step; small steps have no stiffness of contacts
+read -ra step <<<"${STEP---stiffness $(jq -n "300 * $load")}" # options of nsd-step
 cell=$(jq -nc --arg n "$name" '{ schulze: { box: "Schulze-Normal/box.stl", head: "Schulze-Normal/head_full.stl", inner: 50, outer: 100, deep: 40, from: 51, to: 99, vanes: 20 },
     ft4: { box: "FT4/box.stl", head: "FT4/shear_head.stl", inner: 0, outer: 25, deep: 20, from: 0.5, to: 24, vanes: 18 } }[$n]')
 # the head: a ring with vanes of 4 mm
@@ -14,8 +14,8 @@ step() # LOAD ARGUMENT ...: steps under a load, N
     local load=$1
     nsd-step "${step[@]}" --sums --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-boundaries head "${@:2}"
 }
-jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson omega "$omega" --argjson load "$load" --arg surfaces "$surfaces" --argjson cell "$cell" |
-    jq --arg step "${step[*]}" 'if $step | test("small-steps") then del(.stiffness) else . end' | nsd-gen - >filled.h5
+jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson omega "$omega" --arg surfaces "$surfaces" --argjson cell "$cell" |
+    nsd-gen - >filled.h5
 step "$load" --until "${UNTIL:-0.3}" -o preshear.h5 filled.h5
 # the stresses on the head, Pa, by its area and its lever
 stresses() { nsd-stat -m sums_by_name "$1" | jq -r --argjson s "$size" --argjson c "$cell" '(.sums_by_name.name | index("head")) as $k | ($c.from * $s / 1000) as $r | ($c.to * $s / 1000) as $q |

@@ -1,11 +1,11 @@
-# jq -n -f scene.jq --argjson grain 1.8 --argjson size 0.2 --argjson dt 4e-4 --argjson omega 3 --argjson load 1.8 --arg surfaces "" --argjson cell '{"box": "Schulze-Normal/box.stl", "head": "Schulze-Normal/head_full.stl", "inner": 50, "outer": 100, "deep": 40}'
-# size: of the cell, 1 is that of the laboratory; omega: speed of the trough, rad/s; load: the largest one, N, which sets the stiffness
+# jq -n -f scene.jq --argjson grain 1.8 --argjson size 0.2 --argjson dt 4e-4 --argjson omega 3 --arg surfaces "" --argjson cell '{"box": "Schulze-Normal/box.stl", "head": "Schulze-Normal/head_full.stl", "inner": 50, "outer": 100, "deep": 40}'
+# size: of the cell, 1 is that of the laboratory; omega: speed of the trough, rad/s
 def mm: . * 1e-3;
 def r: { gaussian: { mean: (0.61 | mm * $grain), sd: (0.042 | mm * $grain), min: (0.52 | mm * $grain), max: (0.75 | mm * $grain) } };
 def turn: { drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: $omega, from: 0.15 }] };
 ($size | mm) as $s | (1.3 * $cell.deep * $s) as $deep | # of the powder at the start
 { title: "A ring shear cell: the trough turns under a head with vanes",
-  dt: $dt, density: 1580, mu: 0.561, rolling: { mu_r_ratio: 0.293 }, e_n: 0.3, stiffness: ($load * 300), seed: 1,
+  dt: $dt, density: 1580, mu: 0.561, rolling: { mu_r_ratio: 0.293 }, e_n: 0.3, seed: 1,
   bodies: [{ random: { count: (1.9 * $cell.deep * ($cell.outer * $cell.outer - $cell.inner * $cell.inner) * $size * $size * $size / ($grain * $grain * $grain) | round) }, radius: r,
              box: { x: [-$cell.outer * $s, $cell.outer * $s], y: [-$cell.outer * $s, $cell.outer * $s], z: [0, $deep] } }],
   walls: (if $surfaces != "" then

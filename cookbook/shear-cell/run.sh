@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 set -euo pipefail
-nsd-gen scene.json | nsd-step --overlap gap --until "${UNTIL:-0.15}" --every 8 --contacts -o load.h5
+nsd-gen scene.json | nsd-step --overlap-rule gap --until "${UNTIL:-0.15}" --every 8 --contacts -o load.h5
 # the lid held where it is: no load, the same velocity along x
 nsd-info --last -w load.h5 | jq -s '.[1].point[1]' >height
 nsd-info --scene load.h5 | jq --argjson h "$(cat height)" '.walls[1] = { point: [0, $h], normal: [0, -1], velocity: [0.2, 0] }' |
-    nsd-gen - | nsd-step --overlap gap -n 1500 --every 40 --contacts -o volume.h5
+    nsd-gen - | nsd-step --overlap-rule gap -n 1500 --every 40 --contacts -o volume.h5
 nsd-view --network load.h5 >shear-cell.png
 for n in load volume; do
     nsd-stat -m boundaries,fraction $n.h5 | jq -rs --arg n $n 'def mean: add / length; .[length / 2 | floor:] |

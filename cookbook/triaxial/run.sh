@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 set -euo pipefail
-nsd-gen scene.json | nsd-step --overlap gap --until 0.01 --every 0.01s -o start.h5
+nsd-gen scene.json | nsd-step --overlap-rule gap --until 0.01 --every 0.01s -o start.h5
 test() # NAME CELL: friction, and what the cell then does; z becomes shorter at 30 per s
 {
     nsd-info --scene start.h5 | jq --argjson cell "$2" '.mu = 0.5 | .dt = 7e-6 | .bodies[0].at_rest = true | .cell = $cell' |
         nsd-gen - >"$1-start.h5"
-    nsd-step --overlap gap -n "${STEPS:-1500}" --every 25 --contacts -o "$1.h5" "$1-start.h5"
+    nsd-step --overlap-rule gap -n "${STEPS:-1500}" --every 25 --contacts -o "$1.h5" "$1-start.h5"
     nsd-stat -m strain,stress,fraction,coordination,fabric "$1-start.h5" "$1.h5" | jq -r 'select(.stress.p) |
         [.strain.tensor[2][2], .strain.volumetric, .stress.q, .stress.p, .fraction.fraction, .fraction.void_ratio,
         .coordination.z_mechanical, .fabric.anisotropy] | @tsv' >"$1.tsv"

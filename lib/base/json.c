@@ -1,6 +1,9 @@
 #include "base/json.h"
 
+#include "base/text.h"
+
 #include <math.h>
+#include <stdlib.h>
 
 json_t *json_number(double x)
 {
@@ -35,4 +38,65 @@ json_t *json_field(const struct field *f, const void *x)
     json_t *a = json_array();
     for (int k = 0; k < f->width; k++) json_array_append_new(a, json_field_number(f, x, k));
     return a;
+}
+
+/* A number that is whole stays a real one for who reads it: 2.0 */
+static int json_write_real(FILE *out, double x)
+{
+    char text[NUMBER_ROOM];
+    number_shortest(text, x);
+    return fputs(text, out) == EOF || (!strpbrk(text, ".e") && fputs(".0", out) == EOF);
+}
+
+static int json_write_items(FILE *out, const json_t *j)
+{
+    if (putc('[', out) == EOF) return 1;
+    for (size_t i = 0; i < json_array_size(j); i++)
+        if ((i && putc(',', out) == EOF) || json_write(out, json_array_get(j, i))) return 1;
+    return putc(']', out) == EOF;
+}
+
+static int json_write_members(FILE *out, const json_t *j)
+{
+    const char *key, *comma = "";
+    json_t *value;
+    if (putc('{', out) == EOF) return 1;
+    json_object_foreach((json_t *)j, key, value)
+    {
+        json_t *name = json_string(key);
+        const int failed = !name || fputs(comma, out) == EOF ||
+                           json_dumpf(name, out, JSON_ENCODE_ANY) || putc(':', out) == EOF ||
+                           json_write(out, value);
+        json_decref(name);
+        if (failed) return 1;
+        comma = ",";
+    }
+    return putc('}', out) == EOF;
+}
+
+int json_write(FILE *out, const json_t *j)
+{
+    switch (json_typeof(j)) {
+    case JSON_OBJECT:
+        return json_write_members(out, j);
+    case JSON_ARRAY:
+        return json_write_items(out, j);
+    case JSON_REAL:
+        return json_write_real(out, json_real_value(j));
+    default:
+        return json_dumpf(j, out, JSON_ENCODE_ANY);
+    }
+}
+
+char *json_text(const json_t *j)
+{
+    struct text text;
+    size_t size;
+    FILE *out = j ? text_open(&text) : NULL;
+    if (!out) return NULL;
+    const int failed = json_write(out, j);
+    char *bytes = text_close(&text, out, &size);
+    if (!failed) return bytes;
+    free(bytes);
+    return NULL;
 }

@@ -1,4 +1,3 @@
-#define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): sched_getaffinity
 #include "base/team.h"
 
 #include <pthread.h>
@@ -82,13 +81,6 @@ void team_set_size(int threads)
 int team_size(void)
 {
     return size > 1 ? size : 1;
-}
-
-int team_cores(void)
-{
-    cpu_set_t cores;
-    int n = sched_getaffinity(0, sizeof cores, &cores) ? 1 : CPU_COUNT(&cores);
-    return n > 0 ? n : 1;
 }
 
 /* ---- waiting ---- */

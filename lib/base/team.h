@@ -39,8 +39,5 @@ double team_most(int threads, int64_t n, int64_t least, team_look *some, void *a
 void team_set_size(int threads);
 int team_size(void);
 
-/* The cores that this process may run on */
-int team_cores(void);
-
 /* Waits until *count is at least n; whoever counts up need not know that somebody waits. */
 void team_await(const _Atomic int64_t *count, int64_t n);

@@ -23,6 +23,14 @@ void number_write(char *text, size_t room, int digits, char form, double x)
     uselocale(was);
 }
 
+void number_shortest(char text[NUMBER_ROOM], double x)
+{
+    for (int digits = 15; digits <= 17; digits++) {
+        number_write(text, NUMBER_ROOM, digits, 'g', x);
+        if (number_read(text, NULL) == x) return;
+    }
+}
+
 /* ---- a text in memory ---- */
 
 static ssize_t text_put(void *to, const char *bytes, size_t n)

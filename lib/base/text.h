@@ -13,6 +13,10 @@ double number_read(const char *text, char **end);
 /* As snprintf() with %.*g or %.*e; form: 'g' or 'e' */
 void number_write(char *text, size_t room, int digits, char form, double x);
 
+/* With the fewest digits, of 15 to 17, that are read as the same number */
+enum { NUMBER_ROOM = 32 };
+void number_shortest(char text[NUMBER_ROOM], double x);
+
 struct text {
     char *bytes;
     size_t size, room;

@@ -1,4 +1,4 @@
-/* contact/depth.c: the deepest contact, and bodies that are wedged [contact/depth.h]. */
+/* contact/depth.c: the deepest contact, and bodies that are pinched [contact/depth.h]. */
 #include "contact/depth.h"
 
 #include "contact/spring.h"
@@ -34,14 +34,14 @@ static bool held(const struct depth_side *s, int64_t n)
     return false;
 }
 
-static void count_wedged(struct depth *d, const struct packing *p, struct depth_side *s, int64_t n,
-                         const bool *counts)
+static void count_pinched(struct depth *d, const struct packing *p, struct depth_side *s, int64_t n,
+                          const bool *counts)
 {
     qsort(s, (size_t)n, sizeof *s, by_body);
     for (int64_t i = 0, k; i < n; i = k) {
         for (k = i; k < n && s[k].body == s[i].body; k++) continue;
         if ((counts && !counts[s[i].body]) || !held(s + i, k - i)) continue;
-        if (!d->wedged++) d->wedged_id = p->id[s[i].body];
+        if (!d->pinched++) d->pinched_id = p->id[s[i].body];
     }
 }
 
@@ -53,7 +53,7 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     for (int64_t i = 0; i < s->n; i++) {
         if (s->c[i].gap >= 0) continue; // as most are, without a quotient
         double depth = radii(p, s, i);
-        deep += depth > DEPTH_WEDGED;
+        deep += depth > DEPTH_PINCHED;
         if (depth > d->deepest) d->deepest = depth, most = i;
     }
     if (most >= 0) {
@@ -66,12 +66,12 @@ int depth_of(struct depth *d, const struct packing *p, const struct contacts *s,
     int64_t n = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        if (!(c->gap < 0 && radii(p, s, i) > DEPTH_WEDGED)) continue;
+        if (!(c->gap < 0 && radii(p, s, i) > DEPTH_PINCHED)) continue;
         if (p->mass[c->b] > 0) side[n++] = (struct depth_side){ c->b, c->n };
         if (c->a >= 0 && p->mass[c->a] > 0)
             side[n++] = (struct depth_side){ c->a, v3_scale(-1, c->n) };
     }
-    count_wedged(d, p, side, n, counts);
+    count_pinched(d, p, side, n, counts);
     free(side);
     return 0;
 }

@@ -2,7 +2,7 @@
  * contact/depth.h: how deep bodies are in one another, in radii of the smaller: that of the ball around
  * it where a grain has a shape.
  *
- * A body is wedged where two of its contacts are deeper than DEPTH_WEDGED and their normals point against each
+ * A body is pinched where two of its contacts are deeper than DEPTH_PINCHED and their normals point against each
  * other: neither velocities nor displacements free it without what holds it.
  */
 #pragma once

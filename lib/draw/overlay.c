@@ -207,9 +207,11 @@ static void draw_palette(cairo_t *cr, const struct paint *p, double x, double y,
     double size = font_height(cr);
     overlay_write_words(cr, x + 0.5 * w, y - 0.35 * size, MIDDLE, text);
     snprintf(text, sizeof text, "%.3g", p->lo);
-    overlay_write_words(cr, x, y + h + size, LEFT, text);
+    const double after = x + overlay_write_words(cr, x, y + h + size, LEFT, text) + 0.7 * size;
     snprintf(text, sizeof text, "%.3g", p->hi);
-    overlay_write_words(cr, x + w, y + h + size, RIGHT, text);
+    cairo_text_extents_t e;
+    cairo_text_extents(cr, text, &e);
+    overlay_write_words(cr, fmax(x + w, after + e.x_advance), y + h + size, RIGHT, text);
 }
 
 /* A square of the colour, and a word; false where it would be beyond `end`, and dots are there instead. */

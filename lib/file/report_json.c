@@ -79,11 +79,11 @@ json_t *json_report(const struct report *r)
     json_object_set_new(j, "method", json_string(r->method));
     set_err(j, &r->err);
     json_object_set_new(j, "criterion", json_string(criterion_name[r->criterion]));
-    json_object_set_new(j, "eps", json_number(r->eps));
+    json_object_set_new(j, "tolerance", json_number(r->eps));
     for (const struct field *f = report_fields; f->name; f++)
         if (f->offset >= ERR_AT + sizeof r->err)
             json_object_set_new(j, f->name, json_field(f, (const char *)r + f->offset));
-    if (r->watched) json_object_set_new(j, "passed", json_integer(r->passed));
+    if (r->watched) json_object_set_new(j, "tunnelled", json_integer(r->tunnelled));
     if (r->substeps > 1) json_object_set_new(j, "substeps", json_integer(r->substeps));
     if (r->balanced) json_object_set_new(j, "balance", balance(r));
     return j;
@@ -117,9 +117,7 @@ json_t *json_account(const struct account *a, const struct names *names)
 
 void json_line(json_t *j)
 {
-    char *text = ferror(stdout) ? NULL : json_dumps(j, JSON_COMPACT);
-    if (text && fputs(text, stdout) != EOF) putchar('\n');
+    if (!ferror(stdout) && !json_write(stdout, j)) putchar('\n');
     if (ferror(stdout)) __fpurge(stdout); // nothing comes after a piece that is missing
-    free(text);
     json_decref(j);
 }

@@ -225,8 +225,8 @@ static struct report_rows_columns columns(void)
 {
     struct report_rows_columns t = { { FIELD(struct account, steps, I64, 1, "steps", "1", 0) } };
     for (int k = 0; k < ACCOUNT_ROWS; k++)
-        t.c[1 + k] = (struct field)FIELD(struct account, worst[k], F64, 4, account_watched[k].name,
-                                         account_watched[k].units, 0);
+        t.c[1 + k] = (struct field)FIELD(struct account, worst[k], F64, 4,
+                                         account_watched[k].stored, account_watched[k].units, 0);
     return t;
 }
 
@@ -241,7 +241,7 @@ static int report_rows_check(const struct account *a, struct failure *failure)
                     fabs(e->bodies[0]) <= most && fabs(e->bodies[1]) <= most;
         if (!good)
             return failure_set(failure, EX_DATAERR, "%s/%s: a number is out of range", home,
-                               account_watched[k].name);
+                               account_watched[k].stored);
     }
     return 0;
 }

@@ -87,6 +87,19 @@ static int energies_add_step(double **at, const struct snapshot *s, double *stor
     return 0;
 }
 
+/* Of a step that was made in several, by its balance. Returns what is lacking; NULL: nothing. */
+static const char *energies_add_balance(double *at, const struct snapshot *s, double *stored)
+{
+    const struct report *r = s->report;
+    if (!r || !r->balanced)
+        return "the step was made in small steps, and the document has no balance of them";
+    if (!s->region.all)
+        return "the step was made in small steps, and their balance is that of all bodies";
+    at[0] = r->balance.dissipation, at[3] = r->balance.drives;
+    *stored = r->tied ? r->balance.bond_energy : 0;
+    return NULL;
+}
+
 static int energies_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
@@ -110,11 +123,12 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct failu
     else if (s->only.bodies)
         lacks = "contacts are not divided among groups of bodies";
     else if (contacts_summed(s->s))
-        lacks =
-            "the step was made in small steps or substeps, nsd-step --log has their dissipation";
+        lacks = energies_add_balance(step, s, &stored);
     else if (energies_add_step(&step, s, &stored, failure))
         return failure->status;
     if (lacks) table_null(t, "no dissipation: %s", lacks);
+    if (isnan(at[6]))
+        table_null(t, "impact and friction are known of steps that were made at once");
     if (lacks && p->law) stored = NAN;
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);
     put(&at, kinetic + rotation + potential + stored);

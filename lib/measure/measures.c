@@ -1,5 +1,6 @@
 #include "measure/measures.h"
 
+#include "base/nearest.h"
 #include "base/text.h"
 #include "measure/follow.h"
 #include "measure/photo.h"
@@ -290,6 +291,11 @@ static const struct {
 };
 enum { SETTINGS = sizeof settings / sizeof settings[0] };
 
+const char *asked_name(int k)
+{
+    return k < SETTINGS ? settings[k].name : NULL;
+}
+
 bool asked_has(const char *name)
 {
     for (int k = 0; k < SETTINGS; k++)
@@ -311,6 +317,15 @@ static void measured_choose_one(const struct measure **chosen, const struct meas
     if (k < MOST_MEASURES) chosen[k] = m;
 }
 
+static int no_such_measure(const char *name, size_t n, struct failure *failure)
+{
+    struct nearest near = { 0 };
+    for (int k = 0; measures[k]; k++) nearest_look(&near, name, n, measures[k]->name);
+    return failure_set(
+        failure, EX_USAGE, "--measures: no '%.*s'%s%s%s (nsd-stat --list names them)", (int)n, name,
+        near.name ? "; did you mean " : "", near.name ? near.name : "", near.name ? "?" : "");
+}
+
 int measured_choose(const struct measure **chosen, const char *names, struct failure *failure)
 {
     for (int k = 0; k <= MOST_MEASURES; k++) chosen[k] = NULL;
@@ -320,8 +335,7 @@ int measured_choose(const struct measure **chosen, const char *names, struct fai
         if (n == 3 && !strncmp(s, "all", n))
             for (int k = 0; measure_at(k); k++) measured_choose_one(chosen, measure_at(k));
         else if (!m)
-            return failure_set(failure, EX_USAGE,
-                               "--measures: no '%.*s' (nsd-stat --list names them)", (int)n, s);
+            return no_such_measure(s, n, failure);
         else
             measured_choose_one(chosen, m);
         s += n;

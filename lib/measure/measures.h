@@ -73,8 +73,9 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
    tracer KIND, or large; sample M; view AXIS; window LEFT,RIGHT,LOWER,UPPER; pixels N; photo FILE.
    Returns 0, or EX_USAGE with "--name: trouble", where nothing has changed. */
 int asked_set(struct asked *asked, const char *name, const char *text, struct failure *failure);
-/* Is there one of that name? */
+/* Is there one of that name? The names, NULL past the last */
 bool asked_has(const char *name);
+const char *asked_name(int k);
 
 /* Measures of a snapshot, by their names, as JSON. */
 

@@ -9,6 +9,7 @@
 #include "measure/tensor.h"
 #include "state/contact.h"
 #include "state/packing.h"
+#include "state/report.h"
 #include "state/selection.h"
 
 /*
@@ -109,8 +110,9 @@ struct asked {
 
 struct snapshot {
     const struct packing *p;
-    const struct contacts *s; /* NULL: the document has none; s->found NULL: not solved */
-    bool moved;               /* the contacts have led to these positions, not from them */
+    const struct contacts *s;    /* NULL: the document has none; s->found NULL: not solved */
+    bool moved;                  /* the contacts have led to these positions, not from them */
+    const struct report *report; /* of the step that the contacts belong to; NULL: none is known */
     const struct asked *asked;
     double
         unconverged; /* steps since the frame before, or of the first all, that have not converged; NaN: not known */

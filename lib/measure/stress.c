@@ -51,7 +51,7 @@ static const struct quantity quantities[] = {
     { "p", "Pa", 1, "mean pressure, a third of the trace (2D: half of it, N/m)" },
     { "q", "Pa", 1, "deviator, sqrt(3/2 s:s) (2D: half the difference of the principal values)" },
     { "tensor", "Pa", 9, "stress, compression positive (2D: N/m)" },
-    { "contacts", "Pa", 9, "part of the contacts" },
+    { "contact_part", "Pa", 9, "part of the contacts" },
     { "kinetic", "Pa", 9, "part of the motion of bodies" },
     { "principal", "Pa", 3, "principal values of the stress, the largest first" },
     { 0 },

@@ -57,16 +57,13 @@ void put_tensor(double **at, const struct tensor *T)
 
 void print_number(FILE *out, double x, const char *none)
 {
-    char text[32];
+    char text[NUMBER_ROOM];
     if (!isfinite(x)) {
         fputs(none, out);
         return;
     }
     if (x == 0) x = 0; // no minus zero
-    for (int digits = 15; digits <= 17; digits++) {
-        number_write(text, sizeof text, digits, 'g', x);
-        if (number_read(text, NULL) == x) break;
-    }
+    number_shortest(text, x);
     fputs(text, out);
 }
 

@@ -484,8 +484,8 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
         here = here && d->pair[k] == id;
         d->pair[k] = (int32_t)id;
     }
-    double first = comm_most(t, d->wedged ? -d->wedged_id : none);
-    d->wedged = comm_sum(t, d->wedged), d->wedged_id = d->wedged ? (int32_t)-first : 0;
+    double first = comm_most(t, d->pinched ? -d->pinched_id : none);
+    d->pinched = comm_sum(t, d->pinched), d->pinched_id = d->pinched ? (int32_t)-first : 0;
     d->deepest = most;
 }
 

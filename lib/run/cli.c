@@ -1,6 +1,8 @@
 #include "run/cli.h"
 
+#include "base/nearest.h"
 #include "base/output.h"
+#include "base/renamed.h"
 #include "file/reader.h"
 
 #include <errno.h>
@@ -15,11 +17,12 @@
 #include <unistd.h>
 
 enum {
-    MESSAGE = 8192, /* bytes of a message: names of files are at most 4096 */
-    OPTIONS = 64,   /* room for a tool's options */
-    OF_ALL = 3,     /* options of every tool */
-    LEFT = 28,      /* characters of --help's left column */
-    HELP = 1000,    /* what getopt_long returns: beyond all letters */
+    MESSAGE = 8192,   /* bytes of a message: names of files are at most 4096 */
+    OPTIONS = 64,     /* room for a tool's options */
+    OF_ALL = 3,       /* options of every tool */
+    RENAMED_MOST = 8, /* old names that a tool accepts */
+    LEFT = 28,        /* characters of --help's left column */
+    HELP = 1000,      /* what getopt_long returns: beyond all letters */
     VERSION,
     UNPACK,
     FIRST_LONG /* + the option's index */
@@ -150,7 +153,7 @@ static const char *cli_words(const struct cli_option *o)
     return text;
 }
 
-/* "  -m, --method a|b|c      help [default]", and a line for each choice that explains itself */
+/* "  -m, --local a|b|c      help [default]", and a line for each choice that explains itself */
 static void help_option(const struct cli_option *o)
 {
     char left[240], letter[5] = "    ";
@@ -175,8 +178,8 @@ static void help(void)
     }
     printf("\n  %-*s  accept documents that unpack to GB [64 times their size, >= 0.067]\n", LEFT,
            "    --unpack GB");
-    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "    --help", LEFT,
-           "    --version");
+    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "-h, --help", LEFT,
+           "-V, --version");
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
     finish_stdout();
@@ -211,18 +214,50 @@ static json_t *cli_set(const struct cli_option *o, const char *text)
     }
 }
 
+/* Ends the tool. A name that is the beginning of several could be each of them. */
+static void no_such_option(const char *text, const struct option *known) __attribute__((noreturn));
+static void no_such_option(const char *text, const struct option *known)
+{
+    const char *name = text + strspn(text, "-");
+    const size_t n = strcspn(name, "=");
+    char begun[200] = "";
+    struct nearest near = { 0 };
+    const struct renamed *renamed = renamed_find(tool.name, name, n);
+    if (renamed) die_usage("--%.*s: now called --%s", (int)n, name, renamed->is);
+    for (const struct option *o = known; o->name; o++) {
+        const size_t at = strlen(begun);
+        nearest_look(&near, name, n, o->name);
+        if (!strncmp(o->name, name, n))
+            snprintf(begun + at, sizeof begun - at, "%s--%s", at ? ", " : "", o->name);
+    }
+    if (*begun) die_usage("--%.*s: more than one option begins so: %s", (int)n, name, begun);
+    if (near.name) die_usage("--%.*s: no such option; did you mean --%s?", (int)n, name, near.name);
+    die_usage("--%.*s: no such option", (int)n, name);
+}
+
 /* Of every tool, for it is every reader's: how much a packed document may hold */
 static double gigabytes;
 static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
                                           "GB",     .max = 1e6, .silent = true };
 
+/* Behind the n options that there are: old names that are accepted, which stand for the new ones */
+static void add_renamed(struct option *known, int n)
+{
+    const struct renamed *r;
+    int end = n;
+    for (int k = 0; (r = renamed_at(k)); k++)
+        for (int i = 0; i < n && r->accepted && end < n + RENAMED_MOST; i++)
+            if (!strcmp(known[i].name, r->is) && words_have(r->in, tool.name, strlen(tool.name)))
+                known[end] = known[i], known[end++].name = r->was;
+}
+
 int cli_parse(int argc, char **argv)
 {
-    struct option lng[OPTIONS + OF_ALL + 1] = { { "help", 0, NULL, HELP },
-                                                { "version", 0, NULL, VERSION },
-                                                { "unpack", 1, NULL, UNPACK } };
+    struct option lng[OPTIONS + OF_ALL + RENAMED_MOST + 1] = { { "help", 0, NULL, HELP },
+                                                               { "version", 0, NULL, VERSION },
+                                                               { "unpack", 1, NULL, UNPACK } };
     const struct cli_option *at[OPTIONS];
-    char letters[2 * OPTIONS + 2] = ":";
+    char letters[2 * OPTIONS + 4] = ":hV";
     int n = 0;
     for (const struct cli_option *const *t = tool.tables; *t; t++)
         for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
@@ -232,6 +267,7 @@ int cli_parse(int argc, char **argv)
             lng[n + OF_ALL] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
             if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
         }
+    add_renamed(lng, OF_ALL + n);
     json_t *value[OPTIONS] = { NULL };
     int c;
     stdout_named = !output_removed(STDOUT_FILENO);
@@ -240,20 +276,23 @@ int cli_parse(int argc, char **argv)
     memcpy(arguments, argv, size);
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
-        if (c == HELP) help();
+        if (c == HELP || c == 'h') help();
         if (c == UNPACK) {
             cli_set(&unpack, optarg);
             reader_unpack(1e9 * gigabytes);
             continue;
         }
-        if (c == VERSION) {
+        if (c == VERSION || c == 'V') {
             printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
             finish_stdout();
             exit(0);
         }
         if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
         if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
-        if (c == '?') die_usage("%s: no such option", argv[optind - 1]);
+        if (c == '?' && optopt)
+            die_usage("%.*s: takes no argument", (int)strcspn(argv[optind - 1], "="),
+                      argv[optind - 1]);
+        if (c == '?') no_such_option(argv[optind - 1], lng);
         int k = c - FIRST_LONG;
         for (int i = 0; c < HELP && i < n; i++)
             if (at[i]->letter == c) k = i;

@@ -11,8 +11,8 @@ static bool is_flag(const struct cli_option *o)
 /* Of every tool; cli.c has them apart from the tables. */
 static const struct cli_option common[] = {
     { CLI_REAL, 0, "unpack", .arg = "GB", .help = "accept documents that unpack to at most GB" },
-    { CLI_FLAG, 0, "help", .help = "print the options" },
-    { CLI_FLAG, 0, "version", .help = "print the version" },
+    { CLI_FLAG, 'h', "help", .help = "print the options" },
+    { CLI_FLAG, 'V', "version", .help = "print the version" },
     { 0 },
 };
 

@@ -251,7 +251,7 @@ static void put_report(FILE *out, const struct frame *f)
     fprintf(out, ",\"converged\":%s", !f ? "null" : f->report.converged ? "true" : "false");
     fputs(",\"account\":", out);
     json_t *j = f ? json_account(&f->account, &f->packing.names) : json_null();
-    json_dumpf(j, out, JSON_COMPACT | JSON_ENCODE_ANY);
+    json_write(out, j);
     json_decref(j);
 }
 
@@ -262,6 +262,7 @@ static int put_measures(FILE *out, const struct frame *f, const struct contacts 
     struct table t[MOST_MEASURES];
     const struct packing *p = &f->packing;
     snapshot_init(&look, p, s, f->moved, &loop.asked, failure);
+    look.report = f->reported ? &f->report : NULL;
     if (loop.remembers) look.first = &loop.first, look.before = &loop.before;
     if (!measured_run(t, loop.chosen, &look, failure)) {
         fputs(",\"measures\":", out);

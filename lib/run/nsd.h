@@ -89,7 +89,7 @@ int nsd_from_arrays(struct nsd_run **run, const char *scene, const char *folder,
 void nsd_close(struct nsd_run **run);
 
 /*
- * Sets an option by its long name in nsd-step(1), without dashes: "eps", "method", "threads", "warm" ("true" or
+ * Sets an option by its long name in nsd-step(1), without dashes: "tolerance", "local", "threads", "warm" ("true" or
  * "false"), "dt" ...; "contacts" and "forces": whether saved frames contain them; and the options of nsd-stat(1) for
  * nsd_measure(): "box", "layers", "point", "plane", "radius", "bins", "distance", "tracer", "sample".
  */

@@ -1,4 +1,5 @@
 /* run/objects.c: documents as groups and datasets, checked as the tools check them [file/source.h]. */
+#include "base/json.h"
 #include "file/child.h"
 #include "run/run.h"
 
@@ -88,7 +89,7 @@ int nsd_next(struct nsd_document *d, int *more)
 /* Replaces the text by another one, or by JSON, which is freed. */
 static int put_json(struct nsd_document *d, json_t *j, const char **json, struct failure *failure)
 {
-    char *text = j && !failure->status ? json_dumps(j, JSON_COMPACT) : NULL;
+    char *text = failure->status ? NULL : json_text(j);
     json_decref(j);
     if (failure->status) return failure->status;
     if (!text) return objects_no_memory(failure);

@@ -131,8 +131,9 @@ void options_overlap(struct packing *p, bool detected)
     bool others = overlap_sees_gaps(was) != overlap_sees_gaps(now) ||
                   overlap_meets(was) != overlap_meets(now);
     if (detected && others)
-        die_usage("--overlap %s: the contacts were detected with %s: nsd-detect --overlap %s",
-                  overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
+        die_usage(
+            "--overlap-rule %s: the contacts were detected with %s: nsd-detect --overlap-rule %s",
+            overlap_name[now], overlap_name[was ? was : OVERLAP_KEEP], overlap_name[now]);
     p->overlap = now;
 }
 
@@ -142,8 +143,8 @@ void options_stiffness(struct frame *f, const char *fixed)
     struct failure failure = { 0 };
     struct stiffness to;
     if (!stiffness) return;
-    if (options.paper && strcmp(stiffness, "rigid"))
-        die_usage("--stiffness: contacts of the paper are rigid, and --paper is given");
+    if (options.protocol && strcmp(stiffness, "rigid"))
+        die_usage("--stiffness: contacts of the paper are rigid, and --protocol paper is given");
     if (stiffness_read(&to, stiffness, &failure)) die_usage("--stiffness: %s", failure.text);
     if (fixed && !stiffness_is(p, to))
         die_usage("--stiffness: %s has another one, and a trajectory has one", fixed);
@@ -198,8 +199,7 @@ void options_log(const struct report *rep, const struct account *account, const 
         json_object_set_new(j, "device", there_too);
     }
     if (account) json_object_set_new(j, "account", json_account(account, names));
-    int failed =
-        json_dumpf(j, log_file, JSON_COMPACT) || fputc('\n', log_file) == EOF || fflush(log_file);
+    int failed = json_write(log_file, j) || fputc('\n', log_file) == EOF || fflush(log_file);
     json_decref(j);
     if (failed) die(EX_IOERR, "%s: %s", options.log, strerror(errno));
 }

@@ -28,7 +28,7 @@ char *options_json(const struct step_opt *step);
 /* Puts --theta into the packing; EX_USAGE where contacts were detected with another. */
 void options_theta(struct packing *packing, bool detected);
 /*
- * Puts what is done about overlap into the packing: --overlap, keep with --paper, else what the
+ * Puts what is done about overlap into the packing: --overlap-rule, keep with --protocol paper, else what the
  * document says, else nsd's choice. Of contacts that are detected it may change only what comes
  * after the solve; else EX_USAGE.
  */

@@ -294,7 +294,7 @@ int nsd_report(struct nsd_run *r, const char **json)
         return failure_set(failure, NSD_USAGE, "no step was made, and nothing was solved");
     json_t *j = json_report(&r->f.report);
     json_object_set_new(j, "account", json_account(&r->f.account, &r->f.packing.names));
-    char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
+    char *text = json_text(j);
     json_decref(j);
     if (!text) return read_no_memory(failure);
     free(r->text);
@@ -382,7 +382,7 @@ int nsd_names(struct nsd_run *r, const char **json)
     if (!failure) return NSD_USAGE;
     if (!json) return failure_set(failure, NSD_USAGE, "there is no place for JSON");
     json_t *j = names_of(&r->f.packing);
-    char *text = j ? json_dumps(j, JSON_COMPACT) : NULL;
+    char *text = json_text(j);
     json_decref(j);
     if (!text) return read_no_memory(failure);
     free(r->text);
@@ -413,7 +413,7 @@ int nsd_measure(struct nsd_run *r, const char *names, const char **json)
     snapshot_init(&s, &f->packing, f->detected ? &f->contacts : NULL, f->moved, &r->asked, failure);
     if (r->remembers) s.first = &r->first, s.before = &r->before;
     const double missed = r->account.worst[ACCOUNT_UNCONVERGED].value;
-    s.unconverged = missed - r->measured;
+    s.unconverged = missed - r->measured, s.report = f->reported ? &f->report : NULL;
     if (!measured_run(t, chosen, &s, failure)) {
         FILE *out = text_open(&written);
         if (out) measured_json(out, &s, chosen, t);

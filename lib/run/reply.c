@@ -1,5 +1,7 @@
 #include "run/reply.h"
 
+#include "base/nearest.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -187,6 +189,17 @@ static int set_frictions(const json_t *j, struct packing *p, struct failure *fai
     return 0;
 }
 
+static int reply_unknown(const char *key, struct failure *failure)
+{
+    struct nearest near = { 0 };
+    for (int k = 0; k < KEYS; k++) nearest_look(&near, key, strlen(key), known[k].key);
+    return failure_set(failure, EX_DATAERR,
+                       "the answer has no '%.40s'%s%s%s: it has forces, torques, velocities, "
+                       "angular_velocities, boundaries, gravity, friction, stop",
+                       key, near.name ? "; did you mean '" : "", near.name ? near.name : "",
+                       near.name ? "'?" : "");
+}
+
 int reply_check(const json_t *answer, struct failure *failure)
 {
     const char *key;
@@ -196,11 +209,7 @@ int reply_check(const json_t *answer, struct failure *failure)
         int k = 0;
         while (k < KEYS && strcmp(key, known[k].key) != 0) k++;
         if (!strcmp(key, "document")) return reply_no_document(failure);
-        if (k == KEYS)
-            return failure_set(failure, EX_DATAERR,
-                               "the answer has no '%.40s': it has forces, torques, velocities, "
-                               "angular_velocities, boundaries, gravity, friction, stop",
-                               key);
+        if (k == KEYS) return reply_unknown(key, failure);
         if ((known[k].array && json_is_array(x)) || (known[k].object && json_is_object(x)) ||
             (known[k].boolean && json_is_boolean(x)))
             continue;

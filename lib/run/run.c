@@ -1,6 +1,8 @@
 /* run/run.c: a run: made, set, stepped and closed. */
 #include "run/run.h"
 
+#include "base/nearest.h"
+#include "base/renamed.h"
 #include "base/team.h"
 #include "base/text.h"
 #include "convert/scene_file.h"
@@ -215,26 +217,40 @@ void nsd_close(struct nsd_run **run)
 
 /* ---- options ---- */
 
-static const struct cli_option threads = { CLI_INT, .name = "threads", .to = &options.threads,
-                                           .min = 1, .max = 1024 };
-static const struct cli_option warm = { CLI_FLAG, .name = "warm", .to = &options.warm };
-
-static const struct cli_option substeps = { CLI_INT, .name = "substeps", .to = &options.substeps,
-                                            .min = 1, .max = 1e6 };
-
-static const struct cli_option small_steps = { CLI_REAL, .name = "small-steps",
-                                               .to = &options.small, .min = 0, .max = 0.1 };
+static const struct cli_option run_options[] = {
+    { CLI_INT, .name = "threads", .to = &options.threads, .min = 1, .max = 1024 },
+    { CLI_FLAG, .name = "warm", .to = &options.warm },
+    { CLI_INT, .name = "substeps", .to = &options.substeps, .min = 1, .max = 1e6 },
+    { CLI_REAL, .name = "small-steps", .to = &options.small, .min = 0, .max = 0.1 },
+    { CLI_REAL, .name = "missing-impulse", .to = &options.bound, .min = 0, .max = 1 },
+    { 0 },
+};
+static const struct cli_option *const run_tables[] = { run_options, options_solve, options_detect,
+                                                       NULL };
 
 static const struct cli_option *option_named(const char *name)
 {
-    if (!strcmp(name, substeps.name)) return &substeps;
-    if (!strcmp(name, small_steps.name)) return &small_steps;
-    if (!strcmp(name, threads.name)) return &threads;
-    if (!strcmp(name, warm.name)) return &warm;
-    for (int t = 0; t < 2; t++)
-        for (const struct cli_option *o = t ? options_detect : options_solve; o->kind; o++)
+    for (const struct cli_option *const *t = run_tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind; o++)
             if (!strcmp(o->name, name)) return o;
     return NULL;
+}
+
+static int no_such_option(const char *name, struct failure *failure)
+{
+    static const char *const others[] = { "dt", "stiffness", "contacts", "forces", NULL };
+    struct nearest near = { 0 };
+    const size_t n = strlen(name);
+    const struct renamed *renamed = renamed_find("nsd_set", name, n);
+    if (renamed)
+        return failure_set(failure, NSD_USAGE, "%s: now called %s", renamed->was, renamed->is);
+    for (int k = 0; others[k]; k++) nearest_look(&near, name, n, others[k]);
+    for (int k = 0; asked_name(k); k++) nearest_look(&near, name, n, asked_name(k));
+    for (const struct cli_option *const *t = run_tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind; o++) nearest_look(&near, name, n, o->name);
+    return failure_set(failure, NSD_USAGE, "%.60s: no such option%s%s%s", name,
+                       near.name ? "; did you mean " : "", near.name ? near.name : "",
+                       near.name ? "?" : "");
 }
 
 /* "1e-4", "auto:0.01" */
@@ -291,7 +307,7 @@ static int set_option(struct nsd_run *r, const char *name, const char *value,
     if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, failure);
     if (asked_has(name)) return asked_set(&r->asked, name, value, failure);
     const struct cli_option *o = option_named(name);
-    if (!o) return failure_set(failure, NSD_USAGE, "%.60s: no such option", name);
+    if (!o) return no_such_option(name, failure);
     struct options asked = r->options;
     if (option_set(o, options_member(&asked, o->to), value, failure)) return failure->status;
     options_give(&asked, o->to);

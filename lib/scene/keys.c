@@ -1,6 +1,8 @@
 /* scene/keys.c: objects of a scene by their tables. */
 #include "scene/keys.h"
 
+#include "base/nearest.h"
+#include "base/renamed.h"
 #include "base/text.h"
 
 #include <stdio.h>
@@ -8,8 +10,7 @@
 #include <string.h>
 
 enum {
-    ROWS_MOST = 64, /* of an object, those of included tables too */
-    NAME_MOST = 40
+    ROWS_MOST = 64 /* of an object, those of included tables too */
 };
 
 /* A row, and where its member lies */
@@ -23,16 +24,6 @@ bool keys_has(const jnode *o, const char *key)
     return json_object_get(o->json, key);
 }
 
-bool keys_among(const char *names, const char *name)
-{
-    const size_t n = strlen(name);
-    for (const char *s = names; s && *s; s += strcspn(s, " ")) {
-        s += strspn(s, " ");
-        if (strcspn(s, " ") == n && !memcmp(s, name, n)) return true;
-    }
-    return false;
-}
-
 /* Has o one of these keys? */
 static bool has_one(const jnode *o, const char *names)
 {
@@ -40,7 +31,7 @@ static bool has_one(const jnode *o, const char *names)
     json_t *value;
     json_object_foreach(o->json, key, value)
     {
-        if (keys_among(names, key)) return true;
+        if (words_have(names, key, strlen(key))) return true;
     }
     return false;
 }
@@ -106,26 +97,6 @@ static int check_some(jnode o, const struct row *row, int n)
     return *names ? json_node_fault(o, "needs at least one of the keys %s", names) : 0;
 }
 
-/* Letters that are to be left out, put in, changed or swapped with the next to make a name of another */
-static int distance(const char *a, const char *b)
-{
-    int d[NAME_MOST + 1][NAME_MOST + 1];
-    const int n = (int)strlen(a), m = (int)strlen(b);
-    if (n > NAME_MOST || m > NAME_MOST) return NAME_MOST;
-    for (int i = 0; i <= n; i++)
-        for (int j = 0; j <= m; j++) {
-            d[i][j] = i + j;
-            if (!i || !j) continue;
-            const int change = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
-            d[i][j] = 1 + (d[i - 1][j] < d[i][j - 1] ? d[i - 1][j] : d[i][j - 1]);
-            if (change < d[i][j]) d[i][j] = change;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
-                d[i - 2][j - 2] + 1 < d[i][j])
-                d[i][j] = d[i - 2][j - 2] + 1;
-        }
-    return d[n][m];
-}
-
 /* A key that would be known beside another one */
 static int misplaced_key(jnode o, const struct key *k)
 {
@@ -140,25 +111,44 @@ static int misplaced_key(jnode o, const struct key *k)
 static bool is_elsewhere(const jnode *o, const struct key *k, const struct row *row, int n)
 {
     for (int i = 0; i < n && k->with; i++)
-        if (row[i].key->choice && keys_among(k->with, row[i].key->name)) return !is_allowed(o, k);
+        if (row[i].key->choice && words_have(k->with, row[i].key->name, strlen(row[i].key->name)))
+            return !is_allowed(o, k);
+    return false;
+}
+
+/* A key of version 1: refused, or accepted where its new name is not given too */
+static int check_renamed(jnode o, const char *key, const struct renamed *r)
+{
+    if (r->accepted && !keys_has(&o, r->is)) return 0;
+    return json_node_fault(
+        json_node_key(&o, key),
+        r->accepted ? "now called \"%s\", which is given, too" : "now called \"%s\"", r->is);
+}
+
+static bool is_row(const char *key, const struct row *row, int n)
+{
+    for (int i = 0; i < n; i++)
+        if (!strcmp(key, row[i].key->name)) return true;
     return false;
 }
 
 static int unknown_key(jnode o, const char *key, const struct row *row, int n)
 {
+    const struct renamed *r = renamed_find("scene", key, strlen(key));
+    if (r && is_row(r->is, row, n)) return check_renamed(o, key, r);
+
     char names[250] = "";
-    const char *near = NULL;
-    int least = 3;
+    struct nearest near = { 0 };
     for (int i = 0; i < n; i++) {
         const struct key *k = row[i].key;
-        if (is_elsewhere(&o, k, row, n) || keys_among(names, k->name)) continue;
-        const int d = distance(key, k->name);
-        if (d < least && d < (int)strlen(k->name)) least = d, near = k->name;
+        if (is_elsewhere(&o, k, row, n) || words_have(names, k->name, strlen(k->name))) continue;
+        nearest_look(&near, key, strlen(key), k->name);
         add_name(names, sizeof names, k->name);
     }
-    if (near)
+    if (near.name)
         return json_node_fault(json_node_key(&o, key),
-                               "unknown key; did you mean \"%s\"? known here: %s", near, names);
+                               "unknown key; did you mean \"%s\"? known here: %s", near.name,
+                               names);
     return json_node_fault(json_node_key(&o, key), "unknown key; known here: %s", names);
 }
 
@@ -176,7 +166,7 @@ static int keys_check_names(jnode o, const struct row *row, int n)
             misplaced = row[i].key;
         }
         if (!known && misplaced) return misplaced_key(o, misplaced);
-        if (!known) return unknown_key(o, key, row, n);
+        if (!known && unknown_key(o, key, row, n)) return 1;
     }
     for (int i = 0; i < n; i++)
         if (is_needed(&o, row[i].key) && !keys_has(&o, row[i].key->name))
@@ -217,6 +207,17 @@ static int finish(const struct keys *t, jnode o, struct scene *s, char *out)
     return t->finish && t->finish(o, s, out);
 }
 
+/* By its name, or by that of version 1 */
+static jnode value_of(const jnode *o, const char *name)
+{
+    const jnode value = json_node_key(o, name);
+    const struct renamed *r = NULL;
+    for (int k = 0; !value.json && (r = renamed_at(k)); k++)
+        if (r->accepted && !strcmp(r->in, "scene") && !strcmp(r->is, name))
+            return json_node_key(o, r->was);
+    return value;
+}
+
 int keys_read(jnode o, const struct keys *t, struct scene *s, void *out)
 {
     struct row row[ROWS_MOST];
@@ -228,7 +229,7 @@ int keys_read(jnode o, const struct keys *t, struct scene *s, void *out)
             row[i].key->type->preset(row[i].key, (char *)out + row[i].at);
     for (int i = 0; i < n; i++) {
         const struct key *k = row[i].key;
-        jnode value = json_node_key(&o, k->name);
+        jnode value = value_of(&o, k->name);
         void *member = (char *)out + row[i].at;
         if (!value.json && !k->always) continue;
         if (k->read ? k->read(value, s, member) : k->type->read(value, k, s, member)) return 1;

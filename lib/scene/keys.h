@@ -79,8 +79,6 @@ int keys_read_rows(jnode list, double *row);
 int keys_each(jnode a, struct scene *s, void *out,
               int (*read)(jnode n, struct scene *s, void *out));
 bool keys_has(const jnode *o, const char *key);
-/* Among names with blanks between? */
-bool keys_among(const char *names, const char *name);
 
 /* The row of another table's rows, whose members lie behind `at` */
 extern const struct key_type key_include;

@@ -158,10 +158,10 @@ struct scene_cell {
 
 struct scene {
     int dim;
-    double dt, theta; /* dt 0: "auto" */
+    double dt, theta; /* dt 0: "auto"; NaN: none is given */
     vec3 g;
     uint64_t seed;
-    bool overlap;
+    bool allow_overlap;
 
     int32_t materials;
     struct scene_material *material; /* [materials] 0 is "ball", 1 is "wall" */

@@ -208,7 +208,7 @@ static int check_overlap(const struct packing *p, const struct scene *s, const s
                          const bool *settled, struct failure *failure)
 {
     struct contacts found = { 0 };
-    const char *cure = "; \"overlap\": true allows it)";
+    const char *cure = "; \"allow_overlap\": true allows it)";
     char a[PLACE], b[PLACE];
     int e = detect_contacts_at(&found, p, p->x, p->t, 0, failure);
     for (int64_t i = 0; !e && i < found.n; i++) {
@@ -248,18 +248,22 @@ static int name_wall(const struct scene *s, struct failure *failure)
     return failure->status;
 }
 
-/* The dt of a scene that leaves it to us, which adapts from then on */
+/* The dt of a scene that leaves it to us; "auto" adapts from then on */
 static int scene_build_set_dt(struct packing *p, const struct scene *s, struct failure *failure)
 {
     struct time_step t;
     if (s->dt > 0) return 0;
     time_step_of(&t, s, p);
-    p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
+    if (isnan(s->dt))
+        p->dt = t.interval;
+    else
+        p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : failure_set(failure, EX_DATAERR,
-                             "dt: auto: nothing in the scene moves, so no time step can be "
-                             "chosen: give a number of seconds");
+                             "dt: %snothing in the scene moves, so no time step can be "
+                             "chosen: give a number of seconds",
+                             isnan(s->dt) ? "is missing, and " : "auto: ");
 }
 
 static int scene_build_by_number(const void *a, const void *b)
@@ -294,7 +298,7 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
     if (packing_check(p, failure)) return name_wall(s, failure);
     if (check_names(p, s, failure)) return failure->status;
     if (packing_check_clock(p, failure)) return failure->status;
-    if (s->overlap) return 0;
+    if (s->allow_overlap) return 0;
     bool *settled = from_documents(p, s, list);
     if (!settled) return failure_set(failure, EX_SOFTWARE, "no memory to look for overlaps");
     check_overlap(p, s, list, settled, failure);
@@ -438,7 +442,7 @@ static int make_walls(struct packing *walls, bool *any, const struct scene *s,
                       struct failure *failure)
 {
     *any = false;
-    for (int64_t g = 0; g < s->groups && !s->overlap; g++)
+    for (int64_t g = 0; g < s->groups && !s->allow_overlap; g++)
         *any = *any || s->bodies[g].from == SCENE_RANDOM;
     if (!*any || packing_init(walls, s->dim, 0, failure)) return failure->status;
     if (set_parameters(walls, s, failure) || scene_carry_walls(walls, s, failure))

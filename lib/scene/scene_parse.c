@@ -77,8 +77,9 @@ static const struct key scene_key[] = {
       "3: balls and solids in space. 2: discs and polygons in the plane z = 0, which rotate "
       "about z.",
       .always = true, .read = read_dim },
-    { "dt", &key_dt, AT(dt), "s", REQUIRED, "5e-4",
-      "Time step. \"auto\": the one that nsd-gen --check suggests, adapted in the run.",
+    { "dt", &key_dt, AT(dt), "s", "chosen", "5e-4",
+      "Time step, which nsd-step makes of small ones. The default follows from the accelerations. "
+      "\"auto\": the one that nsd-gen --check suggests for one solve per step, adapted in the run.",
       .read = read_dt },
     { "theta", &key_share, AT(theta), "-", "0.5", "0.5",
       "Parameter of the theta-method, see nsd-methods(7)." },
@@ -95,13 +96,13 @@ static const struct key scene_key[] = {
       "Kinds of material by name. The kinds ball and wall always exist.",
       .object = &scene_material_keys, .always = true, .read = scene_read_materials },
     { LIST(pairs, pair, "Exceptions for pairs of kinds.") },
-    { "overlap", &key_bool, AT(overlap), "-", "false", "true",
+    { "allow_overlap", &key_bool, AT(allow_overlap), "-", "false", "true",
       "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "
       "the smaller radius is an error; of a tenth for bodies that come from a document or a "
       "table." },
     { "shapes", &key_forms, 0, "-", "none", "see below",
       "Shapes of grains by name, see Shapes of grains.", .read = scene_read_shapes },
-    { "cell", &key_cell, AT(cell), "-", "none", "{\"lengths\": [1, 1]}",
+    { "cell", &key_cell, AT(cell), "-", "none", "see below",
       "Periodic cell, see Periodic cells. Default: the cell of the first document among the "
       "bodies, in its last state; null: none.",
       .always = true, .read = scene_read_cell },
@@ -125,7 +126,7 @@ int scene_parse(struct scene *s, const char *text, size_t length, struct scene_f
                 struct failure *failure)
 {
     struct json_doc t;
-    *s = (struct scene){ .dim = 3, .files = files };
+    *s = (struct scene){ .dim = 3, .dt = NAN, .files = files };
     if (json_doc_parse(&t, text, length, failure)) return failure->status;
     int bad = keys_read(json_doc_root(&t), &scene_keys, s, s);
     s->files = NULL, s->title = NULL;

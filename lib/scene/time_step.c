@@ -574,6 +574,17 @@ static double rounded(double dt)
     return number_read(text, NULL);
 }
 
+/* The largest of 1, 2, 5, 10, ... that is at most dt, but for rounding */
+static double time_step_round(double dt)
+{
+    char text[40];
+    if (!isfinite(dt)) return dt;
+    number_write(text, sizeof text, 15, 'e', dt * (1 + 1e-9)); // d.ddde-NN
+    *text = *text < '2' ? '1' : *text < '5' ? '2' : '5';
+    memmove(text + 1, strchr(text, 'e'), strlen(strchr(text, 'e')) + 1);
+    return number_read(text, NULL);
+}
+
 void time_step_of(struct time_step *t, const struct scene *s, const struct packing *p)
 {
     *t = (struct time_step){ .radius = smallest(s, p), .by = -1, .best = INFINITY };
@@ -590,5 +601,7 @@ void time_step_of(struct time_step *t, const struct scene *s, const struct packi
             isfinite(t->radius) ? limit_dt(&time_step_limit[k], t->radius, t->x[k]) : INFINITY;
         if (t->dt[k] < t->best) t->best = t->dt[k], t->by = k;
     }
-    t->best = rounded(t->best);
+    t->best = rounded(t->best), t->interval = INFINITY;
+    for (int k = 0; k <= LIMIT_STRAIN; k++) t->interval = dmin(t->interval, t->dt[k]);
+    t->interval = time_step_round(isfinite(t->interval) ? t->interval : t->best);
 }

@@ -64,6 +64,9 @@ struct time_step {
     double dt[LIMITS];
     int32_t by;  /* the row that is the least */
     double best; /* s: that, its first two digits; INFINITY: nothing moves */
+    /* s: 1, 2 or 5 times a power of ten that no acceleration and no rate of strain limits, where there is one; impacts
+       do not limit what is made of small steps */
+    double interval;
 };
 
 /* Of the packing that the scene has become; its dt need not be known. */

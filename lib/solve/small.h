@@ -5,7 +5,7 @@
  *
  *     bodies    v <- v + h g + 0.98 (v - v^- - h g): free motion, and what persists of all r   200 per body
  *     walls     each body against the walls that are near it                                   600 per contact
- *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             500 per pair in reach,
+ *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             550 per pair in reach,
  *                                                                                              140 per other pair
  *     again     pairs of bodies that a sweep has changed by more than is allowed
  *     judge     what is missing to the law, where it is asked for                              400 per pair in reach
@@ -14,7 +14,9 @@
  *
  * Reactions are vectors in space, f on b. A step begins with a part of the reactions of the one before, SMALL_WARM. What these
  * have made of a body's velocity is v - v^- - h g, with v^- and v before and after that step of the same length, so that
- * no pass over the pairs has to apply them.
+ * no pass over the pairs has to apply them. What turns bodies is the couple d x f, which is kept with f: the next step takes
+ * that back, and not what f would do along the normal of that step, so that angular momentum is kept and frictionless balls
+ * do not turn.
  *
  * The law is that of rigid contacts, with a compliance C that is a small part of W_cc:
  *
@@ -23,7 +25,8 @@
  *     pairs that push    q = n g/h where g > 0, else n max(g/(h + tau), -v_push - 2 c_n f_n^-),   f_0 = (0, f_t^-)
  *     impacts            q = E u^- (and n g/h where e_n = 0),                       f_0 = r^, of the pair alone
  *
- * C makes the reactions of a packing unique. An impact is a pair that pushes little and
+ * C makes the reactions of a packing unique. Along n it gives way to no more of f than may persist, so that impacts pass
+ * through rigid bodies, and has f_0 = 0 in impacts; where masses are very different it gives way to all. An impact is a pair that pushes little and
  * would meet in this step by u^-; it has Newton's law exactly where it is alone. Pairs that are apart, rebound and are not
  * met by their own motion wait: what others make of it is the impact of a later step. Overlaps are left slowly,
  * at v_push at most and what C takes of a load.
@@ -44,9 +47,12 @@ struct small_place {
 struct small_bundle {
     int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies [solve/bundle.h] */
     double f[3][BUNDLE];          /* N s: of this step; between steps, what persists of it */
-    double kept[BUNDLE];          /* N s: of f along n, with which the step began */
-    double q[3][BUNDLE];          /* m/s: q - C f_0 */
-    double sum[3][BUNDLE];        /* N s: of f, in the steps before this one */
+    double
+        couple[3]
+              [BUNDLE]; /* N m s: d x f, d from a to b where f was made: central forces have none */
+    double kept[BUNDLE];   /* N s: of f along n, with which the step began; SMALL_MEETS */
+    double q[3][BUNDLE];   /* m/s: q - C f_0 */
+    double sum[3][BUNDLE]; /* N s: of f, in the steps before this one */
     double mu[BUNDLE];
     double e[2][BUNDLE]; /* e_n, e_t */
 };
@@ -81,6 +87,7 @@ struct small_rates {
     double relax;    /* 1/s: 1/(h + tau) */
     double push;     /* m/s: v_push */
     double soft;     /* C over W of the pair */
+    double gives;    /* N s: C gives way to so much of f along n: INFINITY; 0: what may persist */
     double calm;     /* m/s: no pair at rest approaches faster [state/freedom.h] */
     double reach;    /* m: pairs that are farther apart do not touch in this step */
     double pulls;    /* m/s: no pair is pulled faster in a step */
@@ -118,14 +125,21 @@ struct small_law {
     vd wn, wt, cn, ct, mu; /* 1/kg */
     vd f[3];               /* N s */
     vd q[3];               /* m/s */
-    vd rn;                 /* N s: f along n */
+    vd rn, rt[3];          /* N s: f along n, and across */
     vd calm;               /* m/s: the pair at rest does not approach faster */
+    vd most;               /* N s: of f along n, what C gives way to */
 };
 
 ALWAYS_INLINE void small_split(const vd n[3], const vd x[3], vd *along, vd across[3])
 {
     *along = dot3(n, x);
     for (int i = 0; i < 3; i++) across[i] = x[i] - *along * n[i];
+}
+
+/* x cross y */
+ALWAYS_INLINE void small_cross(const vd x[3], const vd y[3], vd to[3])
+{
+    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) to[i] = x[j] * y[k] - x[k] * y[j];
 }
 
 /* x on the disc of radius most */
@@ -142,7 +156,7 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
     small_split(l->n, l->f, &rn, t);
     vd most = o->push + 2 * l->cn * larger(rn, zero);
     vd qn = pick(lt(l->gap, zero), larger(l->gap * o->relax, -most), l->gap * o->per_h);
-    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++) turn[i] = l->n[j] * t[k] - l->n[k] * t[j];
+    small_cross(l->n, t, turn);
     for (int i = 0; i < 3; i++) l->q[i] = qn * l->n[i] - l->ct * (t[i] + l->spin * turn[i]);
 }
 
@@ -152,33 +166,47 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01
 
-/* q of pairs that meet, and of those that wait; before: u^-. Returns which ones meet. */
+/* In place of what was kept: an impact across a gap, of which nothing persists. Without restitution the pair closes the gap in
+   this step and stops in the next one. */
+#define SMALL_MEETS (-INFINITY)
+
+/* q of pairs that meet, and of those that wait; before: u^-. kept: of f, or SMALL_MEETS. Returns which ones meet. */
 ALWAYS_INLINE vm small_meet(struct small_law *l, const struct small_rates *o, const vd before[3],
-                            vd kept, vd en, vd et)
+                            vd *kept, vd en, vd et)
 {
     vd un, ut[3], hit[3], zero = splat(0);
     small_split(l->n, before, &un, ut);
     vm meets =
-        lt(un, -l->calm) & lt(un + l->gap * o->per_h, zero) & le(l->wn * kept, -SMALL_SLIGHT * un);
-    vm waits = le(kept, zero) & lt(zero, l->gap) & lt(zero, en) & ~meets;
+        lt(un, -l->calm) & lt(un + l->gap * o->per_h, zero) & le(l->wn * *kept, -SMALL_SLIGHT * un);
+    vm waits = le(*kept, zero) & lt(zero, l->gap) & lt(zero, en) & ~meets;
     vd open = pick(le(en, zero), larger(l->gap, zero) * o->per_h, zero);
     vd rn = larger(-(un + en * un + open) / l->wn, zero);
     for (int i = 0; i < 3; i++) hit[i] = -(1 + et) * ut[i] / l->wt;
     small_cut(l->mu * rn, hit);
+    vd alone = o->gives > 0 ? l->cn * rn : zero;
     for (int i = 0; i < 3; i++) {
-        vd q = (en * un + open - l->cn * rn) * l->n[i] + et * ut[i] - l->ct * hit[i];
+        vd q = (en * un + open - alone) * l->n[i] + et * ut[i] - l->ct * hit[i];
         l->q[i] = pick(meets, q, pick(waits, 1e30 * l->n[i], l->q[i]));
     }
+    *kept = pick(meets & lt(zero, l->gap), splat(SMALL_MEETS), *kept);
     return meets;
+}
+
+/* N s: of f along n, what C gives way to: what may persist [small_persists()], or all */
+ALWAYS_INLINE vd small_most(const struct small_law *l, const struct small_rates *o, vd kept)
+{
+    return larger(2 * (kept + l->calm / l->wn), splat(o->gives));
 }
 
 /* f in closed form, where f makes u; df: its change */
 ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
 {
-    vd un, ut[3], qn, qt[3], rn, rt[3];
+    vd un, ut[3], qn, qt[3], rn, *rt = l->rt;
     small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
     small_split(l->n, l->f, &rn, rt);
-    l->rn = larger(rn - (un + qn + l->cn * rn) / (l->wn + l->cn), splat(0));
+    vd soft = rn - (un + qn + l->cn * rn) / (l->wn + l->cn);
+    vd hard = larger(rn - (un + qn + l->cn * l->most) / l->wn, l->most);
+    l->rn = larger(pick(lt(l->most, soft), hard, soft), splat(0));
     vd s = 1 / (l->wt + l->ct);
     for (int i = 0; i < 3; i++) rt[i] -= s * (ut[i] + qt[i] + l->ct * rt[i]);
     small_cut(l->mu * l->rn, rt);
@@ -205,9 +233,10 @@ ALWAYS_INLINE void small_roll(const vd n[3], vd rn, const vd w[3], vd wr, const 
 }
 
 /* N s: so much at most persists of a reaction of which so much was kept before: twice that and what holds a body at
-   rest; where nothing falls, an eighth of it, rn, at least. w (1/kg): of the pair along n */
+   rest; where nothing falls, an eighth of it, rn, at least; of an impact across a gap nothing. w (1/kg): of the pair along n */
 ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, double w, double rn)
 {
+    if (kept < 0) return 0;
     const double most = 2 * (kept + o->calm / w);
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }

@@ -21,8 +21,11 @@ enum small_hold {
     HOLD_C2,       /* m^2: its c^2, above 0 */
     HOLD_REACH,    /* m: where it ruptures */
     HOLD_WET,      /* 1: there is a bridge; 0 */
-    HOLD_PULL,     /* N s: h A in the step in hand */
-    HOLD_JOINED,   /* J: minus what bridges of this interval have given up when they were made */
+    HOLD_PULL,     /* N s: h A in the step in hand, */
+    HOLD_X,        /* along this normal */
+    HOLD_Y,
+    HOLD_Z,
+    HOLD_JOINED, /* J: minus what bridges of this interval have given up when they were made */
     HOLD_COUNT
 };
 
@@ -52,8 +55,10 @@ ALWAYS_INLINE vd small_hold_force(const vd x[HOLD_COUNT], vd g)
     return pick(le(g, x[HOLD_RANGE]), x[HOLD_COHESION], zero) + pick(wet, bridge, zero);
 }
 
-/* N s: the pull of a step of h, of a pair that has pushed in the step before where `pushed`; bridges are made and rupture */
-ALWAYS_INLINE vd small_hold_pull(vd x[HOLD_COUNT], vd g, vm pushed, double h)
+/* N s: the pull of a step of h along n, of a pair that has pushed in the step before where `pushed`; bridges are made and
+   rupture. dp: its change, of which `warm` persists */
+ALWAYS_INLINE vd small_hold_pull(vd x[HOLD_COUNT], const vd n[3], vd g, vm pushed, double h,
+                                 double warm, vd dp[3])
 {
     vd zero = splat(0), one = splat(1);
     vm was = lt(zero, x[HOLD_WET]), wets = lt(zero, x[HOLD_BRIDGE]);
@@ -61,5 +66,8 @@ ALWAYS_INLINE vd small_hold_pull(vd x[HOLD_COUNT], vd g, vm pushed, double h)
     vm made = is & ~was;
     if (any(made)) x[HOLD_JOINED] = x[HOLD_JOINED] + pick(made, small_hold_bridge(x, g), zero);
     x[HOLD_WET] = pick(is, one, zero);
-    return x[HOLD_PULL] = h * small_hold_force(x, g);
+    for (int j = 0; j < 3; j++) dp[j] = -(warm * x[HOLD_PULL] * x[HOLD_X + j]);
+    x[HOLD_PULL] = h * small_hold_force(x, g);
+    for (int j = 0; j < 3; j++) x[HOLD_X + j] = n[j], dp[j] += x[HOLD_PULL] * n[j];
+    return x[HOLD_PULL];
 }

@@ -10,6 +10,7 @@ struct small_pairs {
     struct twist ma, mb;
     vd ra, rb, d[3], d2;  /* m: radii; from a to b, the image that a meets; m^2 */
     vd n[3], gap, la, lb; /* m: arms along n */
+    vd length, sa, sb;    /* m: of d; of that, the arms' parts */
 };
 
 ALWAYS_INLINE void small_load_places(const struct small_place *from, const int32_t *place, vd x[4])
@@ -59,6 +60,8 @@ ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s
     for (int j = 0; j < 3; j++) y->n[j] = pick(apart, y->d[j] * per, splat(j == 1));
     y->gap = distance - (y->ra + y->rb);
     y->la = y->ra + 0.5 * y->gap, y->lb = y->rb + 0.5 * y->gap;
+    per = pick(apart, per, splat(0));
+    y->length = distance, y->sa = per * y->la, y->sb = per * y->lb;
 }
 
 /* m/s: of b against a at the point of contact */
@@ -79,16 +82,15 @@ ALWAYS_INLINE void small_velocity_image(const struct small_pairs *y, const struc
     for (int j = 0; j < 3 && s->moves && s->shift; j++) u[j] += vload(s->shift[y->i].v[j] + y->k);
 }
 
-/* Both bodies get df at their arms, and a moment dm where it is not NULL. */
+/* Both bodies get df, their parts of the couple dc, and a moment dm where it is not NULL. */
 ALWAYS_INLINE void small_give(const struct small_pairs *y, struct small *s, const vd df[3],
-                              const vd *dm)
+                              const vd dc[3], const vd *dm)
 {
     struct twist da, db;
-    vd ta = -(y->a.ii * y->la), tb = -(y->b.ii * y->lb);
-    for (int i = 0, j = 1, l = 2; i < 3; j = l, l = i++) {
-        vd m = y->n[j] * df[l] - y->n[l] * df[j];
+    vd ta = -(y->a.ii * y->sa), tb = -(y->b.ii * y->sb);
+    for (int i = 0; i < 3; i++) {
         da.v[i] = -y->a.im * df[i], db.v[i] = y->b.im * df[i];
-        da.w[i] = ta * m, db.w[i] = tb * m;
+        da.w[i] = ta * dc[i], db.w[i] = tb * dc[i];
         if (dm) da.w[i] -= y->a.ii * dm[i], db.w[i] += y->b.ii * dm[i];
     }
     bodies_add(s->body, y->c->a + y->k, &da), bodies_add(s->body, y->c->b + y->k, &db);
@@ -107,7 +109,6 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
     vd kept = dot3(l->n, l->f);
     for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j];
     small_store(c->sum, k, sum);
-    vstore(c->kept + k, kept);
     l->spin = 0.5 * o->h * dot3(w, l->n);
     small_press(l, o);
     vm near =
@@ -118,21 +119,32 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
         vd before[3];
         bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
         small_velocity_image(y, s, &ma, &mb, before);
-        small_meet(l, o, before, kept, vload(c->e[0] + k), vload(c->e[1] + k));
+        small_meet(l, o, before, &kept, vload(c->e[0] + k), vload(c->e[1] + k));
     }
+    vstore(c->kept + k, kept);
     small_store(c->q, k, l->q);
 }
 
-/* The change of the moments that the change df leaves to be made */
+/* u, where bodies have `couple` of the reaction and not that of l->f where they are now */
+ALWAYS_INLINE void small_turned(const struct small_pairs *y, struct small_law *l,
+                                const vd couple[3])
+{
+    vd c[3], u[3], most = y->a.ii * y->la * y->sa + y->b.ii * y->lb * y->sb;
+    small_cross(l->n, l->f, c);
+    for (int j = 0; j < 3; j++) c[j] = y->length * c[j] - couple[j];
+    small_cross(c, l->n, u);
+    for (int j = 0; j < 3; j++) l->u[j] += most * u[j];
+}
+
+/* The change of the moments that the change dc of the couple leaves to be made */
 ALWAYS_INLINE void small_turn_pairs(const struct small_pairs *y, const struct small *s,
-                                    const struct small_law *l, vm acts, double warm, const vd df[3],
+                                    const struct small_law *l, vm acts, double warm, const vd dc[3],
                                     vd dm[3])
 {
     struct small_turn *t = &s->turn[y->i];
     const double begins = warm < 1;
-    vd w[3], m[3], sum[3], most[2], turn = y->b.ii * y->lb - y->a.ii * y->la;
-    for (int j = 0, p = 1, q = 2; j < 3; p = q, q = j++)
-        w[j] = y->mb.w[j] - y->ma.w[j] - turn * (y->n[p] * df[q] - y->n[q] * df[p]);
+    vd w[3], m[3], sum[3], most[2], turn = y->b.ii * y->sb - y->a.ii * y->sa;
+    for (int j = 0; j < 3; j++) w[j] = y->mb.w[j] - y->ma.w[j] - turn * dc[j];
     small_load(m, t->m, y->k), small_load(sum, t->sum, y->k);
     for (int j = 0; j < 3; j++) sum[j] += begins * m[j], m[j] *= warm;
     small_store(t->sum, y->k, sum);
@@ -163,6 +175,7 @@ ALWAYS_INLINE bool small_mark(const struct small_pairs *y, struct small *s, vd c
     double x[LANES], top[LANES];
     bool far = false;
     if (!again && !any(lt(allowed, change))) return false;
+    if (!again) change = change / (1 + vload(y->c->e[0] + y->k));
     vstore(x, change), vstore(top, allowed);
     for (int j = 0; j < LANES; j++) {
         if (!(x[j] > (again ? 0 : top[j]))) continue;
@@ -187,11 +200,17 @@ ALWAYS_INLINE vm small_hot(const struct small *s, const struct small_bundle *c, 
     return lt(splat(0), vload(hot));
 }
 
-/* Lanes that are not among `those` keep what they have, whatever the width. */
-ALWAYS_INLINE void small_keep(struct small_law *l, const vd had[3], vm those, vd df[3])
+/* Lanes that are not among `those` keep what they have, whatever the width; dc: the change of the couple. */
+ALWAYS_INLINE void small_keep(const struct small_pairs *y, struct small_law *l, const vd had[3],
+                              vd couple[3], vm those, vd df[3], vd dc[3])
 {
-    for (int j = 0; j < 3; j++)
+    vd c[3];
+    small_cross(l->n, l->rt, c);
+    for (int j = 0; j < 3; j++) {
         l->f[j] = pick(those, l->f[j], had[j]), df[j] = pick(those, df[j], splat(0));
+        dc[j] = pick(those, y->length * c[j] - couple[j], splat(0));
+        couple[j] = pick(those, y->length * c[j], couple[j]);
+    }
     l->rn = pick(those, l->rn, dot3(l->n, l->f));
 }
 
@@ -205,24 +224,24 @@ ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
 }
 
-/* Attraction of pairs that have pushed f: dp, the change of the pull along n, of which 0.98 persists; lanes that it holds */
+/* Attraction of pairs that have pushed f: dp, the change of the pull, of which 0.98 persists; lanes that it holds */
 ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct small *s,
-                                  struct small_law *l, bool again, vd *dp)
+                                  struct small_law *l, bool again, vd dp[3])
 {
     double(*to)[BUNDLE] = s->hold[y->i].x;
     const int k = y->k;
     vd x[HOLD_COUNT], sum[3], had = vload(to[HOLD_PULL] + k), zero = splat(0);
     for (int j = 0; j < HOLD_COUNT; j++) x[j] = vload(to[j] + k);
-    *dp = zero;
+    for (int j = 0; j < 3; j++) dp[j] = zero;
     if (!again) {
-        *dp = small_hold_pull(x, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h) - SMALL_WARM * had;
+        small_hold_pull(x, l->n, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h, SMALL_WARM, dp);
         for (int j = HOLD_WET; j < HOLD_COUNT; j++) vstore(to[j] + k, x[j]);
         small_load(sum, y->c->sum, k);
         for (int j = 0; j < 3; j++) sum[j] -= x[HOLD_PULL] * l->n[j];
         small_store(y->c->sum, k, sum);
     }
     l->calm += 2 * l->wn * x[HOLD_PULL];
-    for (int j = 0; j < 3; j++) l->u[j] -= l->wn * *dp * l->n[j];
+    for (int j = 0; j < 3; j++) l->u[j] -= l->wn * dp[j];
     return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
 }
 
@@ -248,7 +267,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
 {
     struct small_pairs y;
     struct small_law l;
-    vd had[3], df[3], dm[3], dp = splat(0);
+    vd had[3], couple[3], df[3], dc[3], dm[3], dp[3] = { splat(0), splat(0), splat(0) };
     small_pairs_look(&y, s, i, k);
     const double reach = rich && s->rate.holds > s->rate.reach ? s->rate.holds : s->rate.reach;
     vd most = y.ra + y.rb + reach;
@@ -261,24 +280,25 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
         small_velocity(&y, &y.ma, &y.mb, l.u);
     small_set_law(&l, &y, s);
     l.calm = splat(s->rate.calm);
-    small_load(l.f, y.c->f, k);
+    small_load(l.f, y.c->f, k), small_load(couple, y.c->couple, k);
     const double warm = hot ? 1 : SMALL_WARM;
-    for (int j = 0; j < 3; j++) had[j] = warm * l.f[j];
+    for (int j = 0; j < 3; j++) had[j] = warm * l.f[j], couple[j] *= warm;
     vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
-    if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, &dp), acts = acts | holds;
+    if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, dp), acts = acts | holds;
     if (rich && s->stick && !hot) small_stick_pairs(&y, s, &l);
     if (hot)
         small_load(l.q, y.c->q, k), acts = acts & *hot;
     else
-        small_begin(&y, s, &l);
+        small_begin(&y, s, &l), small_turned(&y, &l, couple);
+    l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     small_solve(&l, df);
-    small_keep(&l, had, acts, df);
-    small_store(y.c->f, k, l.f);
-    if (rolls) small_turn_pairs(&y, s, &l, acts, warm, df, dm);
+    small_keep(&y, &l, had, couple, acts, df, dc);
+    small_store(y.c->f, k, l.f), small_store(y.c->couple, k, couple);
+    if (rolls) small_turn_pairs(&y, s, &l, acts, warm, dc, dm);
     s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn) | holds);
     s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
-    for (int j = 0; j < 3 && rich; j++) df[j] -= dp * l.n[j];
-    small_give(&y, s, df, rolls ? dm : NULL);
+    for (int j = 0; j < 3 && rich; j++) df[j] -= dp[j];
+    small_give(&y, s, df, dc, rolls ? dm : NULL);
     vd change = l.wn * norm3(df);
     if (rolls) change = change + (y.a.ii * y.la + y.b.ii * y.lb) * norm3(dm);
     return small_mark(&y, s, change, hot);
@@ -314,15 +334,19 @@ static void small_push_bundles(struct small *s, int64_t first, int64_t end)
     for (int64_t i = first; i < end; i++)
         for (int k = 0; k < BUNDLE; k += LANES) {
             struct small_pairs y;
-            vd f[3], m[3] = { splat(0), splat(0), splat(0) };
+            vd f[3], c[3], m[3] = { splat(0), splat(0), splat(0) };
             if (!s->live[BUNDLE * i + k]) continue;
             small_pairs_look(&y, s, i, k), small_pairs_load(&y, s);
             small_load(f, y.c->f, k);
             if (s->turn) small_load(m, s->turn[i].m, k);
+            small_cross(y.n, f, c);
+            for (int j = 0; j < 3; j++)
+                c[j] = pick(lt(splat(0), vload(y.c->mu + k)), y.length * c[j], splat(0));
+            small_store(y.c->couple, k, c);
             for (int j = 0; j < 3 && s->hold; j++)
                 f[j] -= vload(s->hold[i].x[HOLD_PULL] + k) * y.n[j];
-            for (int j = 0; j < 3; j++) f[j] *= SMALL_WARM, m[j] *= SMALL_WARM;
-            small_give(&y, s, f, s->turn ? m : NULL);
+            for (int j = 0; j < 3; j++) f[j] *= SMALL_WARM, c[j] *= SMALL_WARM, m[j] *= SMALL_WARM;
+            small_give(&y, s, f, c, s->turn ? m : NULL);
         }
 }
 
@@ -340,6 +364,9 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
     small_load(had, y.c->f, k), small_load(l.q, y.c->q, k);
     small_set_law(&l, &y, s);
+    l.calm = splat(s->rate.calm);
+    if (s->hold) l.calm += 2 * l.wn * vload(s->hold[i].x[HOLD_PULL] + k);
+    l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     for (int j = 0; j < 3; j++) l.f[j] = had[j];
     vd pushes = norm3(had);
     small_solve(&l, df);

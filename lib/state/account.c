@@ -16,16 +16,16 @@ static double approach(const struct report *r, double bodies[2])
     return r->err.max_penetration_true;
 }
 
-static double wedged(const struct report *r, double bodies[2])
+static double pinched(const struct report *r, double bodies[2])
 {
-    bodies[0] = r->depth.wedged_id;
-    return (double)r->depth.wedged;
+    bodies[0] = r->depth.pinched_id;
+    return (double)r->depth.pinched;
 }
 
-static double passed(const struct report *r, double bodies[2])
+static double tunnelled(const struct report *r, double bodies[2])
 {
-    bodies[0] = r->passed_id, bodies[1] = r->passed_through;
-    return r->watched ? (double)r->passed : 0;
+    bodies[0] = r->tunnelled_id, bodies[1] = r->tunnelled_through;
+    return r->watched ? (double)r->tunnelled : 0;
 }
 
 static double unconverged(const struct report *r, double bodies[2])
@@ -35,15 +35,16 @@ static double unconverged(const struct report *r, double bodies[2])
 }
 
 const struct watched account_watched[ACCOUNT_ROWS] = {
-    [ACCOUNT_OVERLAP] = { "overlap", "1", "overlap %.3g of a radius", NULL, false, 2, 0.01, 0.1,
-                          overlap, "a smaller dt leaves less: --dt, or --dt auto:0.01" },
-    [ACCOUNT_APPROACH] = { "approach", "m s-1", "approach %.3g m/s", NULL, false, 0, INFINITY,
-                           INFINITY, approach, "" },
-    [ACCOUNT_WEDGED] = { "wedged", "1", "%.0f wedged", NULL, false, 1, 0, 0, wedged,
-                         "held from two sides, deeper than 0.1 of its radius" },
-    [ACCOUNT_PASSED] = { "passed", "1", "%.0f went through a wall or another body", NULL, true, 2,
-                         0, 0, passed, "a smaller dt finds such contacts" },
-    [ACCOUNT_UNCONVERGED] = { "unconverged", "1", "%.0f steps not converged",
+    [ACCOUNT_OVERLAP] = { "overlap", "overlap", "1", "overlap %.3g of a radius", NULL, false, 2,
+                          0.01, 0.1, overlap, "a smaller dt leaves less: --dt, or --dt auto:0.01" },
+    [ACCOUNT_APPROACH] = { "approach", "approach", "m s-1", "approach %.3g m/s", NULL, false, 0,
+                           INFINITY, INFINITY, approach, "" },
+    [ACCOUNT_PINCHED] = { "pinched", "wedged", "1", "%.0f pinched", NULL, false, 1, 0, 0, pinched,
+                          "held from two sides, deeper than 0.1 of its radius" },
+    [ACCOUNT_TUNNELLED] = { "tunnelled", "passed", "1",
+                            "%.0f tunnelled through a wall or another body", NULL, true, 2, 0, 0,
+                            tunnelled, "a smaller dt finds such contacts" },
+    [ACCOUNT_UNCONVERGED] = { "unconverged", "unconverged", "1", "%.0f steps not converged",
                               "1 step not converged", true, 2, 0, 0, unconverged,
                               "forces and motion are not those of the laws" },
 };

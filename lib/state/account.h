@@ -14,8 +14,8 @@
 enum account_row {
     ACCOUNT_OVERLAP,
     ACCOUNT_APPROACH,
-    ACCOUNT_WEDGED,
-    ACCOUNT_PASSED,
+    ACCOUNT_PINCHED,
+    ACCOUNT_TUNNELLED,
     ACCOUNT_UNCONVERGED,
     ACCOUNT_ROWS
 };
@@ -33,7 +33,8 @@ struct account {
 };
 
 struct watched {
-    const char *name, *units;
+    const char *name; /* for users, and that of documents, which have the first one that it had */
+    const char *stored, *units;
     const char *says;    /* a format for the value, %.3g; */
     const char *one;     /* what a value of 1 is instead; or NULL */
     bool adds;           /* the values of steps are added up; else the largest stands */

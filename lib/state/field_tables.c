@@ -474,6 +474,14 @@ const struct field small_step_fields[] = {
     { 0 },
 };
 
+/* The same where the contacts of kept frames are judged by converged ones */
+const struct field converged_fields[] = {
+    FIELD(struct report, compared, I32, 1, "converged_sweeps", "1", FIELD_MOVES,
+          .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct report, distance, F64, 1, "reaction_error", "1", FIELD_MOVES),
+    { 0 },
+};
+
 const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
     { bond_balance_fields, offsetof(struct report, tied) },
     { spring_balance_fields, offsetof(struct report, soft) },
@@ -481,5 +489,6 @@ const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
     { projection_balance_fields, offsetof(struct report, projected) },
     { peculiar_balance_fields, offsetof(struct report, sheared) },
     { small_step_fields, offsetof(struct report, fine) },
+    { converged_fields, offsetof(struct report, judged) },
     { NULL, 0 },
 };

@@ -45,14 +45,14 @@ struct err {
 };
 
 /* Radii: as deep as a run fails for [state/account.h]; what an impact leaves for a step is less */
-#define DEPTH_WEDGED 0.1
+#define DEPTH_PINCHED 0.1
 
 /* How deep bodies are in one another */
 struct depth {
-    double deepest;    /* radii; 0: nothing overlaps */
-    int32_t pair[2];   /* the ids of a and b there; wall w is -1-w */
-    int64_t wedged;    /* bodies */
-    int32_t wedged_id; /* the first of them */
+    double deepest;     /* radii; 0: nothing overlaps */
+    int32_t pair[2];    /* the ids of a and b there; wall w is -1-w */
+    int64_t pinched;    /* bodies */
+    int32_t pinched_id; /* the first of them */
 };
 
 /* Energy and momentum over a step [step/balance.h] */
@@ -114,19 +114,24 @@ struct report {
     int32_t unsolved
         [2]; /* where it has not converged: the ids of the bodies of the contact that is farthest
                             from its law; a wall w is -1-w */
-    int64_t newton;      /* Newton steps in all */
-    int64_t safeguarded; /* local solves that ended with the exact solution instead */
-    int64_t gave_up;     /* local solves that did not satisfy the law */
-    bool watched; /* passed is known: there is what bodies may go through [contact/tunnelling.h] */
-    int64_t passed; /* bodies that went through a wall or another body in this step */
-    int32_t passed_id, passed_through; /* the last; and a wall -1-w, or the number of a body */
-    int64_t substeps;                  /* that the step was made in */
-    int64_t small;         /* small steps, of which it is made; 0: it was made at once */
-    int64_t small_limited; /* those of them that have ended at the limit of their sweeps */
-    bool fine;             /* small steps were asked for, and what follows is known */
+    int64_t newton;            /* Newton steps in all */
+    int64_t safeguarded;       /* local solves that ended with the exact solution instead */
+    int64_t gave_up;           /* local solves that did not satisfy the law */
+    bool watched;              /* there is what bodies may tunnel through [contact/tunnelling.h] */
+    int64_t tunnelled;         /* bodies that went through a wall or another body in this step */
+    int32_t tunnelled_id;      /* the last, */
+    int32_t tunnelled_through; /* and what: a wall -1-w, or the number of a body */
+    int64_t substeps;          /* that the step was made in */
+    int64_t small;             /* small steps, of which it is made; 0: it was made at once */
+    int64_t small_limited;     /* those of them that have ended at the limit of their sweeps */
+    bool fine;                 /* small steps were asked for, and what follows is known */
+    bool judged;               /* and reactions are compared with converged ones */
     double missing_mean,
         missing; /* what is missing of reactions, over the load: of all bodies, and of the worst */
-    int32_t missing_id;      /* the worst */
+    int32_t missing_id; /* the worst */
+    int32_t
+        compared; /* sweeps in which the last small step's reactions have converged, on a copy; 0: not looked at */
+    double distance;         /* |f - f_c| over |f_c| of all of them, f_c converged */
     struct endless endless;  /* for which the step was not made */
     double work;             /* ns, counted and not timed, of the whole solve [solve/solver.h] */
     const char *given_up;    /* why it ended before its limits, a literal; or NULL */

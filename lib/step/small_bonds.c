@@ -62,6 +62,12 @@ static void recall_bridges(struct small_run *r)
     }
 }
 
+static void set_pull(struct small_holds *to, int k, double pull, vec3 n)
+{
+    to->x[HOLD_PULL][k] = pull;
+    to->x[HOLD_X][k] = n.x, to->x[HOLD_Y][k] = n.y, to->x[HOLD_Z][k] = n.z;
+}
+
 void small_bonds_recall(struct small_run *r, bool warm)
 {
     struct small_list *l = r->l;
@@ -74,13 +80,14 @@ void small_bonds_recall(struct small_run *r, bool warm)
         vec3 n;
         hold_of(s, slot, x);
         const double pull = r->h * small_hold_force(x, slot_gap(s, slot, &n));
-        s->hold[slot / BUNDLE].x[HOLD_PULL][slot % BUNDLE] = pull;
+        set_pull(&s->hold[slot / BUNDLE], (int)(slot % BUNDLE), pull, n);
         if (pull > 0) small_list_wake(s, slot);
     }
     for (int64_t i = 0; warm && i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
-        if (small_look_at_touch(r, t, l->margin))
-            t->hold[HOLD_PULL] = r->h * small_hold_force(t->hold, t->arm - s->place[t->body].r);
+        if (!small_look_at_touch(r, t, l->margin)) continue;
+        t->hold[HOLD_PULL] = r->h * small_hold_force(t->hold, t->arm - s->place[t->body].r);
+        small_array(&t->hold[HOLD_X], t->n);
     }
 }
 

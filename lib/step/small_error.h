@@ -12,6 +12,15 @@
 int small_error_init(struct small_run *r, struct failure *failure);
 /* By all threads, where r is judged: adds the small step in hand, after its sweeps. */
 void small_error_step(struct small_run *r, int me, int threads);
+/* By all threads, between sweeps: is more than r->bound of the load of all bodies missing? */
+bool small_error_exceeds(struct small_run *r, int me, int threads);
 /* Writes what is missing into the report. */
 void small_error_give(const struct small_run *r, struct report *rep);
+/*
+ * Writes the velocity of approach of contacts that overlap, s, at the end of the interval. The interval has no solution, and has
+ * not converged, where a contact is deeper than CRUSHED times the permitted overlap (radii) and still approaches, faster than
+ * overlaps are pushed apart: the compliance gives way to a load that grows without end.
+ */
+void small_error_approach(const struct small_run *r, const struct contacts *s, double permitted,
+                          struct report *rep);
 void small_error_free(struct small_run *r);

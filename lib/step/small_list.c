@@ -220,7 +220,8 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 
 /* What a slot has of the past */
 struct small_past {
-    double f[3], m[3], sum[3], turned[3], held[HOLD_COUNT]; /* held: from HOLD_WET on */
+    double f[3], couple[3], m[3], sum[3], turned[3];
+    double held[HOLD_COUNT]; /* from HOLD_WET on */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -229,7 +230,7 @@ static struct small_past past_of(const struct small *s, int64_t slot)
     const int k = (int)(slot % BUNDLE);
     const struct small_bundle *c = &s->bundle[slot / BUNDLE];
     for (int j = 0; j < 3; j++) {
-        x.f[j] = c->f[j][k], x.sum[j] = c->sum[j][k];
+        x.f[j] = c->f[j][k], x.couple[j] = c->couple[j][k], x.sum[j] = c->sum[j][k];
         x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
         x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
     }
@@ -247,7 +248,7 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     const int k = (int)(slot % BUNDLE);
     struct small_bundle *c = &s->bundle[slot / BUNDLE];
     for (int j = 0; j < 3; j++) {
-        c->f[j][k] = x->f[j], c->sum[j][k] = x->sum[j];
+        c->f[j][k] = x->f[j], c->couple[j][k] = x->couple[j], c->sum[j][k] = x->sum[j];
         if (!s->turn) continue;
         s->turn[slot / BUNDLE].m[j][k] = x->m[j], s->turn[slot / BUNDLE].sum[j][k] = x->turned[j];
     }

@@ -14,6 +14,7 @@
 struct small_touch {
     int32_t wall, body;
     double f[3], kept, q[3], sum[3];
+    double couple[3];                /* N m s: of f about the body's centre, where it was made */
     double m[3], turned[3], most[2]; /* turned: the sum of m */
     double mu, e[2];
     double hold[HOLD_COUNT]; /* where something attracts */

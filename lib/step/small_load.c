@@ -14,8 +14,8 @@
 struct small_loaded {
     struct small_touch *t;
     struct small_law l;
-    vec3 D;    /* of the wall's material there, per unit of the speed */
-    double dp; /* N s: the change of the pull along n */
+    vec3 D;  /* of the wall's material there, per unit of the speed */
+    vec3 dp; /* N s: the change of the pull */
 };
 
 enum { ROUNDS_MOST = 60 };
@@ -163,7 +163,7 @@ static double balance_load(const struct small_run *r, int32_t k, int64_t n)
             struct small_law l;
             double df[3];
             const double got = loaded_at(y, ds, &l, df, &slope);
-            g += got - y->dp * v3_dot(y->D, small_vec(y->l.n)), size += fabs(got);
+            g += got - v3_dot(y->D, y->dp), size += fabs(got);
         }
         if (!(fabs(g) > EXACT * size)) break;
         if (!round) lo = g > 0 ? -g / m : 0, hi = g > 0 ? 0 : -g / m;

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "step/small_cell.h"
+#include "step/small_converge.h"
 #include "step/small_error.h"
 #include "step/small_load.h"
 #include "step/small_point.h"
@@ -13,9 +14,13 @@
 #include "step/small_wall.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
-enum { SWEEPS_MOST = 60 }; /* of a small step */
+enum {
+    SWEEPS_MOST = 60,      /* of a small step; */
+    SWEEPS_BOUNDED = 1000, /* of one whose error is bounded, and of one that is to converge */
+};
 
 /* Thread `me` of `threads` has first .. end-1 of n. */
 static void small_share(int64_t n, int me, int threads, int64_t *first, int64_t *end)
@@ -65,7 +70,8 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
 static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
 {
     struct small_law l;
-    double df[3], dp = 0;
+    double df[3];
+    vec3 dp = v3(0, 0, 0);
     if (again ? !t->near : !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
     if (!again) dp = small_touch_begin(r, t, &l);
@@ -131,8 +137,9 @@ static void push_reactions(struct small_run *r, int me, int threads)
         if (small_look_at_touch(r, t, l->margin))
             small_touch_push(r, t);
         else
-            memset(t->f, 0, sizeof t->f), memset(t->m, 0, sizeof t->m),
-                memset(t->sum, 0, sizeof t->sum), memset(t->turned, 0, sizeof t->turned);
+            memset(t->f, 0, sizeof t->f), memset(t->couple, 0, sizeof t->couple),
+                memset(t->m, 0, sizeof t->m), memset(t->sum, 0, sizeof t->sum),
+                memset(t->turned, 0, sizeof t->turned);
     }
 }
 
@@ -146,22 +153,26 @@ static void settle_slot(struct small *s, int64_t slot)
     if (a >= s->bodies) return;
     const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const vec3 n = small_normal(d);
-    const double rn = v3_dot(f, n), w = s->body[a].im + s->body[b].im;
+    const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
     const double most = small_persists(&s->rate, held, w, rn);
     if (rn <= most) return;
     const double left = most / rn, back = 1 - left;
-    vec3 m = v3(0, 0, 0);
-    for (int j = 0; j < 3; j++) c->sum[j][k] += back * c->f[j][k], c->f[j][k] *= left;
+    vec3 m = v3(0, 0, 0), couple = v3(c->couple[0][k], c->couple[1][k], c->couple[2][k]);
+    couple = v3_scale(length > 0 ? back / length : 0, couple);
+    for (int j = 0; j < 3; j++) {
+        c->sum[j][k] += back * c->f[j][k];
+        c->f[j][k] *= left, c->couple[j][k] *= left;
+    }
     if (s->turn) {
         struct small_turn *t = &s->turn[i];
         m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
         for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
     }
-    small_body_push(&s->before[b], n, s->place[b].r + half, v3_scale(back, f), v3_scale(back, m));
-    small_body_push(&s->before[a], v3_scale(-1, n), s->place[a].r + half, v3_scale(-back, f),
-                    v3_scale(-back, m));
+    small_body_push(&s->before[b], v3_scale(back, f),
+                    v3_axpy(v3_scale(back, m), -(s->place[b].r + half), couple));
+    small_body_push(&s->before[a], v3_scale(-back, f),
+                    v3_axpy(v3_scale(-back, m), -(s->place[a].r + half), couple));
 }
 
 static void settle_pairs(struct small *s)
@@ -202,24 +213,67 @@ static void prepare_step(struct small_run *r)
     r->fastest = 0;
 }
 
-static void small_sweeps(struct small_run *r, int me, int threads, int64_t first, int64_t end)
+/* Returns whether a body has changed by more than is allowed. */
+static bool small_sweep_all(struct small_run *r, int me, int threads, bool again)
 {
-    bool far = true;
-    for (int k = 0; far && k < SWEEPS_MOST; k++) {
+    int64_t first, end;
+    small_share(r->l->s.bodies, me, threads, &first, &end);
+    team_meet();
+    if (!me) r->l->s.sweep++, r->swept++, r->far = false;
+    team_meet();
+    sweep_touches(r, first, end, again);
+    team_meet();
+    if (r->loads.of) {
+        if (!me) small_loads_sweep(r, again);
         team_meet();
-        if (!me) r->l->s.sweep++, r->swept++, r->far = false;
-        team_meet();
-        sweep_touches(r, first, end, k > 0);
-        team_meet();
-        if (r->loads.of) {
-            if (!me) small_loads_sweep(r, k > 0);
-            team_meet();
-        }
-        if (r->meets) small_points_sweep(r, me, threads, k > 0);
-        sweep_pairs(r, me, threads, k > 0);
-        team_meet();
-        far = r->far;
     }
+    if (r->meets) small_points_sweep(r, me, threads, again);
+    sweep_pairs(r, me, threads, again);
+    team_meet();
+    return r->far;
+}
+
+static void small_sweeps(struct small_run *r, int me, int threads)
+{
+    const int most = r->bound > 0 ? SWEEPS_BOUNDED : SWEEPS_MOST;
+    bool far = true;
+    for (int k = 0; far && k < most; k++) {
+        far = small_sweep_all(r, me, threads, k > 0);
+        if (far || !(r->bound > 0)) continue;
+        far = small_error_exceeds(r, me, threads);
+        if (far && !me) small_copy_wake(r), r->far = true;
+        team_meet();
+    }
+}
+
+/* Of the fastest speed: a change of a velocity below which sweeps have converged */
+#define CONVERGED 1e-9
+
+/* How far the reactions are from what more sweeps make of them, which are then taken back [step/small_converge.h] */
+static void small_converge(struct small_run *r, int me, int threads)
+{
+    struct small_copy copy;
+    struct body *was = NULL;
+    team_meet();
+    if (!me) {
+        was = calloc((size_t)r->l->s.bodies + 1, sizeof *was);
+        r->compares = small_copy_init(&copy, r) && was;
+        if (was) small_copy_change(r, was);
+        r->lost = r->lost || !r->compares;
+    }
+    team_meet();
+    for (r->compared = 0; r->compares && r->compared < SWEEPS_BOUNDED;) {
+        if (!me) small_copy_wake(r);
+        small_sweep_all(r, me, threads, true);
+        if (!me) {
+            r->compares = small_copy_change(r, was) > CONVERGED * r->l->s.rate.allowed[0];
+            r->compared++;
+        }
+        team_meet();
+    }
+    if (!me && !r->lost) r->distance = small_copy_distance(&copy, r), small_copy_give(&copy, r);
+    if (!me) small_copy_free(&copy, r), free(was);
+    team_meet();
 }
 
 /* By one thread, after the sweeps */
@@ -257,10 +311,11 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
-        small_sweeps(r, me, threads, first, end);
+        small_sweeps(r, me, threads);
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();
         if (r->judged) small_error_step(r, me, threads);
+        if (r->compares && r->made + 1 == r->n) small_converge(r, me, threads);
         if (r->cell.moves && !me) small_cell_end(r);
         end_touches(r, first, end);
         team_meet();

@@ -26,6 +26,7 @@ struct small_point {
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
+    vec3 was[2];   /* m: those at which f was made */
     vec3 v;        /* m/s: of the wall's material there */
     double W[9];   /* 1/kg, in the basis */
 };

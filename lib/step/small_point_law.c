@@ -95,7 +95,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
     small_array(before, u);
     l.cn = l.ct = 0;
-    if (small_meet(&l, o, before, t->kept, t->e[0], t->e[1])) t->soft = 0;
+    if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
     memcpy(t->q, l.q, sizeof t->q);
 }
 
@@ -186,6 +186,7 @@ static void mark_meeting(struct small_run *r, const struct small_meeting *m, dou
     const int32_t a = m->key.a, b = m->key.b;
     const double ia = a < 0 ? 0 : s->body[a].im, ib = s->body[b].im, least = fmin(ia, ib);
     const double allowed = s->rate.allowed[again] * (least > 0 ? sqrt(least / fmax(ia, ib)) : 1);
+    if (!again) change /= 1 + m->point[0].e[0];
     if (!(change > (again ? 0 : allowed))) return;
     const bool far = mark_body(s, a, change, allowed);
     if (mark_body(s, b, change, allowed) || far) r->far = true;
@@ -270,11 +271,14 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < m->points; i++) {
-        struct small_point t = m->point[i];
+        struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        const double has = t.starts ? 0 : SMALL_WARM, times = (t.near ? 1 : 0) - has;
-        if (times != 0 && !small_is_zero(t.f))
-            push_point(r, r->l->s.body, m, &t, v3_scale(times, f), v3_scale(times, moment));
+        const double has = t.starts ? 0 : SMALL_WARM;
+        had.a = t.was[0], had.b = t.was[1];
+        if (has > 0 && !small_is_zero(t.f))
+            push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));
+        if (t.near && !small_is_zero(t.f)) push_point(r, r->l->s.body, m, &t, f, moment);
+        t.was[0] = t.a, t.was[1] = t.b;
         for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
             t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
         if (t.starts && !t.near) memset(t.f, 0, sizeof t.f), memset(t.m, 0, sizeof t.m);

@@ -94,11 +94,17 @@ struct small_run {
     bool begins, stop;       /* the first step; the list serves no longer, or the step fails */
     bool uneven;             /* bodies have masses so different that sweeps are slow */
     bool judged;             /* its errors are summed up [step/small_error.h] */
-    bool failed;             /* the interval is to be made at once */
-    bool lost;               /* memory was short */
-    _Atomic bool far;        /* a sweep has changed a body by more than is allowed */
-    pthread_mutex_t lock;    /* of what follows */
-    double fastest;          /* m^2/s^2: of bodies */
+    double *missing; /* [2 bodies] N s: of a small step, missing and load, where it is bounded */
+    bool exceeds;
+    double bound;  /* of what is missing of the reactions of all bodies in a small step; 0: none */
+    bool compares; /* the last one is compared with converged sweeps [step/small_converge.h]: */
+    int32_t compared;     /* in so many sweeps */
+    double distance;      /* of the reactions from those then, over these */
+    bool failed;          /* the interval is to be made at once */
+    bool lost;            /* memory was short */
+    _Atomic bool far;     /* a sweep has changed a body by more than is allowed */
+    pthread_mutex_t lock; /* of what follows */
+    double fastest;       /* m^2/s^2: of bodies */
 };
 
 /* Does a load move the wall of a touch? */

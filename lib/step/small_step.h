@@ -17,6 +17,8 @@ struct small_opt {
     int threads;
     struct neighbours *near; /* surfaces of meshes, kept from step to step */
     bool bare;               /* nobody reads the errors and the contacts of this step */
+    bool compare;            /* its last reactions are compared with converged ones */
+    double bound;            /* of what is missing of reactions in each small step; 0: none */
     bool warm;               /* the first one starts from what the packing remembers */
 };
 

@@ -6,12 +6,22 @@
 
 #include <string.h>
 
-/* Body i gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
-void small_body_push(struct body *b, vec3 n, double arm, vec3 f, vec3 m)
+void small_body_push(struct body *b, vec3 f, vec3 m)
 {
-    vec3 w = v3_axpy(m, -arm, v3_cross(n, f));
     b->v[0] += b->im * f.x, b->v[1] += b->im * f.y, b->v[2] += b->im * f.z;
-    b->w[0] += b->ii * w.x, b->w[1] += b->ii * w.y, b->w[2] += b->ii * w.z;
+    b->w[0] += b->ii * m.x, b->w[1] += b->ii * m.y, b->w[2] += b->ii * m.z;
+}
+
+/* N m s: of a reaction at the contact, about the body's centre */
+static vec3 touch_couple(const struct small_touch *t, const double f[3])
+{
+    return v3_scale(-t->arm, v3_cross(t->n, small_vec(f)));
+}
+
+/* N m s: of rolling friction and of the reaction, on the body */
+static vec3 touch_moment(const struct small_touch *t)
+{
+    return v3_add(small_vec(t->couple), small_vec(t->m));
 }
 
 /* The law in the first sweep of a step */
@@ -20,36 +30,41 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     const struct small *s = &r->l->s;
     double before[3];
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM;
-    for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++)
+        t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM, t->couple[k] *= SMALL_WARM;
     t->kept = dot3(l->n, l->f);
+    const vec3 lacks = v3_sub(touch_couple(t, l->f), small_vec(t->couple)); // where it is now
+    const vec3 turn = v3_scale(-t->arm * s->body[t->body].ii, v3_cross(lacks, t->n));
+    l->u[0] += turn.x, l->u[1] += turn.y, l->u[2] += turn.z;
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
     small_press(l, &s->rate);
     small_array(before, small_touch_before(r, t));
-    small_meet(l, &s->rate, before, t->kept, t->e[0], t->e[1]);
+    small_meet(l, &s->rate, before, &t->kept, t->e[0], t->e[1]);
     memcpy(t->q, l->q, sizeof t->q);
 }
 
+/* dc: the change of the couple, which leaves dm to be made */
 static void roll_touch(const struct small_run *r, struct small_touch *t, const struct small_law *l,
-                       vec3 df, double dm[3])
+                       vec3 dc, double dm[3])
 {
     const struct body *b = &r->l->s.body[t->body];
     double w[3];
-    vec3 spin = v3_axpy(small_vec(b->w), -b->ii * t->arm, v3_cross(t->n, df));
+    vec3 spin = v3_axpy(small_vec(b->w), b->ii, dc);
     small_array(w, v3_sub(spin, r->wall[t->wall].spin));
     small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
 }
 
-/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull along n, of which
-   0.98 persists (N s). */
-static double hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull, of which 0.98
+   persists (N s). */
+static vec3 hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
-    const double had = t->hold[HOLD_PULL];
-    const double pull = small_hold_pull(t->hold, l->gap, lt(0, dot3(l->n, l->f)), r->h);
-    const double dp = pull - SMALL_WARM * had;
-    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp * l->n[k];
-    l->calm += 2 * l->wn * pull;
-    return dp;
+    double dp[3];
+    const double pull =
+        small_hold_pull(t->hold, l->n, l->gap, lt(0, dot3(l->n, l->f)), r->h, SMALL_WARM, dp);
+    for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp[k];
+    l->calm = r->l->s.rate.calm + 2 * l->wn * pull;
+    return small_vec(dp);
 }
 
 /* mu of the step, by the velocities before it */
@@ -65,19 +80,20 @@ static void stick_touch(const struct small_run *r, struct small_touch *t)
 
 vec3 small_touch_persists(const struct small_touch *t)
 {
-    return v3_scale(SMALL_WARM, v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n));
+    return v3_scale(SMALL_WARM,
+                    v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], small_vec(&t->hold[HOLD_X])));
 }
 
 /* A touch whose body has left gives its reaction back. */
 static void leave_touch(struct small_run *r, struct small_touch *t)
 {
-    vec3 f = v3_scale(-1, small_touch_persists(t)), m = v3_scale(-SMALL_WARM, small_vec(t->m));
+    vec3 f = v3_scale(-1, small_touch_persists(t)), m = v3_scale(-SMALL_WARM, touch_moment(t));
     const bool pushed = !small_is_zero(t->f) || t->hold[HOLD_PULL] > 0;
     t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (pushed) small_load_push(r, t, f);
-    if (pushed) small_body_push(&r->l->s.body[t->body], t->n, t->arm, f, m);
+    if (pushed) small_body_push(&r->l->s.body[t->body], f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
-    for (int k = 0; k < 3; k++) t->f[k] = t->m[k] = 0;
+    for (int k = 0; k < 3; k++) t->f[k] = t->couple[k] = t->m[k] = 0;
     t->kept = 0, t->near = false;
 }
 
@@ -90,38 +106,41 @@ bool small_touch_near(struct small_run *r, struct small_touch *t)
     return t->near;
 }
 
-double small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l)
+vec3 small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
     const struct small *s = &r->l->s;
-    const double dp = s->hold ? hold_touch(r, t, l) : 0;
+    const vec3 dp = s->hold ? hold_touch(r, t, l) : v3(0, 0, 0);
     if (s->stick) stick_touch(r, t);
     l->mu = t->mu;
     begin_touch(r, t, l);
+    l->most = small_most(l, &s->rate, t->kept);
     return dp;
 }
 
 void small_touch_give(struct small_run *r, struct small_touch *t, const struct small_law *l,
-                      double df[3], double dp, double heavy, bool again)
+                      double df[3], vec3 dp, double heavy, bool again)
 {
     struct small *s = &r->l->s;
     double dm[3] = { 0, 0, 0 };
-    memcpy(t->f, l->f, sizeof t->f);
-    if (s->turn) roll_touch(r, t, l, small_vec(df), dm);
-    for (int k = 0; k < 3; k++) df[k] -= dp * l->n[k];
-    small_body_push(&s->body[t->body], t->n, t->arm, small_vec(df), small_vec(dm));
+    const vec3 couple = touch_couple(t, l->rt), dc = v3_sub(couple, small_vec(t->couple));
+    memcpy(t->f, l->f, sizeof t->f), small_array(t->couple, couple);
+    if (s->turn) roll_touch(r, t, l, dc, dm);
+    const vec3 given = v3_sub(small_vec(df), dp);
+    small_body_push(&s->body[t->body], given, v3_add(dc, small_vec(dm)));
     const double turn = t->arm * s->body[t->body].ii * norm3(dm);
-    const double change = heavy * (l->wn * norm3(df) + turn);
-    if (!again && !(change > s->rate.allowed[0])) return;
+    const double change = heavy * (l->wn * v3_norm(given) + turn);
+    if (!again && !(change > (1 + t->e[0]) * s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;
     s->change[t->body] = 0, s->hot[t->body] = s->sweep;
     r->far = true;
 }
 
-void small_touch_push(struct small_run *r, const struct small_touch *t)
+void small_touch_push(struct small_run *r, struct small_touch *t)
 {
-    small_body_push(&r->l->s.body[t->body], t->n, t->arm, small_touch_persists(t),
-                    v3_scale(SMALL_WARM, small_vec(t->m)));
+    if (t->mu > 0) small_array(t->couple, touch_couple(t, t->f));
+    small_body_push(&r->l->s.body[t->body], small_touch_persists(t),
+                    v3_scale(SMALL_WARM, touch_moment(t)));
     small_load_push(r, t, small_touch_persists(t));
 }
 
@@ -137,10 +156,10 @@ vec3 small_touch_end(struct small_run *r, struct small_touch *t)
     const double most = small_persists(&l->s.rate, held, w, rn);
     if (rn <= most) return none;
     const double back = 1 - most / rn;
+    small_body_push(&r->l->s.before[t->body], v3_scale(back, f), v3_scale(back, touch_moment(t)));
     for (int k = 0; k < 3; k++) {
         t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
-        t->f[k] *= most / rn, t->m[k] *= most / rn;
+        t->f[k] *= most / rn, t->couple[k] *= most / rn, t->m[k] *= most / rn;
     }
-    small_body_push(&r->l->s.before[t->body], t->n, t->arm, v3_scale(back, f), v3_scale(back, m));
     return v3_scale(back, f);
 }

@@ -3,20 +3,20 @@
 
 #include "step/small_run.h"
 
-/* Body b gets an impulse f and a moment m; n points from the contact to its centre, at a distance arm (m). */
-void small_body_push(struct body *b, vec3 n, double arm, vec3 f, vec3 m);
+/* Body b gets an impulse f and a moment m about its centre. */
+void small_body_push(struct body *b, vec3 f, vec3 m);
 
 /* N s: what persists of the reaction and the pull of the last step, on the body */
 vec3 small_touch_persists(const struct small_touch *t);
 /* The body gets that, with the moment. */
-void small_touch_push(struct small_run *r, const struct small_touch *t);
+void small_touch_push(struct small_run *r, struct small_touch *t);
 /* First sweep: is the body near its wall? One that has left gives its reaction back. */
 bool small_touch_near(struct small_run *r, struct small_touch *t);
-/* First sweep: the law of this step, attraction and static friction. Returns the change of the pull along n (N s), which l->u
+/* First sweep: the law of this step, attraction and static friction. Returns the change of the pull (N s), which l->u
    has. */
-double small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l);
+vec3 small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l);
 /* The body gets the change df of its reaction, l->f, a change dp of the pull, and what rolling friction makes of them. */
 void small_touch_give(struct small_run *r, struct small_touch *t, const struct small_law *l,
-                      double df[3], double dp, double heavy, bool again);
+                      double df[3], vec3 dp, double heavy, bool again);
 /* After the sweeps: what has been done to the wall, and what persists. Returns what does not, on the body (N s). */
 vec3 small_touch_end(struct small_run *r, struct small_touch *t);

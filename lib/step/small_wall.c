@@ -103,6 +103,8 @@ void small_touch_law(const struct small_run *r, const struct small_touch *t, str
     small_array(l->n, t->n), small_array(l->u, u);
     l->wn = b->im, l->wt = b->im + t->arm * t->arm * b->ii;
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt;
+    l->calm += 2 * l->wn * t->hold[HOLD_PULL];
+    l->most = small_most(l, &s->rate, t->kept);
     memcpy(l->f, t->f, sizeof l->f), memcpy(l->q, t->q, sizeof l->q);
 }
 

@@ -166,10 +166,10 @@ void step_forget(struct step_memory *m)
 
 void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
 {
-    if (passed->n && (!rep->passed || passed->id < rep->passed_id))
-        rep->passed_id = passed->id, rep->passed_through = passed->through;
-    rep->passed += passed->n;
-    rep->watched = tunnelling_watches(p) || rep->passed;
+    if (passed->n && (!rep->tunnelled || passed->id < rep->tunnelled_id))
+        rep->tunnelled_id = passed->id, rep->tunnelled_through = passed->through;
+    rep->tunnelled += passed->n;
+    rep->watched = tunnelling_watches(p) || rep->tunnelled;
 }
 
 int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
@@ -341,7 +341,7 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     if (m->detect(m, p, s, o, failure)) return failure->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && step_begin(m, m->measure, p, s, rep, failure)) return failure->status;
-    rep->passed = 0, rep->endless = (struct endless){ 0 };
+    rep->tunnelled = 0, rep->endless = (struct endless){ 0 };
     if (!m->helps && (!p->step || m->substeps->made) &&
         m->watch(m, p, watch_before(m, p), rep, failure))
         return failure->status;
@@ -424,11 +424,14 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
     bool impulsive = false; // its reactions are no loads, from which small steps could begin
     rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
     rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
+    rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
     if (o->small > 0 && kept && !small_lacks(p)) {
         const struct small_opt small = { .overlap = o->small,
                                          .threads = o->solve.threads,
                                          .near = &kept->near,
                                          .bare = o->bare,
+                                         .compare = o->compare,
+                                         .bound = o->bound,
                                          .warm = o->warm };
         bool made;
         rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;

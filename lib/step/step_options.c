@@ -54,7 +54,7 @@ static const struct step_options_usual usual = {
     .small = 0.01,               // a tenth of the overlap at which a step fails [nsd-methods(7)]
 };
 
-/* --paper: the protocol of the paper's tables, which does not change with nsd's choice. */
+/* --protocol paper: that of the paper's tables, which does not change with nsd's choice. */
 static const struct step_options_usual paper = {
     .packing = CRITERION_GLOB,
     .fclib = CRITERION_GLOB,
@@ -80,7 +80,7 @@ const char *options_usual(const void *to)
     static char text[100];
     const struct step_options_usual *u = &usual;
     const size_t room = sizeof text;
-    if (to == &options.eps)
+    if (to == &options.tolerance)
         snprintf(text, room, "%g; %g for FCLIB", u->eps[u->packing], u->fclib_eps);
     if (to == &options.newton) return newton_name[u->newton];
     if (to == &options.warm) return u->warm ? "warm" : "cold";
@@ -108,7 +108,7 @@ const char *options_usual(const void *to)
 
 static struct cli_choice method_choice(int k)
 {
-    if (k == 0) return (struct cli_choice){ "auto", "choose the solver, as --global auto" };
+    if (k == 0) return (struct cli_choice){ "auto", "choose the solver, as --solver auto" };
     const struct method *m = methods[k - 1];
     return m ? (struct cli_choice){ m->name, m->help } : (struct cli_choice){ NULL, NULL };
 }
@@ -116,6 +116,12 @@ static struct cli_choice method_choice(int k)
 static struct cli_choice solver_choice(int k)
 {
     return (struct cli_choice){ solvers[k] ? solvers[k]->name : NULL, NULL };
+}
+
+static struct cli_choice protocol_choice(int k)
+{
+    static const char *const name[] = { "nsd", "paper" }; // options.protocol: is it the paper's?
+    return (struct cli_choice){ k < 2 ? name[k] : NULL, NULL };
 }
 
 /* Solvers that solved nothing that auto does not [nsd-methods(7)] */
@@ -147,16 +153,16 @@ struct cli_choice options_overlap_choice(int k)
 /* ---- the options ---- */
 
 const struct cli_option options_solve[] = {
-    { CLI_FLAG, 0, "paper", &options.paper,
-      .help = "use the protocol of the paper instead of the defaults; requires -m" },
-    { CLI_CHOICE, 'm', "method", &options.method, .choice = method_choice,
+    { CLI_CHOICE, 0, "protocol", &options.protocol, .choice = protocol_choice,
+      .help = "set the defaults: nsd's, or those of the paper, which needs -m [nsd]" },
+    { CLI_CHOICE, 'm', "local", &options.local, .choice = method_choice,
       .help = "solve by Gauss-Seidel with this local method [auto]" },
-    { CLI_CHOICE, 0, "global", &options.global, .choice = solver_choice, .gone = solvers_gone,
+    { CLI_CHOICE, 0, "solver", &options.solver, .choice = solver_choice, .gone = solvers_gone,
       .help = "solve all contacts with this solver [nlgs with -m, else auto]" },
-    { CLI_REAL, 0, "eps", &options.eps, "EPS", .max = MOST,
-      .help = "stop when the criterion is at most EPS", .usual = options_usual },
+    { CLI_REAL, 0, "tolerance", &options.tolerance, "TOL", .max = MOST,
+      .help = "stop when the criterion is at most TOL", .usual = options_usual },
     { CLI_CHOICE, 0, "criterion", &options.criterion, .choice = criterion_choice,
-      .help = "compare this error with EPS", .usual = options_usual },
+      .help = "compare this error with TOL", .usual = options_usual },
     { CLI_INT, 0, "max-sweeps", &options.max_sweeps, "N", .max = 2e9,
       .help = "give up after N sweeps", .usual = options_usual },
     { CLI_ABOVE, 0, "max-seconds", &options.max_seconds, "S", .max = MOST,
@@ -165,10 +171,10 @@ const struct cli_option options_solve[] = {
       .help = "set rho = A m_red [1.75 (sbp, sal) or 1 (ebp, eal) / lambda_max]" },
     { CLI_CHOICE, 0, "newton", &options.newton, .choice = newton_choice,
       .help = "choose Newton's steps in ebp and eal; plain: the paper", .usual = options_usual },
-    { CLI_ABOVE, 0, "newton-eps", &options.newton_eps, "EPS", .max = 1,
-      .help = "stop Newton when |Z| <= EPS |(r, rho b)|", .usual = options_usual },
-    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "EPS", .max = MOST,
-      .help = "stop Newton when |Z| <= EPS with r in N, as in the paper" },
+    { CLI_ABOVE, 0, "newton-tolerance", &options.newton_eps, "TOL", .max = 1,
+      .help = "stop Newton when |Z| <= TOL |(r, rho b)|", .usual = options_usual },
+    { CLI_ABOVE, 0, "newton-abs", &options.newton_abs, "TOL", .max = MOST,
+      .help = "stop Newton when |Z| <= TOL with r in N, as in the paper" },
     { CLI_INT, 0, "newton-max", &options.newton_max, "N", .min = 1, .max = 1e6,
       .help = "make at most N Newton steps per contact and sweep", .usual = options_usual },
     { CLI_BETWEEN, 0, "relax", &options.relax, "OMEGA", .max = 2,
@@ -185,7 +191,7 @@ const struct cli_option options_detect[] = {
       .help = "detect pairs with a predicted gap of at most G m [0]" },
     { CLI_REAL, 0, "theta", &options.theta, "T", .max = 1,
       .help = "predict the position q + (1 - T) dt qdot [document, else 0.5]" },
-    { CLI_CHOICE, 0, "overlap", &options.overlap, .choice = options_overlap_choice,
+    { CLI_CHOICE, 0, "overlap-rule", &options.overlap, .choice = options_overlap_choice,
       .help = "treat overlaps; keep: the paper", .usual = options_usual },
     { 0 },
 };
@@ -193,8 +199,9 @@ const struct cli_option options_detect[] = {
 /* ---- which of them are given ---- */
 
 /* Members of which tools have options of their own */
-const void *const options_others[] = { &options.warm,     &options.small,  &options.dt,
-                                       &options.substeps, &options.device, NULL };
+const void *const options_others[] = { &options.warm, &options.small,    &options.bound,
+                                       &options.dt,   &options.substeps, &options.device,
+                                       NULL };
 
 /* One bit for each row of both tables, and for each of the others */
 static uint64_t bit_of(const void *to)
@@ -225,10 +232,10 @@ void *options_member(struct options *o, const void *to)
 }
 
 /* A method that is named stands for the paper's Gauss-Seidel with it. */
-static const struct solver *global(const struct options *o)
+static const struct solver *solver_of(const struct options *o)
 {
-    if (options_has(o, &options.global)) return solvers[o->global];
-    return o->method ? &solver_nlgs : &solver_auto;
+    if (options_has(o, &options.solver)) return solvers[o->solver];
+    return o->local ? &solver_nlgs : &solver_auto;
 }
 
 /* The option where it is given, else what stands for it */
@@ -242,11 +249,11 @@ static int order_usual(const struct options *o, enum order otherwise)
 
 struct step_opt options_step_of(const struct options *o, double dt, bool foreign)
 {
-    const struct step_options_usual *u = o->paper ? &paper : &usual;
-    const struct solver *solver = global(o);
+    const struct step_options_usual *u = o->protocol ? &paper : &usual;
+    const struct solver *solver = solver_of(o);
     bool nlgs = solver == &solver_nlgs;
     int criterion = OPTION(criterion, (int)(foreign ? u->fclib : u->packing));
-    double eps = OPTION(eps, foreign ? u->fclib_eps : u->eps[criterion]);
+    double eps = OPTION(tolerance, foreign ? u->fclib_eps : u->eps[criterion]);
     const enum order order =
         (enum order)OPTION(order, order_usual(o, nlgs ? u->nlgs_order : u->order));
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
@@ -255,10 +262,11 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
         .substeps = o->substeps,
         .alpha = o->alpha,
         .order = order,
-        .as_is = o->paper,
+        .as_is = o->protocol,
+        .bound = o->bound,
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
-                   .method = o->method ? methods[o->method - 1] : &local_exact,
+                   .method = o->local ? methods[o->local - 1] : &local_exact,
                    .local = { .plain = OPTION(newton, (int)u->newton) == NEWTON_PLAIN,
                               .newton_eps = OPTION(newton_eps, u->newton_eps),
                               .newton_abs = o->newton_abs * dt, // forces there, impulses here
@@ -300,6 +308,8 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     json_object_set_new(j, "warm", json_boolean(o->warm));
     if (o->substeps != SUBSTEPS_MOST) json_object_set_new(j, "substeps", json_integer(o->substeps));
     if (o->small > 0) json_object_set_new(j, "small_steps", json_real(o->small));
+    if (o->small > 0 && o->bound > 0)
+        json_object_set_new(j, "missing_impulse", json_real(o->bound));
     char *text = json_dumps(j, JSON_COMPACT);
     json_decref(j);
     return text;
@@ -314,7 +324,8 @@ static enum overlap overlap_usual(const struct packing *p)
 /* Is an option given that chooses how a step is solved? Those that small steps have, too, do not. */
 static bool options_solve_once(const struct options *o)
 {
-    const uint64_t both = bit_of(&options.theta) | bit_of(&options.warm) | bit_of(&options.small);
+    const uint64_t both = bit_of(&options.theta) | bit_of(&options.warm) | bit_of(&options.small) |
+                          bit_of(&options.bound);
     return o->given & ~both;
 }
 
@@ -330,7 +341,7 @@ enum overlap options_overlap_of(const struct options *o, const struct packing *p
 {
     enum overlap now = p->overlap;
     if (!now && !detected) now = overlap_usual(p);
-    if (o->paper) now = paper.overlap;
+    if (o->protocol) now = paper.overlap;
     return OPTION(overlap, (int)now - 1) + 1;
 }
 
@@ -338,8 +349,8 @@ int options_names(const struct options *o, struct failure *failure)
 {
     char names[100] = "";
     size_t n = 0;
-    if (!o->paper || o->method) return 0;
+    if (!o->protocol || o->local) return 0;
     for (int k = 0; methods[k] && n < sizeof names; k++)
         n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", k ? "|" : "", methods[k]->name);
-    return failure_set(failure, EX_USAGE, "--paper: needs a local method, -m %s", names);
+    return failure_set(failure, EX_USAGE, "--protocol paper: needs a local method, -m %s", names);
 }

@@ -9,15 +9,16 @@
 
 /* What was given, and which of them were */
 struct options {
-    bool paper;
-    int method;                                    /* 0: auto; else 1 + the index in methods[] */
-    int global, criterion, order, newton, overlap; /* indices among their choices */
-    double eps, alpha, newton_eps, newton_abs, max_seconds, relax;
+    int protocol;                                  /* 0: nsd's, 1: the paper's */
+    int local;                                     /* 0: auto; else 1 + the index in methods[] */
+    int solver, criterion, order, newton, overlap; /* indices among their choices */
+    double tolerance, alpha, newton_eps, newton_abs, max_seconds, relax;
     double gap; /* m */
     double theta;
     int64_t max_sweeps, newton_max, threads;
     int64_t substeps; /* of a step in which fast bodies meet, at most */
     double small;     /* radii: small steps; 0: none */
+    double bound;     /* of what is missing of their reactions; 0: none */
     bool warm, every_sweep, history, strict, keep_going;
     const char *log;    /* or NULL */
     const char *dt;     /* s, or auto:TOL; or NULL */
@@ -28,7 +29,7 @@ struct options {
 /* That of a tool, whose members the tables name. Another one has them as far from its beginning. */
 extern struct options options;
 extern const struct cli_option options_solve[];  /* the solver's own */
-extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap */
+extern const struct cli_option options_detect[]; /* --gap, --theta, --overlap-rule */
 extern const void
     *const options_others[]; /* members of which tools have options of their own; NULL at the end */
 
@@ -39,7 +40,7 @@ void options_give(struct options *o, const void *to);
 /* was it given? */
 bool options_has(const struct options *o, const void *to);
 
-/* The words that --overlap takes */
+/* The words that --overlap-rule takes */
 struct cli_choice options_overlap_choice(int index);
 /* The default of the member of `options` that `to` points to, as --help shows it. */
 const char *options_usual(const void *to);
@@ -53,5 +54,5 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
 double options_small_of(const struct options *o, const struct packing *p);
 /* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
 char *options_json_of(const struct options *asked, const struct step_opt *step);
-/* What is to be done about overlap: --overlap, keep with --paper, else what the document says, else nsd's choice */
+/* What is to be done about overlap: --overlap-rule, keep with --protocol paper, else what the document says, else nsd's choice */
 enum overlap options_overlap_of(const struct options *o, const struct packing *p, bool detected);

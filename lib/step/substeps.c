@@ -166,11 +166,11 @@ static void add_report(struct report *to, const struct report *r)
     if (r->depth.deepest > to->depth.deepest)
         to->depth.deepest = r->depth.deepest,
         memcpy(to->depth.pair, r->depth.pair, sizeof to->depth.pair);
-    if (r->depth.wedged > to->depth.wedged)
-        to->depth.wedged = r->depth.wedged, to->depth.wedged_id = r->depth.wedged_id;
-    if (r->passed && (!to->passed || r->passed_id < to->passed_id))
-        to->passed_id = r->passed_id, to->passed_through = r->passed_through;
-    to->passed += r->passed, to->watched = to->watched || r->watched;
+    if (r->depth.pinched > to->depth.pinched)
+        to->depth.pinched = r->depth.pinched, to->depth.pinched_id = r->depth.pinched_id;
+    if (r->tunnelled && (!to->tunnelled || r->tunnelled_id < to->tunnelled_id))
+        to->tunnelled_id = r->tunnelled_id, to->tunnelled_through = r->tunnelled_through;
+    to->tunnelled += r->tunnelled, to->watched = to->watched || r->watched;
     if (to->converged && !r->converged) memcpy(to->unsolved, r->unsolved, sizeof to->unsolved);
     to->endless = r->endless;
     to->balanced = to->balanced && r->balanced, to->converged = to->converged && r->converged;

@@ -158,7 +158,7 @@ class Run:
     """A run: bodies and boundaries, stepped by this program. SI units throughout.
 
         with nsd.Run.from_scene("scene.json") as run:
-            run.set(eps=1e-6)
+            run.set(tolerance=1e-6)
             for _ in run.steps(until=0.5):
                 run.force[:, 2] = -6e-3 * run.velocity[:, 2]    # N, until it is changed
             run.save("out.h5")
@@ -320,7 +320,7 @@ class Run:
     # ---- options and steps ----
 
     def set(self, **options: Any) -> "Run":
-        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: eps=1e-6, method="exact", dt=1e-4 (s), threads=2,
+        """Sets options of nsd-step(1) and nsd-stat(1) by their names, with _ instead of -: tolerance=1e-6, local="exact", dt=1e-4 (s), threads=2,
         small_steps=0.01, contacts=True ...; returns the run. Raises Error (status 64) if there is no such option or value; those before it are set."""
         for name, value in options.items():
             if not isinstance(value, (bool, np.bool_, int, float, np.number, str)):

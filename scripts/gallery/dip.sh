@@ -13,7 +13,7 @@ pile()
     n=$(jq -n "$half * $half * $4 | round")
     scene sandpile --argjson seed "$2" --argjson h "$half" --argjson n "$n" '.seed = $seed | .walls[0].segment = [[-$h, 0], [$h, 0]] | .pour[0] |= (.count = $n | .opening.box.y = [0.75 * $h, 0.75 * $h + 0.12]) | '"$3" |
         nsd-gen - | step "poured.h5" --until "$(jq -n "$n / 600 + 1.5")" --every 100s
-    nsd-step --eps 0.01 -n 20 --every 20 --forces -o "$out/$1-$2.h5" "$out/poured.h5" 2>"$out/$1-$2.log"
+    nsd-step --tolerance 0.01 -n 20 --every 20 --forces -o "$out/$1-$2.h5" "$out/poured.h5" 2>"$out/$1-$2.log"
 }
 
 # under FILE.h5: {floor: [[x, force]], weight, height, fabric}, x in half widths of the slab, forces in N

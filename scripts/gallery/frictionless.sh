@@ -20,7 +20,7 @@ for seed in "${seeds[@]}"; do
             nsd-info --scene "$out/$before" | jq --argjson I "$rate" '.time = 0 | .cell.gradient[0][1] = $I'
         fi >"$out/scene.json"
         before=shear-$rate-$seed.h5
-        nsd-gen "$out/scene.json" | step "$before" --overlap gap --until "$end" --every "$(jq -n "$end / 300")s" --contacts
+        nsd-gen "$out/scene.json" | step "$before" --overlap-rule gap --until "$end" --every "$(jq -n "$end / 300")s" --contacts
         # I, mu, phi, the pressure across the shear, seed
         nsd-stat -m stress,fraction "$out/$before" |
             jq -rs --argjson begin "$begin" --argjson I "$rate" --argjson seed "$seed" 'def mean: add / length; map(select(.time > $begin)) |

@@ -13,7 +13,7 @@ compress() # NAME DIM MU SEED: NAME.h5
         (if $dim == 2 then $n * 1.45 | sqrt else $n * 1.46 | log / 3 | exp end) as $L |
         .cell.lengths = ([range($dim)] | map($L)) |
         .bodies[0].random.count = $n | del(.bodies[0].box)' |
-        nsd-gen - | step "$1.h5" --overlap gap --until "$end" --every "${end}s" --contacts
+        nsd-gen - | step "$1.h5" --overlap-rule gap --until "$end" --every "${end}s" --contacts
 }
 # Without friction: slow rearrangements go on for a while. Then the last oscillations are solved to 1e-6 from the last reactions,
 # until the pressure has been that of the load within 1e-6 for 5 s; overlaps are projected out, because a contact with an overlap
@@ -21,9 +21,9 @@ compress() # NAME DIM MU SEED: NAME.h5
 settle() # NAME: NAME-settled.h5
 {
     local k rest=$((end + 120)) from=$1-rest
-    step "$from.h5" --overlap gap --dt 0.05 --until "$rest" --every "${rest}s" --contacts "$out/$1.h5"
+    step "$from.h5" --overlap-rule gap --dt 0.05 --until "$rest" --every "${rest}s" --contacts "$out/$1.h5"
     for k in {1..8}; do
-        step "$1-rest-$k.h5" --warm --eps 1e-6 --overlap project --dt 0.05 --until $((rest + 10 * k)) --every 1s --contacts "$out/$from.h5"
+        step "$1-rest-$k.h5" --warm --tolerance 1e-6 --overlap-rule project --dt 0.05 --until $((rest + 10 * k)) --every 1s --contacts "$out/$from.h5"
         from=$1-rest-$k
         nsd-stat -m stress "$out/$from.h5" | jq -es '.[-5:] | all(.[]; (.stress.p - 1 | fabs) < 1e-6)' >/dev/null && break
     done

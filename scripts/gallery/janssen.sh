@@ -59,7 +59,7 @@ with 'group_by(.friction)[] | "# \(.[0].friction)", (map([.layers[range(3; 40; 3
     -rs "$out/runs.json" >"$out/load.tsv"
 with 'map([.friction, .K]) | spread[] | map(. // 0) | @tsv' -rs "$out/runs.json" >"$out/k.tsv"
 curve
-picture --cut 0,1,0,0 -c force --step "$(nsd-info "$out/sunk-0.4-${seeds[0]}.h5" | jq -s 'map(.step // empty) | max')" "$out/sunk-0.4-${seeds[0]}.h5"
+picture --clip 0,1,0,0 -c force --step "$(nsd-info "$out/sunk-0.4-${seeds[0]}.h5" | jq -s 'map(.step // empty) | max')" "$out/sunk-0.4-${seeds[0]}.h5"
 with 'def of($low; $high): map(select(.friction >= $low and .friction <= $high));
     # one value for each seed: the mean of its runs
     def each(values): [range(0; length; $count) as $k | .[$k : $k + $count] | values | mean];

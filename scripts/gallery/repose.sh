@@ -14,7 +14,7 @@ heap()
 {
     scene heap --argjson h "$half" --argjson seed "$2" '.seed = $seed | .remove[0].outside.x = [-$h, $h] |
         .bodies[0] |= (.box = { x: [-$h, $h], y: [0, 1.1 * $h] } | .random.count = ($h * $h * 1.4 * 0.8 / 1.257e-5 | round)) | '"$3" |
-        nsd-gen - | step "$1" --until "$until" --every "${until}s" --overlap project
+        nsd-gen - | step "$1" --until "$until" --every "${until}s" --overlap-rule project
 }
 # degrees: of lines through the tops of strips a disc wide on both flanks, from a fifth of the heap's height up to where,
 # coming from outside, four fifths are first reached; the mean of both sides. slope FILE COHESIVE: where discs hold together

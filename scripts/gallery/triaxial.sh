@@ -14,13 +14,13 @@ compress()
                 .seed = $seed | .dim = $dim | .mu = $mu | (if $dim == 2 then .density = 1.257 | .gravity = [0, 0] else . end) |
                 (if $dim == 2 then $n * 1.45 | sqrt else $n * 1.46 | log / 3 | exp end) as $L |
                 .cell.lengths = ([range($dim)] | map($L)) | .bodies[0].random.count = $n | del(.bodies[0].box)' |
-                nsd-gen - | step "$file-begin.h5" --overlap gap --until 30 --every 30s
+                nsd-gen - | step "$file-begin.h5" --overlap-rule gap --until 30 --every 30s
             # the last axis becomes shorter at a constant rate, the others yield to the pressure
             on "$file-begin.h5" --argjson mu "$4" --argjson rate "$5" '.mu = $mu | .time = 0 | .dim as $dim |
                 .bodies[0].at_rest = true |
                 .cell = {gradient: [range($dim) | . as $i | [range($dim) | if . == $i and . == $dim - 1 then -$rate else 0 end]],
                     stress: {target: [range($dim) | . as $i | [range($dim) | if . == $i and . < $dim - 1 then 1 else null end]], mass: 10}}' |
-                step "$file.h5" --overlap gap --until "$(jq -n "$6 / $5")" --every "$(jq -n "$6 / $5 / 60")s" --contacts
+                step "$file.h5" --overlap-rule gap --until "$(jq -n "$6 / $5")" --every "$(jq -n "$6 / $5 / 60")s" --contacts
             # strain, sin phi, solid fraction, Z, of the frames in turn
             nsd-stat -m stress,fraction,coordination "$out/$file.h5" | jq -r --argjson rate "$5" --argjson k $(($2 - 1)) \
                 'select(.stress) | .stress.tensor as $s | [.time * $rate, ($s[$k][$k] - $s[0][0]) / ($s[$k][$k] + $s[0][0]),

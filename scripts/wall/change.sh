@@ -14,10 +14,10 @@ for alpha in ${ALPHAS:-0 1e-4 1e-3 1e-2}; do
     [ "$alpha" != 0 ] || k=rigid
     nsd-step --stiffness "$k" --dt 1e-4 -n "$steps" --every "$steps" "$work/pile.h5" 2>/dev/null | nsd-cat --last | nsd-detect >"$work/found.h5"
     row=$alpha
-    for way in '--global auto' '--global nlgs -m exact --order random'; do
+    for way in '--solver auto' '--solver nlgs -m exact --order random'; do
         rm -f "$work/log"
         # shellcheck disable=SC2086 # a way is several words
-        nsd-solve --cold $way --criterion natural --eps 1e-10 --max-sweeps 100000 --max-seconds "${SOLVE_SECONDS:-15}" --log "$work/log" \
+        nsd-solve --cold $way --criterion natural --tolerance 1e-10 --max-sweeps 100000 --max-seconds "${SOLVE_SECONDS:-15}" --log "$work/log" \
             "$work/found.h5" 2>/dev/null | nsd-info -c >"$work/${way##* }"
         row+=$'\t'$(map)
     done

@@ -72,7 +72,7 @@ for name, value in {
         "SPECTRA": table(["balls", "contacts", "loaded", "sliding", "natural map", "zero", "unstable", "least real part",
                           "smallest but zero", "unknowns in unstable ones", "of"], spectra),
         "SOLVED": table(["balls", "sweeps", "natural map", "self-stress"], solved),
-        "JAM": table(["eps", "natural map", "norm of r, N s", "change of r", "change of v, g dt", "self-stress"], jam),
+        "JAM": table(["tolerance", "natural map", "norm of r, N s", "change of r", "change of v, g dt", "self-stress"], jam),
         "COUNT": str(max(len(rows(n, "spectrum.jsonl")[0]["eigenvalues"]) + rows(n, "spectrum.jsonl")[0]["zero"]
                          for n in sizes)),
         "LAST": str(last),

@@ -19,7 +19,7 @@ for pile in "$@"; do
         deep=$(nsd-info -c "$work/found.h5" | jq -n '[inputs | if .stretch then -.stretch[0] else 0 end] | max / 4.7e-4')
         for eps in 1e-4 1e-6 1e-8; do
             rm -f "$work/log"
-            timeout "${SECONDS_MOST:-60}" nsd-solve --cold --criterion natural --eps $eps --max-seconds "${SOLVE_SECONDS:-20}" \
+            timeout "${SECONDS_MOST:-60}" nsd-solve --cold --criterion natural --tolerance $eps --max-seconds "${SOLVE_SECONDS:-20}" \
                 --max-sweeps 1000000 --log "$work/log" "$work/found.h5" >"$work/solved.h5" 2>/dev/null || true
             row=$(jq -r '[.contacts, .sweeps, .newton, .seconds, .natural, .converged] | @tsv' "$work/log" 2>/dev/null || true)
             IFS=$'\t' read -r contacts sweeps newton seconds natural converged <<<"${row:-nan}"

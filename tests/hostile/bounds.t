@@ -115,7 +115,7 @@ if ! have_h5py; then
     done_testing
     exit
 fi
-echo '{"dt": 1e-3, "overlap": true, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0.5], "radius": 0.2, "shape": "cube"}], "shapes":
+echo '{"dt": 1e-3, "allow_overlap": true, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 0.5], "radius": 0.2, "shape": "cube"}], "shapes":
     {"cube": {"points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1],[1,1,0],[1,0,1],[0,1,1],[1,1,1]]}},
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1], "drives": [{"along": [0, 0, 1], "table": [[0, 0], [1, 1]]}]}]}' |
     nsd-gen - >base.h5

@@ -240,7 +240,7 @@ cd - >/dev/null
 
 # ---- what ends ----
 
-crowd() { echo '{"dt": 1e-3, "overlap": true, "bodies": [{"file": "crowd"}]}' >"$tmp/crowd.json" && nsd-gen "$tmp/crowd.json" | nsd-step; }
+crowd() { echo '{"dt": 1e-3, "allow_overlap": true, "bodies": [{"file": "crowd"}]}' >"$tmp/crowd.json" && nsd-gen "$tmp/crowd.json" | nsd-step; }
 awk 'BEGIN { for (i = 0; i < 3000; i++) print "0 0 0 1" }' >"$tmp/crowd"
 status 65 "3000 balls in one place" timeout 20 bash -c "$(declare -f crowd); tmp=$tmp; set -o pipefail; crowd"
 like "says so" "$(cat "$tmp/err")" 'in one place'

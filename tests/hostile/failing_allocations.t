@@ -27,7 +27,7 @@ nsd-gen -d 2 5 >"$tmp/discs.h5"
 jq -n '{ dim: 2, dt: 1e-4, mu: 0.5, density: 2500, gravity: [0, -9.81], walls: [{ box: { x: [0, 0.02], y: [0, null] } }],
     bodies: [{ count: 60, radius: 0.001, box: { x: [0, 0.02], y: [0, null] } }] }' | nsd-gen - | nsd-step --small-steps 0 -n 3000 --every 3000 2>/dev/null |
     nsd-cat --last | nsd-detect >"$tmp/pile.h5"
-is "a pile whose solution takes Newton's steps" "$(nsd-solve --cold --criterion natural --eps 1e-12 "$tmp/pile.h5" | nsd-info -l | jq '.newton > 0')" true
+is "a pile whose solution takes Newton's steps" "$(nsd-solve --cold --criterion natural --tolerance 1e-12 "$tmp/pile.h5" | nsd-info -l | jq '.newton > 0')" true
 printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' '0 0 1' >"$tmp/stone.obj"
 printf 'f %s\n' '1 3 2' '1 2 4' '2 3 4' '3 1 4' >>"$tmp/stone.obj"
 echo '{ "dt": 1e-3, "shapes": { "stone": { "mesh": { "file": "stone.obj" } } }, "bodies": [{ "x": [0, 0, 0], "shape": "stone" }] }' >"$tmp/stone.json"
@@ -35,11 +35,11 @@ jq '.shapes.stone.clump = {balls: 10}' "$tmp/stone.json" >"$tmp/clump.json"
 nsd-export --to data -o "$tmp/four.data" "$tmp/solved.h5"
 commands=("nsd-gen 20" "nsd-gen $tmp/scene.json" "nsd-gen $tmp/stone.json" "nsd-gen $tmp/clump.json" "nsd-gen --from $tmp/four.data"
     "nsd-export --to gsd $tmp/solved.h5" "nsd-cat --vtk all $tmp/run.h5" "nsd-info $tmp/solved.h5" "nsd-info $tmp/foreign.h5" "nsd-cat $tmp/solved.h5"
-    "nsd-cat --steps 402:403 $tmp/run.h5" "nsd-err $tmp/solved.h5" "nsd-move $tmp/solved.h5" "nsd-detect --fclib=local $tmp/solved.h5"
+    "nsd-cat --frames 402:403 $tmp/run.h5" "nsd-err $tmp/solved.h5" "nsd-move $tmp/solved.h5" "nsd-detect --fclib=local $tmp/solved.h5"
     "nsd-detect --fclib=global $tmp/solved.h5" "nsd-view --size 32x32 $tmp/solved.h5" "nsd-view --network --size 300x300 $tmp/solved.h5"
     "nsd-view --svg $tmp/discs.h5" "nsd-web $tmp/run.h5" "nsd-solve -m sbp --max-sweeps 3 $tmp/solved.h5"
     "nsd-solve -m exact --max-sweeps 3 $tmp/local.h5" "nsd-solve -m eal --max-sweeps 3 $tmp/global.h5"
-    "nsd-solve --cold --criterion natural --eps 1e-12 $tmp/pile.h5"
+    "nsd-solve --cold --criterion natural --tolerance 1e-12 $tmp/pile.h5"
     "nsd-step -m sbp -n 2 $tmp/solved.h5" # the default goes on without Anderson where that finds no memory: other bytes
     "nsd-step -m sbp -n 2 --order colour --contacts $tmp/solved.h5" "nsd-step -n 2 $tmp/solved.h5" "nsd-gen --schema")
 runs=14 # a command, spread over its allocations

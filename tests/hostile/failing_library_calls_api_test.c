@@ -104,7 +104,7 @@ static int acted(uint32_t *crc, struct failure *failure)
     armed = false; // that it is made is what `made` is about
     must(nsd_from_scene(&r, scene_text[now], folder), run_why_of_thread());
     armed = on;
-    CALL("set", nsd_set(r, "method", "sbp"));
+    CALL("set", nsd_set(r, "local", "sbp"));
     CALL("step", nsd_step(r, 1));
     CALL("step", nsd_step(r, 1));
     CALL("force", nsd_force(r, r->f.packing.id[0], f, NULL, NSD_LASTING));

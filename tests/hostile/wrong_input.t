@@ -320,7 +320,7 @@ done
 
 one='{"dt": 1e-3, "bodies": [{"x": [0, 0, 0], "radius": 1}], "walls": [{"point": [0, 0, -1], "normal": [0, 0, 1]}]}'
 nsd-gen - <<<"$one" >"$tmp/one.h5"
-nsd-step --overlap keep --contacts "$tmp/one.h5" 2>/dev/null | nsd-cat --stream >"$tmp/kept.h5"
+nsd-step --overlap-rule keep --contacts "$tmp/one.h5" 2>/dev/null | nsd-cat --stream >"$tmp/kept.h5"
 apart() # what regex jq
 {
     jq "$3" <<<"$one" | nsd-gen - >"$tmp/two.h5"
@@ -350,7 +350,7 @@ apart "pairs that stick together and others" "pairs of kinds have laws .* in the
 apart "two seeds" "seed differs from the trajectory's" '.seed = 7'
 apart "two scenes" "the scene differs from the trajectory's" '.title = "another"'
 apart "a step twice" "step 0 after step 0: a trajectory's steps increase" '.'
-nsd-step -n 1 --overlap gap "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream >"$tmp/two.h5"
+nsd-step -n 1 --overlap-rule gap "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream >"$tmp/two.h5"
 refuses 65 "two ways against overlap in one trajectory" nsd-cat -o "$tmp/joined.h5" "$tmp/kept.h5" "$tmp/two.h5"
 like "says what" "$(cat "$tmp/err")" "overlap differs from the trajectory's"
 nsd-step --contacts "$tmp/kept.h5" 2>/dev/null | nsd-cat --stream | nsd-detect >"$tmp/two.h5"
@@ -385,7 +385,7 @@ bad_scene "NaN" '{"dt": NaN}' '1:[0-9]+: '
 bad_scene "a number that overflows" '{"dt": 1e999}' '1:[0-9]+: '
 bad_scene "an unknown key" $'{"dt": 1,\n  "colour": 3}' '2:3: colour: unknown key'
 bad_scene "an unknown key inside" $'{"dt": 1, "bodies": [\n{"x": [0, 0, 0],\n  "radios": 1}]}' '3:3: bodies\[0\].radios: unknown'
-bad_scene "no dt" '{"mu": 1}' '1:1: dt: is missing'
+bad_scene "no dt, and nothing that moves" '{"mu": 1}' 'dt: is missing, and nothing in the scene moves'
 bad_scene "a negative dt" '{"dt": -1}' '1:2: dt: must be positive'
 bad_scene "dim = 4" '{"dt": 1, "dim": 4}' '1:11: dim: '
 bad_scene "dim = 2.5" '{"dt": 1, "dim": 2.5}' '1:11: dim: '
@@ -470,14 +470,14 @@ for tool in nsd-gen "${readers[@]}"; do
     refuses 64 "$tool: an unknown letter" "$tool" -Z
 done
 for tool in nsd-solve nsd-step; do
-    for option in '--eps -1' '--eps nan' '--eps inf' '--eps 1e' '--eps=' '--eps 1x' '-m newton' '--method SBP' '-m=' \
+    for option in '--tolerance -1' '--tolerance nan' '--tolerance inf' '--tolerance 1e' '--tolerance=' '--tolerance 1x' '-m newton' '--local SBP' '-m=' \
         '--criterion best' '--order up' '--newton no' '--max-sweeps -1' '--max-sweeps 2.5' '--max-sweeps 1e30' \
-        '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-eps 0' '--newton-max 0' '--theta 2' \
+        '--relax 0' '--relax 2' '--relax nan' '--alpha 0' '--alpha -1' '--newton-tolerance 0' '--newton-max 0' '--theta 2' \
         '--theta -0.1' '-j 0' '-j -2' '-j many'; do
         # shellcheck disable=SC2086 # words
         refuses 64 "$tool $option" "$tool" $option "$tmp/contacts.h5"
     done
-    for option in --eps -m --max-sweeps -j --log; do
+    for option in --tolerance -m --max-sweeps -j --log; do
         refuses 64 "$tool $option without its argument" "$tool" "$tmp/contacts.h5" $option
     done
 done
@@ -492,11 +492,11 @@ done
 for tool in nsd-cat nsd-info; do
     for steps in x 1-2 5:3 1:2:0 1:2:3:4 -1:2 :: '' 1:2:; do
         case $steps in :: | 1:2:) continue ;; esac
-        refuses 64 "$tool --steps '$steps'" "$tool" --steps "$steps" "$tmp/packing.h5"
+        refuses 64 "$tool --frames '$steps'" "$tool" --frames "$steps" "$tmp/packing.h5"
     done
-    refuses 64 "$tool --last --steps 1" "$tool" --last --steps 1 "$tmp/packing.h5"
+    refuses 64 "$tool --last --frames 1" "$tool" --last --frames 1 "$tmp/packing.h5"
 done
-refuses 64 "nsd-solve --overlap that needs other contacts" nsd-solve --overlap gap "$tmp/contacts.h5"
+refuses 64 "nsd-solve --overlap-rule that needs other contacts" nsd-solve --overlap-rule gap "$tmp/contacts.h5"
 refuses 64 "nsd-solve --theta other than the contacts'" nsd-solve --theta 0.9 "$tmp/contacts.h5"
 
 # ---- found by newcomers ----

@@ -27,7 +27,7 @@ build_step() # [--static]
     cc -Wall -Wextra -Werror -o "$tmp/step" docs/step.c $(config --cflags --libs "$@" | if [ $# = 0 ]; then cat; else sed "s|-lnsd|$root/lib/libnsd.a|"; fi)
 }
 scene=scenes/paper/example3.json
-want=$(nsd-gen $scene | nsd-step --overlap keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --eps 1e-6 \
+want=$(nsd-gen $scene | nsd-step --overlap-rule keep -n 200 --every 200 --contacts --warm -m exact --order natural --criterion natural --tolerance 1e-6 \
         --max-sweeps 10000 2>/dev/null >"$tmp/step.h5"
     nsd-info --last -p "$tmp/step.h5" | head -n 1 | jq -r ".x[2]" >"$tmp/z"
     nsd-info --last "$tmp/step.h5" | jq -r '[.step, .time, .contacts] | @tsv' | tr '\t' ' ' |
@@ -48,8 +48,8 @@ plus()
 ok "and in C++" plus
 python() { PYTHONPATH=$root/lib/python3/dist-packages /usr/bin/python3 -c "$1"; }
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
-    is "and in Python" "$(python "import nsd; r = nsd.Run.from_scene('$scene'); r.set(method='exact', criterion='natural', eps=1e-6, \
-max_sweeps=10000, order='natural', warm=True, overlap='keep'); r.step(200); print('%.17g' % r.position[0, 2])")" "${want##* }"
+    is "and in Python" "$(python "import nsd; r = nsd.Run.from_scene('$scene'); r.set(local='exact', criterion='natural', tolerance=1e-6, \
+max_sweeps=10000, order='natural', warm=True, overlap_rule='keep'); r.step(200); print('%.17g' % r.position[0, 2])")" "${want##* }"
 else
     skip "in Python" "no numpy"
 fi
@@ -63,8 +63,8 @@ complete() # WORD ...: what bash makes of the last word
         shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }
         "_${1//-/_}"; printf "%s\n" "${COMPREPLY[@]}"' bash "$root" "$@" | paste -s -d ' '
 }
-is "bash: an option" "$(complete nsd-step --meth)" --method
-is "bash: its words" "$(complete nsd-step --method e)" "ebp eal exact"
+is "bash: an option" "$(complete nsd-step --loca)" --local
+is "bash: its words" "$(complete nsd-step --local e)" "ebp eal exact"
 is "bash: of a letter" "$(complete nsd-solve -m sb)" sbp
 is "bash: behind =" "$(complete nsd-export --to = l)" lammps
 is "bash: = itself" "$(complete nsd-export --part =)" "grains contacts boundary cell surfaces"
@@ -98,7 +98,7 @@ if command -v zsh >/dev/null; then
             zpty -r -m shell line "*<nsd*>*"
             print -r -- "${${line##*<}%%>*}"' zsh "$root" "$tmp/zcompdump" "$1"
     }
-    is "zsh: an option" "$(zsh_completes 'nsd-step --meth')" "nsd-step --method="
+    is "zsh: an option" "$(zsh_completes 'nsd-step --loca')" "nsd-step --local="
     is "zsh: its words" "$(zsh_completes 'nsd-export --to la')" "nsd-export --to lammps "
 else
     skip "zsh" "no zsh"

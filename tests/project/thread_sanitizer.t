@@ -54,7 +54,7 @@ jq -n '{ dt: 1e-3, gravity: [0.3, 0.2, -9.81], walls: [{ point: [0, 0, 0], norma
 nsd-detect --gap 1e-6 --fclib=local "$tmp/halves.h5" >"$tmp/lattice.h5"
 foreign "$tmp/lattice.h5" "$tmp/lattice.hdf5"
 h5copy -i "$tmp/lattice.hdf5" -o "$tmp/given.h5" -s /fclib_local -d /fclib_local
-nsd-gen 200 | nsd-step -n 900 --every 900 --eps 1e-6 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
+nsd-gen 200 | nsd-step -n 900 --every 900 --tolerance 1e-6 2>/dev/null | nsd-cat --last >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
 solve() # DOCUMENT ARGUMENT ...
@@ -72,7 +72,7 @@ for method in exact sbp sal ebp eal; do
     solve halves -m $method --order colour --max-sweeps 8
 done
 for document in lattice contacts given; do
-    solve $document --global anderson --max-sweeps 30
+    solve $document --solver anderson --max-sweeps 30
     solve $document --max-sweeps 100
 done
 status 0 "whole steps in halves" $built/nsd-step -m exact --gap 1e-6 --order colour --relax 1.5 --warm --max-sweeps 8 -j 2 -n 3 "$tmp/halves.h5"

@@ -56,8 +56,8 @@ with open(path("scene.json"), "w") as f:
 gen = tool("nsd-gen", path("scene.json"))
 with open(path("begin.h5"), "wb") as f:
     f.write(gen)
-for options in ({}, {"contacts": True}, {"forces": True, "eps": 1e-6, "criterion": "natural"}, {"dt": "auto:0.01"},
-                {"method": "exact", "relax": 1.2, "overlap": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
+for options in ({}, {"contacts": True}, {"forces": True, "tolerance": 1e-6, "criterion": "natural"}, {"dt": "auto:0.01"},
+                {"local": "exact", "relax": 1.2, "overlap_rule": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
     words = [w for key, x in options.items()
              for w in (["--" + key] if x is True else ["--" + key.replace("_", "-"), str(x)])]
     tool("nsd-step", "-n", "60", "--every", "20", *words, "-o", path("step.h5"), path("begin.h5"))
@@ -142,7 +142,7 @@ ok(np.isfinite(x).all() and repr(run) == "<nsd run, closed>", "arrays outlive th
 del x
 gc.collect()
 for name, call in {"step": run.step, "position": lambda: run.position, "save": lambda: run.save(path("no.h5")),
-                   "set": lambda: run.set(eps=1), "iteration": lambda: next(iter(run))}.items():
+                   "set": lambda: run.set(tolerance=1), "iteration": lambda: next(iter(run))}.items():
     ok(raises(ValueError, "closed", call), f"a run that is closed: {name}")
 
 # ---- bad input leaves the run as it was ----
@@ -165,6 +165,10 @@ for kind, words, call in (
         (nsd.Error, "no number", lambda: run.number("speed")),
         (nsd.Error, "measures", lambda: run.measure("beauty")),
         (nsd.Error, "no such option", lambda: run.set(epsilon=1)),
+        (nsd.Error, "did you mean criterion?", lambda: run.set(critereon="natural")),
+        (nsd.Error, "global: now called solver", lambda: run.set(**{"global": "auto"})),
+        (nsd.Error, "overlap: now called overlap-rule", lambda: run.set(overlap="keep")),
+        (nsd.Error, "did you mean pixels?", lambda: run.set(pixel=3)),
         (nsd.Error, "not load-controlled", lambda: run.push_boundary(0, 1)),
         (nsd.Error, "no boundary", lambda: run.move_boundary(17, [0, 0, 1])),
         (nsd.Error, "no kind", lambda: run.friction("ball", "cheese", 1)),
@@ -308,7 +312,7 @@ for name, call in {"force": lambda x: run.push(0, x), "velocity": lambda x: run.
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r:.40} is refused by name")
 for name, call in {"path": run.save, "document": nsd.Run.from_document, "scene": nsd.Run.from_scene, "name": run.array,
                    "names": run.measure, "kind": lambda x: run.friction(x, "wall", 1), "line": run.note, "source": nsd.last,
-                   "eps": lambda x: run.set(eps=x)}.items():
+                   "tolerance": lambda x: run.set(tolerance=x)}.items():
     ok(raises(ValueError, f"{name}: ", lambda: call("a\0b")), f"{name}: a zero byte is refused by name")
     ok(raises(TypeError, f"{name}: ", lambda: call(3j)), f"{name}: so is what is no text")
 ok((run.position == before[0]).all() and (run.force == before[1]).all() and run.step_number == 0 and len(run.id) == 40,

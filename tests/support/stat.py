@@ -67,7 +67,7 @@ def same_as_numpy(document):
     length = np.where(wall, r[b] + d["gap"], r[b] + r[np.where(wall, -1, a)] + d["gap"])
     V = s["fraction"]["volume"]
     contacts = -np.einsum("ci,cj->ij", f, -length[:, None] * n) / V
-    close(s["stress"]["contacts"], contacts, 1e-9)
+    close(s["stress"]["contact_part"], contacts, 1e-9)
     m, v = d["mass"], d["velocity"]
     mean = (m[:, None] * v).sum(0) / m.sum()
     kinetic = np.einsum("i,ij,ik->jk", m, v - mean, v - mean)

@@ -10,10 +10,10 @@ $S/heap4.h5: $(TOOLS)
 $S/solved4.h5: $S/heap4.h5
 	$(call make,nsd-detect $< | nsd-solve)
 $S/heap20.h5: $(TOOLS)
-	$(call make,nsd-gen 20 | nsd-step -n 600 --every 600 --eps 1e-8 | nsd-cat --last)
+	$(call make,nsd-gen 20 | nsd-step -n 600 --every 600 --tolerance 1e-8 | nsd-cat --last)
 # 60 balls fall, 30 frames
 $S/run60.h5: $(TOOLS)
 	$(call make,nsd-gen 60 | nsd-step -n 900 --every 30 --contacts)
 # 500 balls at rest
 $S/pile500.h5: $(TOOLS)
-	$(call make,nsd-gen 500 | nsd-step -n 900 --every 900 --criterion natural --eps 1e-4 | nsd-cat --last)
+	$(call make,nsd-gen 500 | nsd-step -n 900 --every 900 --criterion natural --tolerance 1e-4 | nsd-cat --last)

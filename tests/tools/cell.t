@@ -18,7 +18,7 @@ for _ in 1 2 3; do
     nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
     mv "$tmp/next.h5" "$tmp/pipe.h5"
 done
-nsd-step --global auto -n 3 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+nsd-step --solver auto -n 3 "$tmp/dense.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
 ok 'detect | solve | move is nsd-step, edges and images too' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
 
 for j in 2 4; do
@@ -40,7 +40,7 @@ like "nsd-err judges kept steps as the solver did ($worst)" "$(jq -n "$worst < 1
 like 'shifts tell contacts across the border' \
     "$(nsd-info -c "$tmp/kept.h5" | jq -s 'map(select(.shift != [0, 0, 0])) | length')" '^[0-9]{2,}$'
 is 'the stress of a shear is symmetric to 5 % on the average of 200 steps, and pushes' \
-    "$(nsd-step --overlap keep --contacts -n 200 --every 2 "$tmp/dense.h5" 2>/dev/null | nsd-info | jq -s 'map(select(.stress).stress) | [range(2) as $i | [range(2) as $k | map(.[$i][$k]) | add]] | (.[0][1] - .[1][0] | fabs) < 0.05 * .[0][0] and .[1][1] > 0')" true
+    "$(nsd-step --overlap-rule keep --contacts -n 200 --every 2 "$tmp/dense.h5" 2>/dev/null | nsd-info | jq -s 'map(select(.stress).stress) | [range(2) as $i | [range(2) as $k | map(.[$i][$k]) | add]] | (.[0][1] - .[1][0] | fabs) < 0.05 * .[0][0] and .[1][1] > 0')" true
 nsd-cat --stream "$tmp/kept.h5" | nsd-cat -o "$tmp/again.h5"
 ok 'a stream joined again is the trajectory' same_particles "$tmp/kept.h5" "$tmp/again.h5"
 is 'and its contacts' "$(nsd-info -c "$tmp/kept.h5" | cksum)" "$(nsd-info -c "$tmp/again.h5" | cksum)"
@@ -62,7 +62,7 @@ import sys, h5py
 with h5py.File(sys.argv[1]) as f, h5py.File(sys.argv[2], "w") as g:
     f.copy("fclib_local", g)
 PY
-    nsd-solve --eps 1e-10 "$tmp/problem.h5" 2>/dev/null | nsd-info --last | jq .natural >"$tmp/a"
+    nsd-solve --tolerance 1e-10 "$tmp/problem.h5" 2>/dev/null | nsd-info --last | jq .natural >"$tmp/a"
     like 'the FCLIB problem of a cell is solved' "$(jq '. < 1e-9' "$tmp/a")" true
 fi
 
@@ -137,7 +137,7 @@ ok 'a slope that repeats downhill is a scene' nsd-gen "$tmp/slope.json"
 post='{ "dim": 2, "dt": 1e-3, "gravity": [0, 0], "e_n": 0.5, "cell": { "lengths": [1, 1], "repeats": [true, false] },
     "walls": [{ "segment": [[0.5, 0], [0.5, 0.3]] }], "bodies": [{ "x": [0.8, 0.1], "radius": 0.1, "v": [1, 0] }] }'
 echo "$post" >"$tmp/post.json"
-returned() { nsd-gen "$1" | nsd-step -n 1000 --every 1000 --overlap gap 2>/dev/null | nsd-info --last -p - | jq -e '.x[0] - (.x[0] | floor) - 0.2 | fabs < 1e-3'; }
+returned() { nsd-gen "$1" | nsd-step -n 1000 --every 1000 --overlap-rule gap 2>/dev/null | nsd-info --last -p - | jq -e '.x[0] - (.x[0] | floor) - 0.2 | fabs < 1e-3'; }
 ok 'a wall that stands in the cell is met from both sides, and across the edge' returned "$tmp/post.json"
 jq -c '.walls[0].segment = [[0.19, 0], [0.19, 0.3]]' "$tmp/post.json" >"$tmp/bad.json"
 refuses 65 'one that images of bodies would meet is refused' nsd-gen "$tmp/bad.json"
@@ -219,7 +219,7 @@ jq '.bodies[0].count = 100 | .cell.lengths = [0.5, 0.5] | .cell.gradient[2].t = 
     nsd-step -n 1600 --every 1600 --log="$tmp/sheared.log" -o "$tmp/sheared.h5" 2>/dev/null
 like "discs under compression and shear: its changes add up to it" "$(sums "$tmp/sheared.log" | jq '. < 1e-11')" true
 is "nsd-move puts it into the report" "$(nsd-cat --last "$tmp/sheared.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')" \
-    "$(nsd-step --global auto -n 1 "$tmp/sheared.h5" 2>/dev/null | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')"
+    "$(nsd-step --solver auto -n 1 "$tmp/sheared.h5" 2>/dev/null | balances - | jq -c '.balance | [.peculiar, .peculiar_change]')"
 if have_ranks; then
     ranks 2 nsd-step -n 50 --order block --log="$tmp/ranks.log" -o "$tmp/ranks.h5" "$tmp/sheared.h5" 2>/dev/null
     like "two processes: so they do" "$(sums "$tmp/ranks.log" | jq '. < 1e-11')" true

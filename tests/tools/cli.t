@@ -28,6 +28,7 @@ for tool in "${tools[@]}"; do
     done <"$tmp/options"
     refuses 64 "$tool --help=x" "$tool" --help=x
     status 0 "$tool --version" "$tool" --version
+    is "$tool -V is --version, -h --help" "$("$tool" -V; "$tool" -h)" "$(cat "$tmp/out"; "$tool" --help)"
     like "says the version" "$(cat "$tmp/out")" "^$tool \(nsd\) [0-9]+\.[0-9]+$"
 done
 for tool in "${tools[@]}"; do
@@ -38,6 +39,54 @@ for tool in "${tools[@]}"; do
     done
     refuses 64 "$tool --completion of another shell" "$tool" --completion fish
 done
+while read -r line; do
+    read -r tool option near <<<"$line"
+    refuses 64 "$tool $option" "$tool" "$option" 1
+    like "names the nearest" "$(head -1 "$tmp/err")" "^$tool: ${option%%=*}: no such option${near:+; did you mean $near\\?}\$"
+done <<'END'
+nsd-gen --verison --version
+nsd-step --stpes=3 --steps
+nsd-solve --critreion --criterion
+nsd-cat --strem --stream
+nsd-fit --tiemout --timeout
+nsd-step --foo
+nsd-err --foo
+END
+# names of version 1
+while read -r tool was is; do
+    refuses 64 "$tool --$was" "$tool" "--$was" 1
+    like "names the new one" "$(head -1 "$tmp/err")" "^$tool: --$was: now called --$is\$"
+    is "and does not have the old one" "$("$tool" --help | grep -c -e "--$was[ =]")" 0
+done <<'END'
+nsd-step global solver
+nsd-step method local
+nsd-solve method local
+nsd-step paper protocol=paper
+nsd-step newton-eps newton-tolerance
+nsd-cat steps frames
+nsd-export steps frames
+nsd-info steps frames
+nsd-stat steps frames
+nsd-web steps frames
+nsd-view cut clip
+END
+solve() { nsd-solve "$@" "$tmp/contacts.h5" 2>/dev/null | nsd-cat; }
+while read -r was is; do # scripts that others keep have them
+    ok "nsd-solve --$was is --$is" cmp <(solve "--$was") <(solve "--$is")
+done <<'END'
+global=nlgs solver=nlgs
+overlap=keep overlap-rule=keep
+eps=1e-3 tolerance=1e-3
+END
+refuses 64 "the beginning of several options" nsd-step --max 3
+like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'
+refuses 64 "an argument to an option without one" nsd-step --in-place=3
+like "names the option" "$(head -1 "$tmp/err")" ': --in-place: takes no argument$'
+refuses 64 "an unknown measure" nsd-stat -m energy,sterss "$tmp/heap.h5"
+like "names the nearest" "$(head -1 "$tmp/err")" "no 'sterss'; did you mean stress\\?"
+echo '{"dt": 0.1, "gravity": [0, 0, -9.81], "bodies": [{"x": [0.30000000000000004, 1e-5, -3], "radius": 1e22}]}' | nsd-gen - >"$tmp/digits.h5"
+like "JSON has the fewest digits that are read as the same number" "$(nsd-info -p "$tmp/digits.h5") $(nsd-info "$tmp/digits.h5")" \
+    '"radius":1e\+22,.*"x":\[0.30000000000000004,1e-05,-3.0\].*"dt":0.1,.*"gravity":\[0.0,0.0,-9.81\]'
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)
 mentions() # tool option default
 {
@@ -49,17 +98,17 @@ done <<'END'
 nsd-gen --dim \[3\]
 nsd-detect --gap \[0\]
 nsd-detect --theta 0\.5\]
-nsd-detect --overlap keep|gap|push|project|gap-project.*project\]
+nsd-detect --overlap-rule keep|gap|push|project|gap-project.*project\]
 nsd-detect --fclib local|global
-nsd-solve --method auto|sbp|.*\[auto\]
-nsd-solve --global auto|nlgs|.*\[nlgs with -m
+nsd-solve --local auto|sbp|.*\[auto\]
+nsd-solve --solver auto|nlgs|.*\[nlgs with -m
 nsd-solve --max-seconds .
-nsd-solve --eps \[1; 1e-10 for FCLIB\]
+nsd-solve --tolerance \[1; 1e-10 for FCLIB\]
 nsd-solve --criterion glob|scaled|natural|velocity.*\[velocity; natural for FCLIB\]
 nsd-solve --max-sweeps \[5000
 nsd-solve --alpha \[1\.75
 nsd-solve --newton plain|linesearch.*\[linesearch\]
-nsd-solve --newton-eps \[1e-13\]
+nsd-solve --newton-tolerance \[1e-13\]
 nsd-solve --newton-max \[100\]
 nsd-solve --relax \[1\]
 nsd-solve --order \[natural for nlgs
@@ -74,9 +123,9 @@ nsd-step --every \[1\]
 nsd-step --contacts .
 nsd-step --warm .
 nsd-step --output \[standard output\]
-nsd-info --steps \[all\]
+nsd-info --frames \[all\]
 nsd-info --last .
-nsd-cat --steps \[all\]
+nsd-cat --frames \[all\]
 nsd-cat --last .
 nsd-view --step \[last frame\]
 nsd-view --colour radius|speed|kind|id.*\[radius\]
@@ -89,16 +138,16 @@ END
 
 solve() { nsd-solve "$@" 2>/dev/null; }
 ok "options may stand behind the operands" cmp <(solve -m sbp "$tmp/contacts.h5") <(solve "$tmp/contacts.h5" -m sbp)
-ok "-msbp and --method=sbp are the same" cmp <(solve -msbp "$tmp/contacts.h5") <(solve --method=sbp "$tmp/contacts.h5")
+ok "-msbp and --local=sbp are the same" cmp <(solve -msbp "$tmp/contacts.h5") <(solve --local=sbp "$tmp/contacts.h5")
 ok "the last of two wins" cmp <(solve -m sbp -m eal "$tmp/contacts.h5") <(solve -m eal "$tmp/contacts.h5")
 status 0 "-- ends the options" nsd-info -- "$tmp/heap.h5"
 cp "$tmp/contacts.h5" "$tmp/-e"
 dash() { (cd "$tmp" && nsd-info -- -e); }
 ok "so that a file may be called -e" dash
 
-solve -m eal --max-sweeps 77 --eps 1e-9 "$tmp/contacts.h5" >"$tmp/solved.h5"
+solve -m eal --max-sweeps 77 --tolerance 1e-9 "$tmp/contacts.h5" >"$tmp/solved.h5"
 ok "the document's history has the options given" jq -e -s '.[0].history[-1].options ==
-    {method: "eal", eps: 1e-9, "max-sweeps": 77}' <(nsd-info "$tmp/solved.h5")
+    {local: "eal", tolerance: 1e-9, "max-sweeps": 77}' <(nsd-info "$tmp/solved.h5")
 is "and the command before, and the one before that" \
     "$(nsd-info "$tmp/solved.h5" | jq -c -s '.[0].history | map(.command)')" \
     '["nsd-gen","nsd-step","nsd-detect","nsd-solve"]'
@@ -108,57 +157,57 @@ is "and the command before, and the one before that" \
 status 0 "a problem that converges: 0" nsd-solve -e "$tmp/contacts.h5"
 is "one line on stderr" "$(wc -l <"$tmp/err")" 1
 like "sums it up" "$(cat "$tmp/err")" '^nsd-solve: .*contacts.h5: [0-9]+ contacts, auto: [0-9]+ sweeps, velocity [0-9.e-]+, '
-status 0 "one that does not: 0" nsd-solve --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
+status 0 "one that does not: 0" nsd-solve --tolerance 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
 mv "$tmp/out" "$tmp/lenient.h5"
 like "with a warning" "$(cat "$tmp/err")" 'velocity [0-9.e-]+, [0-9.e-]+ s: NOT CONVERGED to 0.001$'
 for e in -e --strict; do
-    status 1 "and 1 under $e" nsd-solve $e --eps 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
+    status 1 "and 1 under $e" nsd-solve $e --tolerance 1e-3 --max-sweeps 1 "$tmp/contacts.h5"
     like "with a warning" "$(cat "$tmp/err")" 'NOT CONVERGED'
     ok "and the document is written, the same" cmp "$tmp/out" "$tmp/lenient.h5"
 done
 ok "the report has it" jq -e -s '.[-1].converged == false' <(nsd-info "$tmp/lenient.h5")
-status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+status 0 "nsd-step that does not converge: 0" nsd-step -n 3 --tolerance 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 like "with a warning" "$(cat "$tmp/err")" '3 steps NOT CONVERGED, the first is step 601; the largest velocity is [0-9.e-]+, not 0.001'
-status 1 "and 1 under -e" nsd-step -e -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+status 1 "and 1 under -e" nsd-step -e -n 3 --tolerance 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 is "which ends with the first such step" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601]"
-status 1 "and 1 under -e --keep-going" nsd-step -e --keep-going -n 3 --eps 1e-3 --max-sweeps 1 "$tmp/heap.h5"
+status 1 "and 1 under -e --keep-going" nsd-step -e --keep-going -n 3 --tolerance 1e-3 --max-sweeps 1 "$tmp/heap.h5"
 is "and all frames are written" "$(nsd-info "$tmp/out" | jq -c -n '[inputs | select(.step != null).step]')" "[601,602,603]"
 cat "$tmp/contacts.h5" "$tmp/contacts.h5" >"$tmp/two.h5"
 status 0 "nsd-solve -e of two problems" nsd-solve -e "$tmp/two.h5"
 is "one line for both" "$(wc -l <"$tmp/err")" 1
-status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --eps 1e-3 --max-sweeps 1 "$tmp/two.h5"
+status 1 "nsd-solve -e of two problems not converged" nsd-solve -e --tolerance 1e-3 --max-sweeps 1 "$tmp/two.h5"
 is "both are written" "$(nsd-info "$tmp/out" | jq -s '[.[] | select(.frames)] | length')" 2
 
 # ---- defaults, and the paper's: contacts that are found without gaps ----
 
-nsd-detect --overlap keep "$tmp/heap.h5" >"$tmp/keep.h5"
-asked() { nsd-info "$1" | jq -c 'select(.options).options | [.global, .local, .criterion, .eps, .max_sweeps, .order, .relax, .warm]'; }
+nsd-detect --overlap-rule keep "$tmp/heap.h5" >"$tmp/keep.h5"
+asked() { nsd-info "$1" | jq -c 'select(.options).options | [.solver, .local, .criterion, .tolerance, .max_sweeps, .order, .relax, .warm]'; }
 paper='["nlgs","sbp","glob",1e-10,5000,"natural",1,false]'
-solve --paper -m sbp "$tmp/keep.h5" >"$tmp/paper.h5"
-is "--paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
+solve --protocol paper -m sbp "$tmp/keep.h5" >"$tmp/paper.h5"
+is "--protocol paper is the paper's protocol" "$(asked "$tmp/paper.h5")" "$paper"
 is "the report has the method" "$(nsd-info --last "$tmp/paper.h5" | jq -r .method)" sbp
-step -n 1 -m sbp --paper "$tmp/heap.h5" >"$tmp/paper.h5"
+step -n 1 -m sbp --protocol paper "$tmp/heap.h5" >"$tmp/paper.h5"
 is "of nsd-step too" "$(asked "$tmp/paper.h5")" "$paper"
 while read -r want options; do
-    for line in "--paper -m sbp $options" "$options -m sbp --paper"; do
+    for line in "--protocol paper -m sbp $options" "$options -m sbp --protocol paper"; do
         # shellcheck disable=SC2086 # words
         is "nsd-solve $line: what is given wins" "$(solve $line "$tmp/keep.h5" | asked -)" "$want"
     done
 done <<'END'
-["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --eps 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
-["auto","sbp","glob",1e-10,5000,"natural",1,false] --global auto
+["nlgs","sbp","natural",1e-09,7,"colour",1.5,true] --criterion natural --tolerance 1e-9 --max-sweeps 7 --order colour --relax 1.5 --warm
+["auto","sbp","glob",1e-10,5000,"natural",1,false] --solver auto
 END
-for line in "" "-m auto" "--global nlgs"; do
+for line in "" "-m auto" "--solver nlgs"; do
     # shellcheck disable=SC2086 # words
-    refuses 64 "nsd-solve --paper $line" nsd-solve --paper $line --log "$tmp/solve.log" "$tmp/keep.h5"
-    like "needs a method" "$(cat "$tmp/err")" '^nsd-solve: --paper: needs a local method, -m sbp\|sal\|ebp\|eal\|exact'
+    refuses 64 "nsd-solve --protocol paper $line" nsd-solve --protocol paper $line --log "$tmp/solve.log" "$tmp/keep.h5"
+    like "needs a method" "$(cat "$tmp/err")" '^nsd-solve: --protocol paper: needs a local method, -m sbp\|sal\|ebp\|eal\|exact'
     ok "and leaves the log alone" [ ! -e "$tmp/solve.log" ]
 done
-refuses 64 "nsd-step --paper" nsd-step --paper "$tmp/heap.h5"
+refuses 64 "nsd-step --protocol paper" nsd-step --protocol paper "$tmp/heap.h5"
 # What --help has in brackets is what goes: nsd's choice for a packing
 bracket() { nsd-solve --help | tr '\n' ' ' | grep -o -e "--$1 [^]]*\]" | sed 's/.*\[//; s/[];,].*//; s/ for nlgs//; s/ nlgs//'; }
 solve -m sbp "$tmp/contacts.h5" >"$tmp/usual.h5"
-for key in criterion eps max-sweeps order relax newton newton-eps newton-max; do
+for key in criterion tolerance max-sweeps order relax newton newton-tolerance newton-max; do
     is "the default in --help's brackets goes: --$key" "$(nsd-info "$tmp/usual.h5" |
         jq -r "select(.options).options.\"${key/-/_}\"")" "$(bracket $key)"
 done

@@ -12,7 +12,7 @@ misfit()
     jq -s 'map(.balance | ((.change - (.gravity + .loads + .drives - .dissipation)) | fabs) /
         (.kinetic + (.gravity | fabs) + (.loads | fabs) + (.drives | fabs) + (.dissipation | fabs) + 1e-300)) | max' "$1"
 }
-natural() { step -n 3 --contacts --eps 1e-9 --overlap gap "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
+natural() { step -n 3 --contacts --tolerance 1e-9 --overlap-rule gap "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
 state() { nsd-info --last -p "$1" && nsd-info --last -w "$1" && nsd-info --last "$1" | jq -c 'select(.edges) | [.edges, .rates]'; }
 
 # resumes NAME: to the bit, by threads, as a stream, in parts
@@ -25,14 +25,14 @@ resumes()
     step -j 4 -n 20 -o "$tmp/j4.h5" "$tmp/$1.h5"
     ok "$1: 4 threads give the bytes of one" cmp "$tmp/j4.h5" "$tmp/ten.h5"
     if have_ranks; then
-        step --global auto -n 20 -o "$tmp/once.h5" "$tmp/$1.h5"
-        ranks 3 nsd-step --global auto -n 20 -o "$tmp/ranks.h5" "$tmp/$1.h5" >/dev/null 2>&1 || true
+        step --solver auto -n 20 -o "$tmp/once.h5" "$tmp/$1.h5"
+        ranks 3 nsd-step --solver auto -n 20 -o "$tmp/ranks.h5" "$tmp/$1.h5" >/dev/null 2>&1 || true
         ok "$1: 3 processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
     else
         skip "$1: 3 processes give the bytes of one" "no MPI"
     fi
     nsd-cat --last "$tmp/$1.h5" | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/parts.h5"
-    nsd-cat --last "$tmp/$1.h5" | step --global auto -n 1 | cat >"$tmp/whole.h5"
+    nsd-cat --last "$tmp/$1.h5" | step --solver auto -n 1 | cat >"$tmp/whole.h5"
     ok "$1: detect | solve | move and step give the same bits" cmp <(dump "$tmp/parts.h5") <(dump "$tmp/whole.h5")
     is "$1: nsd-err finds the solution that the solver has found" "$(natural "$tmp/$1.h5")" true
 }
@@ -53,7 +53,7 @@ mean()
 }
 for dim in 2 3; do
     mean $dim null 0.01 >"$tmp/start.h5"
-    step -n 1500 --every 50 --overlap gap --contacts --log "$tmp/log" -o "$tmp/mean$dim.h5" "$tmp/start.h5"
+    step -n 1500 --every 50 --overlap-rule gap --contacts --log "$tmp/log" -o "$tmp/mean$dim.h5" "$tmp/start.h5"
     like "dim $dim: energy is balanced while the size yields to a mean stress" "$(misfit "$tmp/log" | jq '. < 1e-13')" true
     nsd-stat -m stress,strain "$tmp/start.h5" "$tmp/mean$dim.h5" >"$tmp/stat"
     like "dim $dim: the shape follows the gradient exactly" \
@@ -65,7 +65,7 @@ done
 # The mean stress is the one asked for, whatever the mass of the edges: over 30 s
 for mass in 0.3 null 20; do
     mean 2 $mass 0.01 >"$tmp/start.h5"
-    step -n 3000 --overlap gap --every 10 --contacts "$tmp/start.h5" |
+    step -n 3000 --overlap-rule gap --every 10 --contacts "$tmp/start.h5" |
         nsd-stat -m stress,fraction | jq -s -c '.[length / 2 | floor:] | [(map(.stress.p) | add / length), (map(.fraction.fraction) | add / length)]' >"$tmp/p"
     ok "mass $mass: the mean stress is 1 to 6 %, and the solid fraction 0.78 to 0.83: $(cat "$tmp/p")" \
         holds '(.[0] - 1 | fabs) < 0.06 and .[1] > 0.78 and .[1] < 0.83' <"$tmp/p"
@@ -94,7 +94,7 @@ is "nsd-info --scene resumes with the wall where it is" "$(nsd-info -w "$tmp/on.
 
 # statics: the balance of the piston, m dv/dt = -F + p A, in the mean of many steps at rest
 jq '.walls[1].velocity = [0, 0, 0] | del(.walls[2].load.mass)' "$tmp/box.json" | nsd-gen - >"$tmp/start.h5"
-step -n 3000 --every 10 --contacts --overlap gap "$tmp/start.h5" | nsd-stat -m boundaries |
+step -n 3000 --every 10 --contacts --overlap-rule gap "$tmp/start.h5" | nsd-stat -m boundaries |
     jq -s '.[150:] | map(.boundaries.force[5][2]) | add / length' >"$tmp/f"
 ok "a piston at rest carries its pressure times its face, 1 N, to 2 %: $(cat "$tmp/f")" holds '(. | fabs) - 1 | fabs < 0.02' <"$tmp/f"
 

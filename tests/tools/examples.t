@@ -40,11 +40,11 @@ ln -s "$repository/scenes" "$tmp/stock/scenes"
     cd "$tmp/stock"
     exec 2>/dev/null
     nsd-gen 500 >a.h5
-    nsd-step --global auto -n 1000 --every 10 --contacts a.h5 >out.h5
+    nsd-step --solver auto -n 1000 --every 10 --contacts a.h5 >out.h5
     nsd-step -n 10 out.h5 >more.h5
     nsd-cat --last out.h5 >packing.h5
     nsd-export -o dump.liggghts --to lammps packing.h5
-    nsd-cat --steps 700 out.h5 | nsd-detect >contacts.h5
+    nsd-cat --frames 700 out.h5 | nsd-detect >contacts.h5
     nsd-solve contacts.h5 >solved.h5
     cp packing.h5 edited.h5
     cp "$repository/cookbook/drum/scene.json" drum.json
@@ -129,7 +129,7 @@ claim()
     # steps
     *'nsd-step'*'--every 100'*'> column.h5') touching column.h5 && converged column.h5 && frames column.h5 "length == $2 / 100" ;;
     *'nsd-step'*'--every 10 > fast.h5') touching fast.h5 && converged fast.h5 && frames fast.h5 "length == $2 / 10" ;;
-    *'nsd-step'*'--paper'*'> half.h5') touching half.h5 && converged half.h5 && settings half.h5 '.options.global == "nlgs"' ;;
+    *'nsd-step'*'--protocol paper'*'> half.h5') touching half.h5 && converged half.h5 && settings half.h5 '.options.solver == "nlgs"' ;;
     *'nsd-step'*'--log run.json'*) [ "$(wc -l <run.json)" = "$2" ] && frames out.h5 "length == $2" ;;
     *'nsd-step'*'--every '*' -o out.h5') touching out.h5 && converged out.h5 ;;
     *'nsd-step -n '*'-o more.h5 out.h5') frames more.h5 "length == $2 and .[0] > 1" && touching more.h5 ;;
@@ -141,7 +141,7 @@ claim()
     'nsd-step'*'--with '*'> leaning.h5') frames leaning.h5 "length == $2" && h5ls leaning.h5/nsd/outside/answer/text ;;
     # contacts
     'nsd-cat --last out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [1000]' ;;
-    'nsd-cat --steps 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
+    'nsd-cat --frames 700 out.h5 | nsd-detect > contacts.h5') touching contacts.h5 && frames contacts.h5 '. == [700]' ;;
     'nsd-info -c contacts.h5 | jq .gap') output "length > 100 and all(. <= 5e-7) and min < 0 and length == $(nsd-info --last contacts.h5 | jq .contacts)" ;;
     *'nsd-detect --gap 1e-4'*'jq .contacts' | 'nsd-info contacts.h5 | jq '*'.contacts'*) output '.[0] > 0' ;;
     'nsd-detect --fclib=local '*'> problem.h5') fclib problem.h5 ;;
@@ -153,9 +153,9 @@ claim()
         output 'length == 1 and .[0] > 0 and .[0] <= 1e-4' ;;
     *'| nsd-err | jq .self_stress') output 'length == 1 and .[0] > 0.001 and .[0] < 0.3' ;;
     'nsd-solve -m eal < contacts.h5 > solved.h5') converged solved.h5 ;;
-    *'nsd-detect --overlap keep > keep.h5') settings keep.h5 '.overlap == "keep"' && touching keep.h5 ;;
-    'nsd-solve --paper'*'> paper.h5')
-        settings paper.h5 '.options | .global == "nlgs" and .order == "natural" and .alpha' && grep -q 'NOT CONVERGED' stderr ;;
+    *'nsd-detect --overlap-rule keep > keep.h5') settings keep.h5 '.overlap_rule == "keep"' && touching keep.h5 ;;
+    'nsd-solve --protocol paper'*'> paper.h5')
+        settings paper.h5 '.options | .solver == "nlgs" and .order == "natural" and .alpha' && grep -q 'NOT CONVERGED' stderr ;;
     'for m in '*) output 'map(.[0]) == ["sbp", "sal", "ebp", "eal", "exact"] and all(.[1] <= 1e-4)' ;;
     *'-m sal --history'*'> curve.tsv') table 3 '' curve.tsv && falls curve.tsv ;;
     'nsd-solve -m sbp --history contacts.h5 | '* | 'nsd-info --history solved.h5 | '*) table 2 && falls ;;
@@ -168,7 +168,7 @@ claim()
         output "length == $2 and (map(.[1]) | max > 0) and all(.[2] <= 1)" ;;
     *'--contacts | nsd-err | '*'[.step, .velocity, .max_overlap]'*) output "length == $2 and all(.[1] <= 1) and (map(.[2]) | max > 0)" ;;
     *'--contacts | nsd-err | jq .velocity') output "length == $2 and all(. <= 1)" ;;
-    'nsd-step --global auto --contacts -n 10 out.h5 | nsd-err') output 'length == 10 and all(.contacts > 0 and .velocity <= 1)' ;;
+    'nsd-step --solver auto --contacts -n 10 out.h5 | nsd-err') output 'length == 10 and all(.contacts > 0 and .velocity <= 1)' ;;
     # what there is in documents
     *'[.step, .contacts, .sweeps, .natural, .max_penetration]'*) table 5 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;
     *'[.step, .sweeps, .natural]'*) table 3 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;
@@ -181,7 +181,7 @@ claim()
     *'map(.r[0]) | max / 5e-5'*) output 'length == 1 and .[0] > 0' ;;
     *'map(.sweeps) | add'*) output '.[0] > 0' ;;
     # copies
-    'nsd-cat --steps 0:1000:100 out.h5 > thin.h5') frames thin.h5 '. == [range(100; 1001; 100)]' ;;
+    'nsd-cat --frames 0:1000:100 out.h5 > thin.h5') frames thin.h5 '. == [range(100; 1001; 100)]' ;;
     'nsd-cat --vtk '*' out.h5 > paraview.h5') frames paraview.h5 'length == 100' && h5ls paraview.h5/VTKHDF | grep -Eq 'Points|surfaces' ;;
     *'nsd-cat --vtk all > bricks.h5') frames bricks.h5 'length == 100' && h5ls bricks.h5/VTKHDF/surfaces/Polygons | grep -q Connectivity ;;
     'nsd-gen --from dump.liggghts '*) bodies out.h5 500 && frames out.h5 'length == 1000' ;;

@@ -138,7 +138,7 @@ if has h5py; then ok "nsd.py reads a trajectory that grows" grows_too; else skip
 other "nsd.py reads a pipe" h5py stream "$tmp/out.h5"
 nsd-cat --last "$tmp/out.h5" | nsd-detect --fclib=local | tail -c +513 >"$tmp/both.hdf5"
 h5copy -i "$tmp/both.hdf5" -o "$tmp/problem.hdf5" -s /fclib_local -d /fclib_local
-nsd-solve --eps 1e-12 "$tmp/problem.hdf5" 2>/dev/null >"$tmp/problem.h5"
+nsd-solve --tolerance 1e-12 "$tmp/problem.hdf5" 2>/dev/null >"$tmp/problem.h5"
 other "nsd.py reads a problem of FCLIB's, and its solution" h5py fclib "$tmp/problem.h5"
 
 # until nsd 0.1 the report was elsewhere
@@ -205,7 +205,7 @@ refuses 64 "many frames in a file of one" nsd-export -o "$tmp/f.vtp" "$tmp/out.h
 refuses 64 "contacts as XYZ" nsd-export --part contacts -o "$tmp/f.xyz" "$tmp/out.h5"
 refuses 64 "contacts as triangles" nsd-export --last --part contacts -o "$tmp/f.stl" "$tmp/out.h5"
 refuses 64 "the input as output" nsd-export --to csv -o "$tmp/out.h5" "$tmp/out.h5"
-refuses 65 "no such step" nsd-export --steps 5000: -o "$tmp/f.csv" "$tmp/out.h5"
+refuses 65 "no such step" nsd-export --frames 5000: -o "$tmp/f.csv" "$tmp/out.h5"
 refuses 65 "a problem without bodies" nsd-export --to csv "$tmp/problem.h5"
 refuses 74 "a directory that cannot be" nsd-export -o "$tmp/no/such/" "$tmp/out.h5"
 refuses 74 "a file that cannot be" nsd-export -o "$tmp/no/such.csv" "$tmp/out.h5"

@@ -9,7 +9,7 @@ stops() # WALLS BODIES PLACE: the ball, from x = 0 with 20 000 m/s and steps of 
 {
     jq -n "{ dt: 1e-3, gravity: [0, 0, 0], shapes: { thin: { box: [0.01, 2, 2] } }, walls: ($1),
         bodies: ([{ x: [0, 0.1, 0.2], radius: 0.01, v: [20000, 0, 0] }] + ($2)) }" >"$tmp/fast.json"
-    nsd-gen "$tmp/fast.json" | nsd-step --global auto -n 5 2>/dev/null | nsd-info --last -p | jq -se --argjson x "$3" '.[0].x[0] < $x and .[0].x[0] > $x - 0.03'
+    nsd-gen "$tmp/fast.json" | nsd-step --solver auto -n 5 2>/dev/null | nsd-info --last -p | jq -se --argjson x "$3" '.[0].x[0] < $x and .[0].x[0] > $x - 0.03'
 }
 for x in 15 15.003 17.2501; do
     printf 'v %s -1 -1\nv %s 1 -1\nv %s 1 1\nv %s -1 1\nf 1 2 3\nf 1 3 4\n' $x $x $x $x >"$tmp/sheet.obj"
@@ -30,8 +30,8 @@ passed() # BODIES [MORE]: how many passed in three steps, and who of them throug
 {
     scene "$@"
     nsd-step --substeps 1 -n 3 --contacts -o "$tmp/passed.h5" "$tmp/pass.h5" 2>"$tmp/err" || true
-    nsd-info --last "$tmp/passed.h5" | jq -r 'select(.account).account.passed.value'
-    sed -n 's/.*worst: .* \([0-9]*\) went through a wall or another body \((\(first \)\?step [^)]*)\).*/\2/p' "$tmp/err"
+    nsd-info --last "$tmp/passed.h5" | jq -r 'select(.account).account.tunnelled.value'
+    sed -n 's/.*worst: .* \([0-9]*\) tunnelled through a wall or another body \((\(first \)\?step [^)]*)\).*/\2/p' "$tmp/err"
 }
 ball='{ x: [0, 0.1, 0.2], radius: 0.01, v: [20000, 0, 0] }'
 is "a ball through a ball at rest" "$(passed "[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]")" $'1\n(step 1, bodies 0 and 1)'
@@ -46,7 +46,7 @@ is "one that goes past is none" "$(passed "[$ball, { x: [15, 0.1, 0.32], radius:
 is "one that ends where it meets, and is a contact there, is none" "$(passed "[$ball, { x: [30, 0.1, 0.2], radius: 0.1 }]")" 0
 is "two that go side by side are none" "$(passed "[$ball, { x: [0, 0.1, 0.25], radius: 0.01, v: [20000, 0, 0] }]")" 0
 is "nor is a ball that is slower than it is thick" "$(passed '[{ x: [0, 0, 0], radius: 0.01, v: [9, 0, 0] }, { x: [0.021, 0, 0], radius: 0.01 }]')" 0
-ok "which the log names" eval "scene '[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]' && nsd-step --substeps 1 -n 1 --log '$tmp/log' '$tmp/pass.h5' >/dev/null 2>&1; jq -e '.passed == 1' '$tmp/log' >/dev/null"
+ok "which the log names" eval "scene '[$ball, { x: [15, 0.1, 0.2], radius: 0.1 }]' && nsd-step --substeps 1 -n 1 --log '$tmp/log' '$tmp/pass.h5' >/dev/null 2>&1; jq -e '.tunnelled == 1' '$tmp/log' >/dev/null"
 
 is "and -e fails" "$(nsd-step --substeps 1 -e -n 1 "$tmp/pass.h5" >/dev/null 2>&1 && echo 0 || echo $?)" 1
 
@@ -58,7 +58,7 @@ is "a ball there" "$(passed "[$ball, { x: [5, 0.1, 0.2], radius: 0.1 }]")" $'1\n
 is "a sheet there that the ball goes past" "$(passed "[{ x: [0, 1.5, 0.2], radius: 0.01, v: [20000, 0, 0] }]" "$sheet")" 0
 scene "[$ball]" "$sheet"
 nsd-step --substeps 1 -n 1 -o "$tmp/one.h5" "$tmp/pass.h5" 2>/dev/null || true
-is "a run that resumes does not count it again" "$(nsd-step --substeps 1 -n 2 "$tmp/one.h5" 2>&1 >/dev/null | grep -o '[0-9]* went through a wall or another body' | sort -u)" '0 went through a wall or another body'
+is "a run that resumes does not count it again" "$(nsd-step --substeps 1 -n 2 "$tmp/one.h5" 2>&1 >/dev/null | grep -o '[0-9]* tunnelled through a wall or another body' | sort -u)" '0 tunnelled through a wall or another body'
 
 # Many, in a cell that is sheared: the count by all pairs and images is the one that is found
 awk 'BEGIN { srand(7); for (i = 0; i < 300; i++) print rand(), rand(), rand(), 0.008 + 0.008 * rand(), i % 3 ? 0 : 800 * (rand() - 0.5), 800 * (rand() - 0.5), 800 * (rand() - 0.5) }' |
@@ -66,7 +66,7 @@ awk 'BEGIN { srand(7); for (i = 0; i < 300; i++) print rand(), rand(), rand(), 0
         bodies: [split("\n")[] | select(length > 0) | split(" ") | map(tonumber) | { x: .[0:3], radius: .[3], v: .[4:7] }] }' | nsd-gen - >"$tmp/many.h5"
 nsd-step --substeps 1 -n 1 --contacts -o "$tmp/many_run.h5" "$tmp/many.h5" 2>/dev/null || true
 nsd-info -p --last "$tmp/many_run.h5" | jq -r 'select(.id != null) | [.id, .radius, .x[], .v[]] | @tsv' >"$tmp/many.tsv"
-found=$(nsd-info --last "$tmp/many_run.h5" | jq 'select(.account).account.passed.value')
+found=$(nsd-info --last "$tmp/many_run.h5" | jq 'select(.account).account.tunnelled.value')
 pairs() # FILE BACK LENGTH TILT: of id, radius, x, v; from x - v BACK by v LENGTH, with the second edge tilted by TILT
 {
     awk -v back="$2" -v len="$3" -v tilt="$4" '{ r[NR] = $2; for (k = 0; k < 3; k++) { x[NR, k] = $(3 + k); v[NR, k] = $(6 + k) } }
@@ -87,7 +87,7 @@ if have_ranks; then
     ranks 3 nsd-step --substeps 1 -n 3 --contacts -o "$tmp/many_ranks.h5" "$tmp/many.h5" 2>/dev/null || true
     ok "3 processes write the bytes of one" cmp "$tmp/many_ranks.h5" "$tmp/many_three.h5"
     ranks 3 nsd-step --substeps 1 --order block -n 1 -o "$tmp/many_blocks.h5" "$tmp/many.h5" 2>/dev/null || true
-    is "and in blocks count as many" "$(nsd-info --last "$tmp/many_blocks.h5" | jq 'select(.account).account.passed.value')" "$found"
+    is "and in blocks count as many" "$(nsd-info --last "$tmp/many_blocks.h5" | jq 'select(.account).account.tunnelled.value')" "$found"
 else
     skip "3 processes write the bytes of one" "no MPI"
 fi

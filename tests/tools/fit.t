@@ -56,7 +56,16 @@ like "targets out of reach" "$(cat far.out)" 'no parameters in their ranges reac
 # ---- the same table: after kills, for other numbers of processes ----
 
 nsd-fit --quiet -j 1 -n 34 -o once known.json >once.out 2>&1 || true
-for _ in 1 2 3; do timeout -s KILL 1.5 nsd-fit --quiet -j 3 -n 34 -o killed known.json >/dev/null 2>&1 || true; done
+killed_at() # LINES: a run that is killed as soon as its table has so many
+{
+    nsd-fit --quiet -j 3 -n 34 -o killed known.json >/dev/null 2>&1 &
+    local pid=$!
+    until { [ -e killed/table.tsv ] && [ "$(wc -l <killed/table.tsv)" -ge "$1" ]; } || ! kill -0 $pid 2>/dev/null; do sleep 0.02; done
+    kill -KILL $pid 2>/dev/null || true
+    wait $pid 2>/dev/null || true
+}
+for lines in 3 9 20; do killed_at $lines; done
+ok "runs are killed before they end" [ "$(wc -l <killed/table.tsv)" -lt 34 ]
 printf '7\t' >>killed/table.tsv # a line that was being written
 nsd-fit --quiet -j 2 -n 34 -o killed known.json >killed.out 2>&1 || true
 ok "after kills" cmp once/table.tsv killed/table.tsv
@@ -80,7 +89,7 @@ cat >slide.json <<'EOF'
 { "scene": { "dim": 2, "dt": 1e-3, "mu": 0.3, "seed": 1, "walls": [{ "point": [0, 0], "normal": [0, 1] }],
              "bodies": [{ "x": [0, 0.01], "radius": 0.01, "v": [1, 0] }] },
   "parameters": { "mu": { "keys": "mu", "range": [0.05, 0.6] } },
-  "command": "nsd-gen - | nsd-step -n 50 -j 1 --overlap keep | nsd-cat --last | nsd-info --particles - | jq -s '{v: .[-1].v[0]}'",
+  "command": "nsd-gen - | nsd-step -n 50 -j 1 --overlap-rule keep | nsd-cat --last | nsd-info --particles - | jq -s '{v: .[-1].v[0]}'",
   "targets": { "v": { "value": 0.901855, "error": 1e-3 } } }
 EOF
 nsd-fit --quiet slide.json >slide.out 2>&1 || true # v = 1 - mu g t: 0.2

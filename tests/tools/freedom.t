@@ -41,7 +41,7 @@ is "the balances are in the document, and nsd-info shows them" \
 
 nsd-cat --last "$tmp/pressed.h5" >"$tmp/last.h5"
 nsd-detect "$tmp/last.h5" | solve | nsd-move >"$tmp/parts.h5"
-step --global auto -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
+step --solver auto -n 1 "$tmp/last.h5" | cat >"$tmp/whole.h5"
 for group in /particles /observables; do
     ok "detect | solve | move and step give the same bits of $group" \
         cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/whole.h5" $group)
@@ -66,21 +66,21 @@ step -n 5 -o "$tmp/trajectory.h5" "$tmp/last.h5"
 ok "a stream and a trajectory hold the same loads" \
     cmp <(nsd-info -w "$tmp/stream.h5") <(nsd-info -w "$tmp/trajectory.h5")
 
-natural() { step -n 3 --contacts --eps 1e-9 "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
+natural() { step -n 3 --contacts --tolerance 1e-9 "$@" | nsd-err | jq -s 'map(.natural) | max < 2e-9'; }
 is "nsd-err finds what the solver has found" "$(natural "$tmp/last.h5")" true
 like "after a solve without a step, too" \
-    "$(nsd-detect "$tmp/last.h5" | solve --eps 1e-9 | nsd-err | jq '.natural < 2e-9')" true
+    "$(nsd-detect "$tmp/last.h5" | solve --tolerance 1e-9 | nsd-err | jq '.natural < 2e-9')" true
 
 # The problem alone, as FCLIB has it: both forms have the solution of the packing.
-nsd-detect "$tmp/last.h5" | solve --eps 1e-12 | nsd-move | nsd-info -w | jq -c 'select(.load).load.speed' >"$tmp/speed"
-nsd-detect "$tmp/last.h5" | solve --eps 1e-12 | nsd-info -c | jq -s 'map(select(.body[0] == -6).r[0])' >"$tmp/pushes"
+nsd-detect "$tmp/last.h5" | solve --tolerance 1e-12 | nsd-move | nsd-info -w | jq -c 'select(.load).load.speed' >"$tmp/speed"
+nsd-detect "$tmp/last.h5" | solve --tolerance 1e-12 | nsd-info -c | jq -s 'map(select(.body[0] == -6).r[0])' >"$tmp/pushes"
 on_piston=$(jq length "$tmp/pushes")
 jq add "$tmp/pushes" >"$tmp/push"
 for form in local global; do
     nsd-detect --fclib=$form "$tmp/last.h5" >"$tmp/both.h5"
     rm -f "$tmp/alone.h5"
     h5copy -i "$tmp/both.h5" -o "$tmp/alone.h5" -s /fclib_$form -d /fclib_$form
-    solve --eps 1e-12 "$tmp/alone.h5" >"$tmp/solved.h5"
+    solve --tolerance 1e-12 "$tmp/alone.h5" >"$tmp/solved.h5"
     pushed=$(nsd-info -c "$tmp/solved.h5" | jq -s "map(.r[0])[:$on_piston] | add")
     like "--fclib=$form: the same push at the piston" \
         "$(jq -n "$(cat "$tmp/push") / $pushed - 1 | fabs < 1e-6")" true
@@ -109,17 +109,17 @@ step -n $((2 * steps)) --every 100 --contacts --log "$tmp/cell.log" -o "$tmp/squ
 like "energy is balanced in a cell under pressure and shear stress" "$(misfit "$tmp/cell.log" | jq '. < 1e-13')" true
 nsd-cat --last "$tmp/squeezed.h5" >"$tmp/last-cell.h5"
 nsd-detect "$tmp/last-cell.h5" | solve | nsd-move >"$tmp/parts.h5"
-step --global auto -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
+step --solver auto -n 1 "$tmp/last-cell.h5" | cat >"$tmp/whole.h5"
 ok "detect | solve | move and step give the same bits" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 step -j 4 -n 20 "$tmp/last-cell.h5" >"$tmp/j4.h5"
 step -j 1 -n 20 "$tmp/last-cell.h5" >"$tmp/j1.h5"
 ok "-j 4 gives the same bytes" cmp "$tmp/j4.h5" "$tmp/j1.h5"
 # a projection displaces edges, which nsd-err does not undo; without gravity it also keeps a packing rattling
-is "and nsd-err agrees" "$(natural --overlap gap "$tmp/squeezed.h5")" true
+is "and nsd-err agrees" "$(natural --overlap-rule gap "$tmp/squeezed.h5")" true
 
 # Love's formula: the mean stress of a packing at rest is that of the forces and branches over its volume.
 jq '.cell.stress = {pressure: 20, mass: 0.02} | .bodies[0].count = 81' "$tmp/cell.json" | nsd-gen - |
-    step --overlap gap -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
+    step --overlap-rule gap -n 3000 --every 3000 --contacts -o "$tmp/rest.h5"
 pressure()
 {
     local area
@@ -132,7 +132,7 @@ like "a pressure of 20 N/m is found again in the contacts" "$(pressure "$tmp/res
 # ---- drives: a wall with a velocity, a drum of sorts ----
 
 for scene in piston slope column; do
-    nsd-gen scenes/$scene.json | step --global auto -n 200 --every 200 --log "$tmp/$scene.log" -o "$tmp/drive.h5"
+    nsd-gen scenes/$scene.json | step --solver auto -n 200 --every 200 --log "$tmp/$scene.log" -o "$tmp/drive.h5"
     like "scenes/$scene.json: energy is balanced" "$(misfit "$tmp/$scene.log" | jq '. < 1e-13')" true
 done
 like "the wall of scenes/piston.json works" "$(jq -s 'map(.balance.drives) | add > 1e-8' "$tmp/piston.log")" true
@@ -141,9 +141,9 @@ like "and only what rubs or hits dissipates" "$(jq -s 'map(.balance.dissipation)
 # ---- a wall driven into a jammed packing ----
 
 jq '.walls[1] |= (del(.load) | .velocity = [0, 0, -0.2])' scenes/press.json | nsd-gen - |
-    step --overlap keep --substeps 1 -n 165 --every 165 -o "$tmp/jam.h5" || true
+    step --overlap-rule keep --substeps 1 -n 165 --every 165 -o "$tmp/jam.h5" || true
 status 1 "a wall driven into a jammed packing makes all steps, and ends with 1" \
-    timeout 120 nsd-step --overlap keep --substeps 1 -n 3 --log "$tmp/jam.log" -o "$tmp/jam2.h5" "$tmp/jam.h5"
+    timeout 120 nsd-step --overlap-rule keep --substeps 1 -n 3 --log "$tmp/jam.log" -o "$tmp/jam2.h5" "$tmp/jam.h5"
 like "each step ends by the limit of the sweeps" "$(jq -s 'map(.sweeps) | max <= 20000' "$tmp/jam.log")" true
 like "is not converged" "$(jq -s 'map(.converged) | any | not' "$tmp/jam.log")" true
 like "and says how fast bodies still approach" "$(cat "$tmp/err")" 'reactions grow without end, and bodies still approach at up to 0\.[0-9]+ m/s'
@@ -191,9 +191,9 @@ fi
 # ---- too large, and bad scenes ----
 
 jq '.bodies[0] = {count: 160000, radius: 5e-4, spacing: 1, jitter: 0, box: {x: [0, 0.4], y: [0, 0.4], z: [0, 1e-3]}} |
-    .overlap = true | .walls = [{point: [0, 0, 1e-3], normal: [0, 0, -1], load: {along: [0, 0, 1], mass: 1}}]' \
+    .allow_overlap = true | .walls = [{point: [0, 0, 1e-3], normal: [0, 0, -1], load: {along: [0, 0, 1], mass: 1}}]' \
     scenes/press.json | nsd-gen - >"$tmp/many.h5"
-refuses 70 "a piston on 160000 balls is too much" nsd-step --global auto -n 1 -o "$tmp/never.h5" "$tmp/many.h5"
+refuses 70 "a piston on 160000 balls is too much" nsd-step --solver auto -n 1 -o "$tmp/never.h5" "$tmp/many.h5"
 like "and why is said" "$(cat "$tmp/err")" 'the loads couple [0-9.e+]+ pairs of contacts: needs [0-9.e+]+ GB, the machine has'
 
 bad() # "what is true" FILTER REGEX

@@ -61,7 +61,7 @@ chain()
     for _ in 1 2 3 4 5 6 7 8; do
         nsd-detect chain.h5 | nsd-solve 2>/dev/null | nsd-move >next.h5 && mv next.h5 chain.h5 || return
     done
-    nsd-step --global auto -n 8 first.h5 2>/dev/null >eight.h5
+    nsd-step --solver auto -n 8 first.h5 2>/dev/null >eight.h5
     same_last chain.h5 eight.h5
 }
 ok "nsd-detect | nsd-solve | nsd-move is a step of a pour, too" chain
@@ -132,7 +132,7 @@ ok "jq changes what it likes: friction, gravity, the walls, bodies at rest and o
 ok "any frame may be taken, also counted from the end" \
     eval 'nsd-gen - <<<"{\"dt\": 1e-4, \"bodies\": [{\"document\": \"piston.h5\", \"frame\": 9}]}" >nine.h5 &&
         nsd-gen - <<<"{\"dt\": 1e-4, \"bodies\": [{\"document\": \"piston.h5\", \"frame\": -41}]}" >ninth.h5 &&
-        cmp <(particles nine.h5) <(particles ninth.h5) && cmp <(particles nine.h5) <(particles --steps 10 piston.h5)'
+        cmp <(particles nine.h5) <(particles ninth.h5) && cmp <(particles nine.h5) <(particles --frames 10 piston.h5)'
 refuses 65 "a frame has to be there" nsd-gen - <<<'{"dt": 1, "bodies": [{"document": "piston.h5", "frame": 50}]}'
 refuses 66 "and the document" nsd-gen - <<<'{"dt": 1, "bodies": [{"document": "none.h5"}]}'
 refuses 65 "a kind that the scene does not name" eval \
@@ -281,7 +281,7 @@ refuses 74 "a second writer is refused" nsd-step -i raced.h5
 kill -9 $runs || true
 wait $runs 2>/dev/null || true
 ok "killed, it has left whole frames, the old ones among them" \
-    eval 'every_frame raced.h5 "length > 12 and .[9].step == 100 and .[10].step == 200" && cmp <(nsd-info -p --steps 100 raced.h5) <(nsd-info -p --last base.h5)'
+    eval 'every_frame raced.h5 "length > 12 and .[9].step == 100 and .[10].step == 200" && cmp <(nsd-info -p --frames 100 raced.h5) <(nsd-info -p --last base.h5)'
 ok "and it goes on" eval 'nsd-step -n 10 -i raced.h5 2>/dev/null && nsd-info raced.h5 >/dev/null'
 
 # Killed at any moment: while it copies, as it takes the place, as it grows

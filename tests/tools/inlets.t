@@ -37,8 +37,8 @@ ok "4 threads give the bytes of one" cmp "$tmp/j4.h5" "$tmp/out.h5"
 step -n 400 --every 40 "$tmp/rain.h5" | nsd-cat >"$tmp/stream.h5"
 ok "a stream packed is the trajectory, byte for byte" cmp "$tmp/stream.h5" "$tmp/out.h5"
 if have_ranks; then
-    step --global auto -n 400 --every 40 -o "$tmp/once.h5" "$tmp/rain.h5"
-    ranks 3 nsd-step --global auto -n 400 --every 40 -o "$tmp/ranks.h5" "$tmp/rain.h5" >/dev/null 2>&1 || true
+    step --solver auto -n 400 --every 40 -o "$tmp/once.h5" "$tmp/rain.h5"
+    ranks 3 nsd-step --solver auto -n 400 --every 40 -o "$tmp/ranks.h5" "$tmp/rain.h5" >/dev/null 2>&1 || true
     ok "3 processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
 else
     skip "3 processes give the bytes of one" "no MPI"
@@ -108,8 +108,8 @@ done
 step -j 4 -n 420 --every 20 -o "$tmp/named_j4.h5" "$tmp/named.h5"
 ok "4 threads give the bytes of one, names too" cmp "$tmp/named_j4.h5" "$tmp/named_run.h5"
 if have_ranks; then
-    step --global auto -n 420 --every 20 -o "$tmp/named_once.h5" "$tmp/named.h5"
-    ranks 3 nsd-step --global auto -n 420 --every 20 -o "$tmp/named_ranks.h5" "$tmp/named.h5" >/dev/null 2>&1 || true
+    step --solver auto -n 420 --every 20 -o "$tmp/named_once.h5" "$tmp/named.h5"
+    ranks 3 nsd-step --solver auto -n 420 --every 20 -o "$tmp/named_ranks.h5" "$tmp/named.h5" >/dev/null 2>&1 || true
     ok "3 processes give the bytes of one, names too" cmp "$tmp/named_ranks.h5" "$tmp/named_once.h5"
 else
     skip "3 processes give the bytes of one, names too" "no MPI"

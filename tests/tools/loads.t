@@ -16,12 +16,12 @@ every_way() # SCENE: the same bytes by threads, ranks, in pieces, and step by st
     nsd-info -p "$tmp/way4.h5" | cmp - "$tmp/way1" || return 1
     step -n 20 --every 20 -o "$tmp/piece.h5" "$tmp/way.h5" && step -n 20 --every 20 --in-place "$tmp/piece.h5" || return 1
     nsd-info -p "$tmp/piece.h5" | cmp - "$tmp/way1" || return 1
-    step --global auto -n 3 "$tmp/way.h5" | nsd-info --last -p >"$tmp/three"
+    step --solver auto -n 3 "$tmp/way.h5" | nsd-info --last -p >"$tmp/three"
     nsd-detect "$tmp/way.h5" | nsd-solve 2>/dev/null | nsd-move | nsd-detect | nsd-solve 2>/dev/null | nsd-move |
         nsd-detect | nsd-solve 2>/dev/null | nsd-move | nsd-info -p | cmp - "$tmp/three" || return 1
     have_ranks || return 0
-    step --global auto -n 40 --every 20 -o "$tmp/way1.h5" "$tmp/way.h5"
-    ranks 2 nsd-step --global auto -j 1 -n 40 --every 20 -o "$tmp/way2.h5" "$tmp/way.h5" 2>/dev/null
+    step --solver auto -n 40 --every 20 -o "$tmp/way1.h5" "$tmp/way.h5"
+    ranks 2 nsd-step --solver auto -j 1 -n 40 --every 20 -o "$tmp/way2.h5" "$tmp/way.h5" 2>/dev/null
     cmp <(nsd-info -p "$tmp/way2.h5") <(nsd-info -p "$tmp/way1.h5")
 }
 
@@ -34,7 +34,7 @@ block() # ANGLE V0: gravity is turned by the angle
         shapes: { block: { polygon: [[-1, -0.5], [1, -0.5], [1, 0.5], [-1, 0.5]] } },
         bodies: [{ x: [0, 0.05], shape: "block", size: 0.1, v: [$v, 0] }] }'
 }
-block 0.5354 0 | nsd-gen - | step --global auto -n 400 --every 400 >"$tmp/block.h5" # tan^-1 0.6 = 0.5404
+block 0.5354 0 | nsd-gen - | step --solver auto -n 400 --every 400 >"$tmp/block.h5" # tan^-1 0.6 = 0.5404
 ok "below tan^-1 mu_s a block stays" near "$(last "$tmp/block.h5" '.[0].x[0]')" 0 1e-7
 block 0.5454 0 | nsd-gen - | step -n 500 --every 500 >"$tmp/block.h5"
 # g (sin a - mu_s cos a) up to v_s, then g (sin a - mu cos a)
@@ -102,7 +102,7 @@ ok "a part with a belt: v = mu g t" near "$(nsd-gen "$tmp/moved.json" | step -n 
 # a seam between two materials is no step: a ball rolls over it as over one surface
 strip '[{ "faces": [8, 15], "kind": "wall" }]'
 roll() { jq '.bodies = [{ x: [3.5, 0.3, 0.05], radius: 0.05, v: [1, 0, 0], w: [0, 20, 0] }]' "$1" >"$tmp/roll.json" && nsd-gen "$tmp/roll.json" |
-    step --global auto -n 900 --every 900 | nsd-info -p | jq -c '[.x[0], .v[2]] | map(. * 1e6 | round | fabs)'; }
+    step --solver auto -n 900 --every 900 | nsd-info -p | jq -c '[.x[0], .v[2]] | map(. * 1e6 | round | fabs)'; }
 is "a ball rolls over the seam" "$(roll "$tmp/strip.json")" '[4400000,0]'
 strip '[{ "faces": [16, 16] }]' && cp "$tmp/strip.json" "$tmp/refused.json"
 ok "a face that is not there" says . 'no face 16: the surface has 16'
@@ -134,7 +134,7 @@ speeds() { nsd-gen <(jq -n "$meet | $1") | step "${@:2}" | nsd-info --last -p | 
 is "inert grains go through one another, across the border of a cell, too" "$(speeds . -n 100)" '[1,-1,-1,1]'
 is "without the key they rebound" "$(speeds 'del(.pairs)' -n 100 | jq -c 'map(. * 1000 | round) | .[:2]')" '[-500,500]'
 is "and fast ones are neither stopped on their ways nor said to go through" \
-    "$(nsd-gen <(jq -n "$meet | .bodies[].v[0] *= 90") | nsd-step -n 3 --log "$tmp/fast.log" 2>"$tmp/err" | nsd-info --last -p | jq -sc 'map(.v[0])') $(grep -c 'NOT\|[1-9][0-9]* went through' "$tmp/err" || true)" '[90,-90,-90,90] 0'
+    "$(nsd-gen <(jq -n "$meet | .bodies[].v[0] *= 90") | nsd-step -n 3 --log "$tmp/fast.log" 2>"$tmp/err" | nsd-info --last -p | jq -sc 'map(.v[0])') $(grep -c 'NOT\|[1-9][0-9]* tunnelled through' "$tmp/err" || true)" '[90,-90,-90,90] 0'
 is "a kind may be inert to itself" "$(speeds '.pairs = [{ pair: ["a", "a"], acts: false }] | .bodies[].kind = "a"' -n 100)" '[1,-1,-1,1]'
 is "bodies of an inert pair may overlap at the start" "$(nsd-gen <(jq -n "$meet | .bodies[1].x[0] = 1.1") | nsd-detect | nsd-info | jq -s 'map(.contacts | select(. != null))' | jq -c .)" '[0]'
 jq -n "$net"' | del(.shapes) | .seed = 4 | .walls += [{ box: { x: [-1, 1], y: [-1, 1], z: [-2, null] }, kind: "wall" }] |

@@ -76,13 +76,13 @@ is "whole documents" "$(nsd-info "$tmp/documents" | jq -sc 'map(select(.step != 
 
 jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },
     { point: [0, 0, 0.1], normal: [0, 0, -1], name: "lid" }, { point: [9, 0, 0], normal: [-1, 0, 0], name: "lid" }] }' | nsd-gen - >"$tmp/press.h5"
-status 1 "a lid that a program drives down" nsd-step --global auto -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {boundaries: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
+status 1 "a lid that a program drives down" nsd-step --solver auto -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {boundaries: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
     --with-boundaries lid -o "$tmp/pressed.h5" "$tmp/press.h5"
 is "it is told whether the step before has converged" "$(jq -c .converged "$tmp/told" | paste -sd ' ')" "null true true false"
 is "and the account, with names" "$(jq -c '.account.unconverged | [.value, .step, .bodies[1], .fails]' "$tmp/told" | paste -sd ' ')" \
     "[null,null,null,null] [0,0,null,false] [0,0,null,false] [1,3,0,true]"
 is "a name is each wall that has it" "$(nsd-info -w --last "$tmp/pressed.h5" | jq -c .velocity | paste -sd ' ')" "[0,0,0] [0,0,-0.1] [0,0,-0.1]"
-status 1 "--replay knows the name, too" nsd-step --global auto -n 4 --replay "$tmp/pressed.h5" -o "$tmp/again.h5" "$tmp/press.h5"
+status 1 "--replay knows the name, too" nsd-step --solver auto -n 4 --replay "$tmp/pressed.h5" -o "$tmp/again.h5" "$tmp/press.h5"
 ok "and gives the same bodies and walls" cmp <(nsd-info -p -w "$tmp/pressed.h5") <(nsd-info -p -w "$tmp/again.h5")
 
 # ---- stop, and failures: whole frames, and the step by its name ----
@@ -236,7 +236,7 @@ EOT
     forged '["{\"step\":1,\"answer\":[]}"]' 'line 1 is not a step above 0 and an answer'
     forged '["{\"step\":1,\"answer\":{}"]' 'line 1 is not a step above 0 and an answer'
     forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"gravity\":3}}"]' "line 2: the answer.s gravity is a vector"
-    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"force\":{}}}"]' "line 2: the answer has no .force."
+    forged '["{\"step\":1,\"answer\":{}}", "{\"step\":30,\"answer\":{\"force\":{}}}"]' "line 2: the answer has no .force.; did you mean .forces..: it has"
     forged '["{\"step\":1,\"answer\":{\"gravity\":[" + "[]," * 500000 + "0]}}"]' 'an answer of [0-9]+ bytes: [0-9]+ are allowed'
 else
     skip "answers that are forged" "no h5py"

@@ -12,9 +12,9 @@ says() { like "$1" "$(cat err)" "$2"; }
 walls='"walls": [{"box": {"x": [0, 1], "y": [0, 1], "z": [0, null]}}, {"point": [0, 0, 0.3], "normal": [0, 0, 1]}]'
 ball='{"x": [0.5, 0.5, 0.2], "radius": 0.1}' above='{"x": [0.5, 0.5, 0.3], "radius": 0.1}'
 refuses 65 "a body in a wall" gen "{\"dt\": 1, $walls, \"bodies\": [$ball]}"
-says "has its place in the scene, and the wall's" 'body 0 is 0.2 m deep in wall 5 \(bodies\[0\], walls\[1\]; "overlap": true allows it\)'
+says "has its place in the scene, and the wall's" 'body 0 is 0.2 m deep in wall 5 \(bodies\[0\], walls\[1\]; "allow_overlap": true allows it\)'
 refuses 65 "bodies of two groups" gen "{\"dt\": 1, \"bodies\": [$ball, $above]}"
-says "have theirs" 'bodies 0 and 1 overlap by 0.1 m \(bodies\[0\], bodies\[1\]; "overlap": true allows it\)'
+says "have theirs" 'bodies 0 and 1 overlap by 0.1 m \(bodies\[0\], bodies\[1\]; "allow_overlap": true allows it\)'
 refuses 65 "a wall that the cell repeats across" gen '{"dt": 1, "cell": {"lengths": [1, 1, 1]}, "bodies": [],
     "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]}'
 says "is named by its place" 'walls\[0\]: wall 0: crosses a periodic edge of the cell'
@@ -51,15 +51,15 @@ ok "and from the scene's" eval 'jq ".bodies[0].document = \"five.h5\"" sub/five.
 
 # ---- streams ----
 
-nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --steps 401: --stream >stream.h5
+nsd-gen 50 | nsd-step -n 450 2>/dev/null | nsd-cat --frames 401: --stream >stream.h5
 nsd-detect stream.h5 | nsd-solve 2>said >/dev/null
 is "a stream of 50 documents has one line" "$(wc -l <said)" 1
 like "with its sums" "$(cat said)" '^nsd-solve: 50 documents, [0-9]+ contacts, [0-9]+ sweeps, largest [a-z]+ [0-9.e-]+, [0-9.e-]+ s$'
 nsd-detect stream.h5 | nsd-solve -v 2>said >/dev/null
 is "with -v all have" "$(wc -l <said)" 51
-nsd-detect stream.h5 | nsd-solve --global nlgs --max-sweeps 2 2>said >/dev/null
+nsd-detect stream.h5 | nsd-solve --solver nlgs --max-sweeps 2 2>said >/dev/null
 is "those that did not converge have one" "$(grep -c ': NOT CONVERGED to' said)" "$(tail -n 1 said | sed -n 's/.*: \([0-9]*\) NOT CONVERGED$/\1/p')"
-status 1 "and the exit status, with -e" eval 'nsd-detect stream.h5 | nsd-solve -e --global nlgs --max-sweeps 2'
+status 1 "and the exit status, with -e" eval 'nsd-detect stream.h5 | nsd-solve -e --solver nlgs --max-sweeps 2'
 
 # ---- terminals ----
 

@@ -31,13 +31,13 @@ py -c '
 import json, random
 random.seed(6)
 print(json.dumps({ "dt": 1, "kinds": { "a": {}, "b": {} }, "gravity": [0, 0, -1],
-    "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 0.01, "kind": random.choice("ab") } for _ in range(4000)], "overlap": True }))' |
+    "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 0.01, "kind": random.choice("ab") } for _ in range(4000)], "allow_overlap": True }))' |
     nsd-gen - >"$tmp/random.h5"
 ok "at random: 1" truth at_random "$tmp/random.h5"
 py -c '
 import json, random
 random.seed(7)
-print(json.dumps({ "dim": 2, "dt": 1, "kinds": { "a": {}, "b": {}, "c": {} }, "gravity": [0, -1], "overlap": True,
+print(json.dumps({ "dim": 2, "dt": 1, "kinds": { "a": {}, "b": {}, "c": {} }, "gravity": [0, -1], "allow_overlap": True,
     "cell": { "edges": [[10, 0], [3, 8]] },
     "bodies": [{ "x": [9 * random.random(), 7 * random.random()], "radius": random.choice([0.1, 0.2, 0.25]),
         "kind": random.choice("aab") } for _ in range(300)] }))' | nsd-gen - >"$tmp/oblique.h5"
@@ -100,7 +100,7 @@ L = [[0.1, 2, 0], [0.3, -0.2, 0.5], [0, 1, 0.4]]
 def body():
     x = [random.random() for _ in "xyz"]
     return { "x": x, "radius": random.choice([0.02, 0.05]), "v": [3 + sum(a * b for a, b in zip(row, x)) for row in L] }
-print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "overlap": True, "bodies": [body() for _ in range(800)] }))' | nsd-gen - >"$tmp/affine.h5"
+print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "allow_overlap": True, "bodies": [body() for _ in range(800)] }))' | nsd-gen - >"$tmp/affine.h5"
 ok "an affine flow of bodies at random: the exact gradient, no temperature" truth affine "$tmp/affine.h5" "$tmp/affine-fields.h5"
 py -c '
 import json, random
@@ -108,7 +108,7 @@ random.seed(10)
 def body():
     x = [random.random() for _ in "xyz"]
     return { "x": x, "radius": 0.02, "v": [4 * x[1] + random.gauss(0, 0.5), random.gauss(0, 0.5), random.gauss(0, 0.5)] }
-print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "overlap": True, "bodies": [body() for _ in range(6000)] }))' | nsd-gen - >"$tmp/thermal.h5"
+print(json.dumps({ "dt": 1, "gravity": [0, 0, 0], "allow_overlap": True, "bodies": [body() for _ in range(6000)] }))' | nsd-gen - >"$tmp/thermal.h5"
 ok "velocities at random in a shear: their variance" truth thermal "$tmp/thermal.h5" "$tmp/thermal-fields.h5" 0.5
 py -c '
 import json, random

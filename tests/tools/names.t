@@ -112,13 +112,13 @@ refuses 65 "a document with an FCLIB problem too" nsd-info -c --only NOSUCH "$tm
 refuses 64 "--only with --scene" nsd-info --scene -p --only side "$tmp/run.h5"
 
 if have_ranks; then
-    step --global auto -n 4 --contacts -o "$tmp/once.h5" "$tmp/start.h5"
-    ranks 2 nsd-step --global auto -n 4 --contacts -o "$tmp/ranks.h5" "$tmp/start.h5" 2>/dev/null
+    step --solver auto -n 4 --contacts -o "$tmp/once.h5" "$tmp/start.h5"
+    ranks 2 nsd-step --solver auto -n 4 --contacts -o "$tmp/ranks.h5" "$tmp/start.h5" 2>/dev/null
     ok "two processes write the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
 else
     skip "two processes write the bytes of one" "no MPI"
 fi
-like "messages have them" "$(jq '.bodies = [{ x: [-1.95, 0, 3], radius: 0.1, v: [-50, 0, 0] }] | .overlap = true' "$tmp/scene.json" | nsd-gen - | nsd-step -n 3 2>&1 >/dev/null)" 'wall 1 \(side\)'
+like "messages have them" "$(jq '.bodies = [{ x: [-1.95, 0, 3], radius: 0.1, v: [-50, 0, 0] }] | .allow_overlap = true' "$tmp/scene.json" | nsd-gen - | nsd-step -n 3 2>&1 >/dev/null)" 'wall 1 \(side\)'
 jq -n '{ dim: 2, dt: 1e-3, walls: [{ polygon: { points: [[0, 0], [1, 0], [1, 1]], closed: false, parts: [{ name: "slab", faces: [0, 0] }, { name: "slab", faces: [1, 1] }] } }] }' |
     nsd-gen - >"$tmp/plane.h5"
 is "ranges of faces in the scene, which join" "$(nsd-info -w "$tmp/plane.h5" | jq -c .parts)" '{"slab":[[0,1]]}'

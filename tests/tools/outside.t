@@ -55,7 +55,7 @@ locale.setlocale(locale.LC_ALL, sys.argv[1])
 scene = {"dim": 3, "dt": 1.5e-3, "gravity": [0, 0, -9.81], "bodies": [{"file": "table"}, {"x": [0, 0, 0.75], "radius": 0.125}],
          "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}, {"mesh": {"file": "slope.obj"}}]}
 run = nsd.Run.from_scene(scene, folder=sys.argv[2])
-run.set(dt=1.25e-3, eps=1.5e-3)
+run.set(dt=1.25e-3, tolerance=1.5e-3)
 run.step(3)
 print(run.position.tolist(), run.time, run.measure("energy")["energy"]["kinetic"])
 run.set(box="-0.5,0.5,-0.5,0.5,0.25,1.25")

@@ -15,7 +15,7 @@ solve() { nsd-solve "$@" 2>/dev/null; }
 stock heap20 >"$tmp/heap.h5"
 stock heap4 >"$tmp/four.h5"
 nsd-gen -d 2 20 |
-    step -n 600 --every 600 --eps 1e-8 |
+    step -n 600 --every 600 --tolerance 1e-8 |
     nsd-cat --last >"$tmp/discs.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 like "the heap has settled: more contacts than balls" \
@@ -68,14 +68,14 @@ two()
         nsd-detect |
         solve |
         nsd-move >"$tmp/parts.h5"
-    step -n 2 --global auto --theta 0.7 "$tmp/heap.h5" | nsd-cat --last >"$tmp/whole.h5"
+    step -n 2 --solver auto --theta 0.7 "$tmp/heap.h5" | nsd-cat --last >"$tmp/whole.h5"
     same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 }
 ok "two steps with another theta, too" two
 
 # ---- streams and trajectories ----
 
-gen() { step -n 30 --eps 1e-8 "$@" "$tmp/heap.h5"; }
+gen() { step -n 30 --tolerance 1e-8 "$@" "$tmp/heap.h5"; }
 for option in --cold --contacts --warm --every=7; do
     gen $option >"$tmp/trajectory.h5"
     gen $option | cat >"$tmp/stream.h5"
@@ -96,7 +96,7 @@ gen --contacts >"$tmp/trajectory.h5"
 gen --contacts | cat >"$tmp/stream.h5"
 ok "contacts are the same in a stream and in a trajectory" \
     cmp <(nsd-info -c "$tmp/trajectory.h5") <(nsd-info -c "$tmp/stream.h5")
-nsd-cat --steps 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
+nsd-cat --frames 610:615 "$tmp/trajectory.h5" >"$tmp/cut.h5"
 is "a cut trajectory has the steps asked for" \
     "$(nsd-info "$tmp/cut.h5" | jq -n -c '[inputs | select(.step != null).step]')" \
     "[610,611,612,613,614,615]"
@@ -130,8 +130,8 @@ for j in 2 3; do
     ok "40 000 balls: 1 and $j threads give the same bytes" cmp <(many -j 1) <(many -j $j)
 done
 # stderr has the summary alone, also of the thread that writes
-nsd-gen 20 | nsd-step --global auto -n 3 -j 2 -o "$tmp/told.h5" 2>"$tmp/told"
-nsd-gen 20 | nsd-step --global auto -n 3 -j 1 -o "$tmp/one.h5" 2>"$tmp/alone"
+nsd-gen 20 | nsd-step --solver auto -n 3 -j 2 -o "$tmp/told.h5" 2>"$tmp/told"
+nsd-gen 20 | nsd-step --solver auto -n 3 -j 1 -o "$tmp/one.h5" 2>"$tmp/alone"
 ok "two threads say no more than one" cmp <(sed "s/[^ ]* s in/T s in/" "$tmp/told") <(sed "s/[^ ]* s in/T s in/" "$tmp/alone")
 is "two lines: the steps, and what went worst" "$(wc -l <"$tmp/told")" 2
 # In a cell two bricks long each meets the next one twice: both times by the same thread
@@ -150,13 +150,13 @@ ok "and so does another time of day" cmp "$tmp/one" <(nsd-detect "$tmp/heap.h5")
 # ---- resuming ----
 
 half=$((frames / 2))
-nsd-gen 20 | step -n $((2 * half)) --cold --eps 1e-8 >"$tmp/all.h5"
-nsd-gen 20 | step -n $half --cold --eps 1e-8 >"$tmp/first.h5"
-step -n $half --cold --eps 1e-8 -o "$tmp/second.h5" "$tmp/first.h5"
+nsd-gen 20 | step -n $((2 * half)) --cold --tolerance 1e-8 >"$tmp/all.h5"
+nsd-gen 20 | step -n $half --cold --tolerance 1e-8 >"$tmp/first.h5"
+step -n $half --cold --tolerance 1e-8 -o "$tmp/second.h5" "$tmp/first.h5"
 ok "half the steps and then the other half are all the steps" cmp \
     <(nsd-info -p "$tmp/all.h5") <(nsd-info -p "$tmp/first.h5" "$tmp/second.h5")
 ok "in a pipe as well" cmp <(nsd-info -p --last "$tmp/all.h5") \
-    <(nsd-gen 20 | step -n $half --cold --eps 1e-8 | step -n $half --cold --eps 1e-8 | nsd-info -p --last)
+    <(nsd-gen 20 | step -n $half --cold --tolerance 1e-8 | step -n $half --cold --tolerance 1e-8 | nsd-info -p --last)
 ok "nsd-step -n 0 is the last frame alone" cmp \
     <(step -n 0 "$tmp/first.h5" | nsd-info -p) <(nsd-info -p --last "$tmp/first.h5")
 
@@ -200,7 +200,7 @@ alike() # file dataset file dataset tolerance, relative to the largest
             END { print NR " numbers, the largest " most ", they differ by " worst
                   exit !(NR > 0 && most > 0 && worst <= tolerance * most) }'
 }
-sweeps=(--eps 0 --max-sweeps 50 --criterion glob)
+sweeps=(--tolerance 0 --max-sweeps 50 --criterion glob)
 for form in local global; do
     nsd-detect --fclib=$form <"$tmp/heap.h5" >"$tmp/both.h5"
     like "nsd-detect --fclib=$form adds /fclib_$form" "$(h5ls "$tmp/both.h5")" "fclib_$form +Group"
@@ -245,7 +245,7 @@ fi
 
 # ---- methods and orders ----
 
-tight() { solve --eps 1e-13 --max-sweeps 50000 "$@" "$tmp/contacts.h5"; }
+tight() { solve --tolerance 1e-13 --max-sweeps 50000 "$@" "$tmp/contacts.h5"; }
 tight >"$tmp/exact.h5"
 for m in "${methods[@]}"; do
     for order in "${orders[@]}"; do
@@ -279,7 +279,7 @@ through() # scene: the long way, 3 steps; in the end nsd-err of each
         nsd-detect "$tmp/a.h5" | solve -e >"$tmp/b.h5" && nsd-err "$tmp/b.h5" && nsd-move "$tmp/b.h5" >"$tmp/a.h5" ||
             return
     done
-    echo "$1" | nsd-gen - | step -e --global auto -n 3 | nsd-cat --last >"$tmp/c.h5" && same_particles "$tmp/a.h5" "$tmp/c.h5"
+    echo "$1" | nsd-gen - | step -e --solver auto -n 3 | nsd-cat --last >"$tmp/c.h5" && same_particles "$tmp/a.h5" "$tmp/c.h5"
 }
 floor='"dt": 1e-4, "walls": [{"point": [0, 0, 0], "normal": [0, 0, 1]}]'
 ball='"x": [0, 0, 0.001], "radius": 0.001'
@@ -308,7 +308,7 @@ done
 ok "mu = 0: no friction in a heap" jq -e -n '[inputs | .r[1] == 0 and .r[2] == 0] | all and length > 20' <(
     jq '.mu = 0 | .bodies[0].count = 20' scenes/paper/example2.json |
         nsd-gen - |
-        step -n 600 --every 600 --contacts --eps 1e-8 |
+        step -n 600 --every 600 --contacts --tolerance 1e-8 |
         nsd-info --last -c)
 bounce() # e [OPTION ...]: how fast a ball leaves that has fallen on the floor with 1 m/s, without gravity
 {
@@ -321,9 +321,9 @@ bounce() # e [OPTION ...]: how fast a ball leaves that has fallen on the floor w
 }
 ok "e = 1: what falls on the floor leaves as fast" jq -e '(. - 1 | fabs) < 1e-9' <(bounce 1)
 ok "e = 0.5: half as fast" jq -e '(. - 0.5 | fabs) < 1e-9' <(bounce 0.5)
-ok "e = 0: not at all" jq -e 'fabs < 1e-9' <(bounce 0 --global auto)
+ok "e = 0: not at all" jq -e 'fabs < 1e-9' <(bounce 0 --solver auto)
 ok "e = 1, mu = 0: a gas keeps its energy" jq -e -s '[.[] | select(.step != null).kinetic_energy] |
-    length == 100 and (max - min) / max < 1e-9' <(nsd-gen scenes/gas.json | step -n 100 --eps 1e-13 | nsd-info)
+    length == 100 and (max - min) / max < 1e-9' <(nsd-gen scenes/gas.json | step -n 100 --tolerance 1e-13 | nsd-info)
 
 diverging() # a ball so fast that its place after the third step overflows
 {

@@ -53,7 +53,7 @@ verdict(number >= 60 and not refused, "the schema accepts all %d scenes of the r
 
 space = {
     "title": "all", "dim": 3, "dt": 1e-3, "theta": 0.5, "gravity": [0, 0, -9.81], "time": 0, "seed": 3, "density": 2500,
-    "mu": 0.3, "mu_s": 0.4, "v_s": 1e-3, "e_n": 0.1, "e_t": 0, "impact": "newton", "overlap": True,
+    "mu": 0.3, "mu_s": 0.4, "v_s": 1e-3, "e_n": 0.1, "e_t": 0, "impact": "newton", "allow_overlap": True,
     "cohesion": {"force": 1e-3, "range": 0}, "capillary": {"volume": 1e-10, "tension": 0.07, "wetting": 0.2},
     "rolling": {"mu_r": 1e-4, "mu_p": 0}, "kinds": {"steel": {"density": 7800}},
     "adhesion": {"c_n": 1e9, "c_t": 1e9, "w": 0.1, "eta": 0, "area": 1e-6, "beta": 1, "made": 0},

@@ -20,7 +20,7 @@ jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, kinds: { steel: {}, glas
     walls: [{ mesh: { file: $file, parts: "groups" }, name: "floor", wear: 1e-12 },
             { disc: { center: [0, 0, 2], normal: [0, 0, -1], radius: 0.4 }, name: "lid" }],
     bodies: [{ x: [-0.5, -0.5, 0.1], radius: 0.1, kind: "steel" }, { x: [0.5, 0.5, 0.2], radius: 0.2, kind: "glass" }] }' |
-    nsd-gen - | nsd-step -n 20 --sums --contacts --eps 1e-12 -o "$tmp/run.h5" 2>/dev/null
+    nsd-gen - | nsd-step -n 20 --sums --contacts --tolerance 1e-12 -o "$tmp/run.h5" 2>/dev/null
 
 # ---- pictures: the colours of points whose faces are known ----
 
@@ -99,7 +99,7 @@ is "the columns of wear" "$(export_ --only lid | column wear | sort -u)" 0
 refuses 65 "grains have no names of walls" nsd-export --to csv --only floor "$tmp/run.h5"
 refuses 65 "a name that is not there" nsd-export --to csv --part boundary --only lids --last "$tmp/run.h5"
 jq -n '{ dt: 1e-3, shapes: { box: { box: [0.2, 0.2, 0.2] } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.1], shape: "box", size: 1 }] }' |
-    nsd-gen - | nsd-step -n 5 --contacts --eps 1e-12 -o "$tmp/box.h5" 2>/dev/null
+    nsd-gen - | nsd-step -n 5 --contacts --tolerance 1e-12 -o "$tmp/box.h5" 2>/dev/null
 is "surfaces have the force of contacts on their grain" \
     "$(nsd-export --to csv --last --part surfaces "$tmp/box.h5" | column contact_force_z | sort -u | awk '{ printf "%.4f ", $1 }')" \
     "$(nsd-info --last -p "$tmp/box.h5" | jq -r '.mass * 9.81' | awk '{ printf "%.4f ", $1 }')"

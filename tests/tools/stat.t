@@ -50,15 +50,15 @@ is "of balls both are one" "$(nsd-stat -m coordination "$tmp/fcc.h5" 2>/dev/null
 
 jq -n '{ dt: 1e-5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: [range(10) | { x: [0, 0, 0.01 * (2 * . + 1)], radius: 0.01 }] }' | nsd-gen - |
-    step -n 50 --contacts --eps 1e-12 --max-sweeps 100000 >"$tmp/column.h5"
+    step -n 50 --contacts --tolerance 1e-12 --max-sweeps 100000 >"$tmp/column.h5"
 ok "a column at rest: the floor's load, and the stress" truth column "$tmp/column.h5"
-nsd-gen 200 | step -n 500 --every 100 --contacts --eps 1e-8 --max-sweeps 20000 -o "$tmp/heap.h5"
+nsd-gen 200 | step -n 500 --every 100 --contacts --tolerance 1e-8 --max-sweeps 20000 -o "$tmp/heap.h5"
 ok "numpy finds the same in a heap: stress, forces, fabric, energies, distributions" truth same_as_numpy "$tmp/heap.h5"
 ok "energies, and what a step dissipates, are what its report says" truth balances "$tmp/heap.h5"
 jq '.walls[0].drives = [{ along: [0, 0, 1], amplitude: 5e-4, frequency: 20 }] | .bodies[0].count = 100' scenes/shaken.json |
-    nsd-gen - | step --global auto -n 600 --every 100 --contacts -o "$tmp/shaken.h5"
+    nsd-gen - | step --solver auto -n 600 --every 100 --contacts -o "$tmp/shaken.h5"
 ok "also where boundaries move" truth balances "$tmp/shaken.h5"
-step --global auto -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
+step --solver auto -n 60 --every 30 --contacts -o "$tmp/shear.h5" <(jq '.bodies[0].count = 144 | .bodies[0].radius.uniform = [0.02, 0.04] | .dt = 2e-3' scenes/shear.json | nsd-gen -)
 ok "and where a cell's edges do" truth balances "$tmp/shear.h5"
 # belts, drives, rolling and pivoting friction, grains of all shapes, walls that a load moves or a room; a cell whose rates change
 jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes: { block: { box: [2, 1, 1] } },
@@ -66,21 +66,21 @@ jq -n '{ dt: 1e-3, mu: 0.3, rolling: { mu_r: 2e-4, mu_p: 3e-4 }, seed: 3, shapes
         { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.05, length: 0.3 }, drives: [{ about: [0, 0, 0], axis: [0, 0, 1], speed: -2 }] }],
     bodies: [{ count: 20, radius: 0.005, box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.001, 0.02] } },
         { count: 10, radius: 0.006, shape: "block", orientation: "random", box: { x: [-0.03, 0.03], y: [-0.03, 0.03], z: [0.02, 0.05] } }] }' >"$tmp/works.json"
-nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap keep --eps 1e-8 -o "$tmp/works.h5"
+nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap-rule keep --tolerance 1e-8 -o "$tmp/works.h5"
 ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
-nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --eps 1e-8 -o "$tmp/works.h5"
+nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --tolerance 1e-8 -o "$tmp/works.h5"
 ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
-step -n 120 --sums --eps 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
+step -n 120 --sums --tolerance 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
 opposite() { jq -ne --argjson a "$1" --argjson b "$2" '(($a + $b) | fabs) < 1e-9 * ($b | fabs) and $b != 0'; }
 ok "the sums of the walls have the work of all steps" opposite \
     "$(nsd-stat --last -m sums "$tmp/works.h5" 2>/dev/null | jq '.sums | (.power | add) * .span[0]')" \
     "$(nsd-info "$tmp/works.h5" 2>/dev/null | jq -s 'map(.balance.drives // 0) | add')"
 jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.3, cell: { lengths: [1, 1], stress: { pressure: 1000, mass: 20 } },
     bodies: [{ count: 60, radius: { uniform: [0.03, 0.05] }, box: { x: [0, 1], y: [0, 1] } }] }' | nsd-gen - |
-    step -n 150 --every 30 --contacts --overlap keep --eps 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
+    step -n 150 --every 30 --contacts --overlap-rule keep --tolerance 1e-10 --max-sweeps 100000 -o "$tmp/servo.h5"
 ok "and a cell that yields to a stress" truth balances "$tmp/servo.h5" edges
 if [ -z "${NSD_THIN-}" ]; then
-    nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --eps 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
+    nsd-gen 500 | step -n 3000 --every 3000 | nsd-cat --last | step -n 2 --contacts --tolerance 1e-7 --max-sweeps 20000 -o "$tmp/pile.h5"
     ok "fields: div stress = rho (g - a) in a settled pile" truth fields "$tmp/pile.h5" "$tmp/fields.h5"
 fi
 
@@ -136,7 +136,7 @@ ok "and a cone of 30 degrees" truth cone "$tmp/cone.h5" 30
 # bonded, wet and cohesive discs that a gravity of its own pulls apart from the floor that holds them
 tied() { jq -n "$1"' + { dim: 2, dt: 1e-4, mu: 0.5, gravity: [2, 9.81], density: 1000, walls: [{ point: [0, 0], normal: [0, 1] }],
     bodies: [range(16) | { x: [0.002 * (. % 4), 0.001 + 0.00199999 * (. / 4 | floor)], radius: 0.001 }], overlap: true }' | nsd-gen - |
-    step -n 60 --every 20 --contacts --eps 1e-10 --max-sweeps 100000 -o "$tmp/tied.h5" && truth tied "$tmp/tied.h5"; }
+    step -n 60 --every 20 --contacts --tolerance 1e-10 --max-sweeps 100000 -o "$tmp/tied.h5" && truth tied "$tmp/tied.h5"; }
 ok "bonds: pairs in tension count, and store" tied '{ adhesion: { c_n: 1e7, w: 10, forever: true, area: 1e-3, beta: 0.9 } }'
 ok "liquid: the same" tied '{ capillary: { volume: 1e-11, tension: 0.072 } }'
 ok "cohesion: the same" tied '{ cohesion: { force: 0.4, range: 1e-5 } }'
@@ -167,7 +167,7 @@ nsd-stat "$tmp/heap.h5" >"$tmp/one" 2>/dev/null
 nsd-cat --stream "$tmp/heap.h5" | nsd-stat 2>/dev/null >"$tmp/two"
 ok "a stream and a trajectory give the same lines" cmp "$tmp/one" "$tmp/two"
 is "a line for each frame, live" "$(nsd-gen 20 | step -n 7 | nsd-stat 2>/dev/null | wc -l)" 7
-is "--last and --steps" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
+is "--last and --frames" "$(nsd-stat --last "$tmp/heap.h5" 2>/dev/null | jq .step) $(nsd-stat -s 200:400:200 "$tmp/heap.h5" 2>/dev/null | jq .step | tr '\n' ' ')" \
     "500 200 400 "
 for j in 1 2 4; do
     nsd-gen 200 | step -j $j -n 20 --contacts | nsd-stat -m all 2>/dev/null >"$tmp/j$j"
@@ -218,7 +218,7 @@ refuses 64 "a box that is empty" nsd-stat -b 1,0,0,1 "$tmp/corner.h5"
 refuses 64 "a box of five numbers" nsd-stat -b 0,1,0,1,0 "$tmp/corner.h5"
 refuses 64 "a plane of no direction" nsd-stat --plane 0,0,0 "$tmp/heap.h5"
 refuses 64 "--grains and --measures" nsd-stat --grains -m stress "$tmp/heap.h5"
-refuses 64 "--last and --steps" nsd-stat --last -s 1:2 "$tmp/heap.h5"
+refuses 64 "--last and --frames" nsd-stat --last -s 1:2 "$tmp/heap.h5"
 refuses 65 "a step that is not there" nsd-stat -s 99999 "$tmp/heap.h5"
 refuses 64 "no such measure" nsd-stat -m heat "$tmp/heap.h5"
 refuses 64 "a box of three numbers" nsd-stat -b 0,1,2 "$tmp/heap.h5"

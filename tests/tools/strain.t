@@ -43,6 +43,6 @@ ok "a wall that is driven into a box: ln(20/19)" \
 nsd-stat --tsv -m strain "$tmp/start.h5" "$tmp/piston.h5" >"$tmp/table"
 like "--tsv has it" "$(head -n 1 "$tmp/table")" 'volumetric.*shear'
 ok "the first frame that is read is the reference: ln(19.5/19)" \
-    holds '.strain | (.tensor[0][0] - (19.5 / 19 | log) | fabs) < 1e-12' < <(strain --steps 100:200:50 "$tmp/piston.h5" | tail -n 1)
+    holds '.strain | (.tensor[0][0] - (19.5 / 19 | log) | fabs) < 1e-12' < <(strain --frames 100:200:50 "$tmp/piston.h5" | tail -n 1)
 
 done_testing

@@ -164,13 +164,13 @@ step -n 10 "$tmp/heap.h5" >"$tmp/ten.h5"
 step -n 10 "$tmp/heap.h5" | cat >"$tmp/ten.stream"
 for ten in ten.h5 ten.stream; do
     is "$ten: nsd-cat --last is the last frame" "$(nsd-cat --last "$tmp/$ten" | steps)" "[610]"
-    is "$ten: nsd-cat --steps 603" "$(nsd-cat --steps 603 "$tmp/$ten" | steps)" "[603]"
-    is "$ten: nsd-cat --steps 608:" "$(nsd-cat --steps 608: "$tmp/$ten" | steps)" "[608,609,610]"
-    is "$ten: nsd-cat --steps :602" "$(nsd-cat --steps :602 "$tmp/$ten" | steps)" "[601,602]"
-    is "$ten: nsd-cat --steps 601:610:4" "$(nsd-cat --steps 601:610:4 "$tmp/$ten" | steps)" "[601,605,609]"
-    is "$ten: nsd-info --steps 601:610:4" "$(steps --steps 601:610:4 "$tmp/$ten")" "[601,605,609]"
+    is "$ten: nsd-cat --frames 603" "$(nsd-cat --frames 603 "$tmp/$ten" | steps)" "[603]"
+    is "$ten: nsd-cat --frames 608:" "$(nsd-cat --frames 608: "$tmp/$ten" | steps)" "[608,609,610]"
+    is "$ten: nsd-cat --frames :602" "$(nsd-cat --frames :602 "$tmp/$ten" | steps)" "[601,602]"
+    is "$ten: nsd-cat --frames 601:610:4" "$(nsd-cat --frames 601:610:4 "$tmp/$ten" | steps)" "[601,605,609]"
+    is "$ten: nsd-info --frames 601:610:4" "$(steps --frames 601:610:4 "$tmp/$ten")" "[601,605,609]"
     is "$ten: nsd-info --last" "$(steps --last "$tmp/$ten")" "[610]"
-    refuses 65 "$ten: nsd-cat --steps of steps that are not there" nsd-cat --steps 900: "$tmp/$ten"
+    refuses 65 "$ten: nsd-cat --frames of steps that are not there" nsd-cat --frames 900: "$tmp/$ten"
 done
 is "nsd-step --every 4 keeps every fourth, and the last" "$(step -n 10 --every 4 "$tmp/heap.h5" | steps)" "[604,608,610]"
 
@@ -198,7 +198,7 @@ done
 # ---- kill -9 ----
 
 long=1200
-step -n $long --eps 1e-6 --cold "$tmp/heap.h5" >"$tmp/reference.h5"
+step -n $long --tolerance 1e-6 --cold "$tmp/heap.h5" >"$tmp/reference.h5"
 nsd-info -p "$tmp/reference.h5" >"$tmp/reference"
 RANDOM=7
 whole() # what a killed run has left is whole frames, the right ones, and a place to go on from
@@ -210,14 +210,14 @@ whole() # what a killed run has left is whole frames, the right ones, and a plac
     echo "$n frames"
     [ $n -ge 1 ] && cmp "$tmp/left" <(head -n $((20 * n)) "$tmp/reference") || return
     [ $n -le $((long - 2)) ] || return 0
-    step -n 2 --eps 1e-6 --cold "$1" >"$tmp/resumed.h5" &&
+    step -n 2 --tolerance 1e-6 --cold "$1" >"$tmp/resumed.h5" &&
         cmp <(nsd-info -p "$tmp/resumed.h5") <(tail -n +$((20 * n + 1)) "$tmp/reference" | head -n 40)
 }
 for ((k = 1; k <= kills; k++)); do
     option=$([ $((k % 2)) = 0 ] || echo --contacts)
     : >"$tmp/killed.h5"
     # shellcheck disable=SC2086 # none or one
-    nsd-step -n $long --eps 1e-6 --cold $option "$tmp/heap.h5" >"$tmp/killed.h5" 2>/dev/null &
+    nsd-step -n $long --tolerance 1e-6 --cold $option "$tmp/heap.h5" >"$tmp/killed.h5" 2>/dev/null &
     for ((w = 0; w < 5000; w++)); do # there is nothing to be found before a first frame
         cp "$tmp/killed.h5" "$tmp/left.h5"
         if nsd-info -p "$tmp/left.h5" >"$tmp/left" 2>&1; then break; fi
@@ -274,7 +274,7 @@ limited() # KiB that a file may have, option: what is there then are frames
 {
     local s=0
     # shellcheck disable=SC2086 # none or one
-    (ulimit -f "$1" && trap '' XFSZ && nsd-step -n 3000 --eps 1e-6 $2 "$tmp/heap.h5" >"$tmp/limited.h5") || s=$?
+    (ulimit -f "$1" && trap '' XFSZ && nsd-step -n 3000 --tolerance 1e-6 $2 "$tmp/heap.h5" >"$tmp/limited.h5") || s=$?
     echo "status $s"
     [ $s = 74 ] && frames_of "$tmp/limited.h5"
 }

@@ -31,6 +31,17 @@ is "balls that rest in a round drum do not fall" "$(checked "$rest" '[.limits[] 
 near "a ball above them falls, on them" \
     "$(checked "$rest"' | .bodies += [{x: [0, 0, -0.09], radius: 1e-3}]' "$(limit fall)")" \
     "$second"' as $at | 0.05e-3 / (2 * 9.81 * (-0.09 - $at[1] - 4 / 3 * 3.14159265358979324 * 1e-9 / (0.6 * 2e-3 * ($at[0] + 2e-3))) | sqrt)'
+# ---- a scene without a dt ----
+
+chosen() { jq -nc "$1 | del(.dt)" | nsd-gen - | nsd-info | jq "select(.dt).dt"; }
+is "sqrt(0.002 r / g) = 4.52e-4 s, of which 2e-4 is chosen" "$(chosen "$ball")" "$(jq -n 2e-4)"
+is "of balls 1.3 times as large 5e-4" "$(chosen "$ball"' | .bodies[0].radius = 1.3e-3')" "$(jq -n 5e-4)"
+is "where nothing accelerates, the suggestion for impacts" "$(chosen "$ball"' | .gravity = [0, 0, 0] | .bodies[0].v = [0, 2, 0]')" "$(jq -n 2e-5)"
+is "a dt that is chosen does not adapt" "$(jq -nc "$ball | del(.dt)" | nsd-gen - | nsd-step -n 3 2>/dev/null | nsd-info --last -l | jq .time)" "$(jq -n '3 * 2e-4')"
+is "and is the one of --check" "$(checked "$ball | del(.dt)" '[.scene, .interval]')" "$(jq -nc '[2e-4, 2e-4]')"
+
+# ---- suggestions ----
+
 is "the least counts, by its first two digits" "$(checked "$ball" '.dt == 3.5e-5 and .by == "fall"')" true
 near "a start with 2 m/s" "$(checked "$ball"' | .gravity = [0, 0, 0] | .bodies[0].v = [0, 2, 0]' .dt)" 2.5e-5
 drum='{dt: 1, dim: 2, gravity: [0, 0], bodies: [{x: [0, -0.05], radius: 1e-3}],
@@ -58,7 +69,7 @@ near "a piston: its force over the face that the balls span" "$(checked "$piston
     '4 / (0.08 * 0.04) * 4e-4 / (2500 * 4 / 3 * 3.14159265358979324 * 1e-6)'
 near "and a mass of one layer" "$(checked "$piston" '.masses[] | select(.wall == 0).mass')" \
     '2500 * 4 / 3 * 3.14159265358979324 * 1e-6 / 4e-4 * 0.08 * 0.04'
-is "of dt too long by far it warns" "$(jq -nc "$ball"' | .dt = 1e-2' | nsd-gen --check - 2>&1 >/dev/null | grep -c 'warning: dt = 0.01 s')" 1
+is "of a dt too long for one solve per step there is a remark" "$(jq -nc "$ball"' | .dt = 1e-2' | nsd-gen --check - 2>&1 >/dev/null | grep -c 'dt = 0.01 s of the scene is')" 1
 ok "and ends with 0, without a document" eval "jq -nc '$ball | .dt = 1e-2' | nsd-gen --check - 2>/dev/null | jq -e .dt >/dev/null"
 ok "all scenes have a suggestion" eval 'for scene in "$root"/scenes/{drum,silo,press,shear}.json; do nsd-gen --check $scene 2>/dev/null | jq -e ".dt > 0" || exit 1; done >/dev/null'
 
@@ -97,7 +108,7 @@ step --until 0.4 -o whole.h5 --dt auto:0.01 start.h5
 deepest() { nsd-info --last "$1" | jq '.account.overlap.value'; }
 dts() { nsd-info "$1" | jq -c 'select(.step) | .dt'; }
 ok "no impact goes deeper than TOL" eval "jq -n -e '$(deepest whole.h5) > 0 and $(deepest whole.h5) <= 0.01'"
-step --global auto --until 0.4 -o plain.h5 start.h5
+step --solver auto --until 0.4 -o plain.h5 start.h5
 ok "which it does with one dt" eval "jq -n -e '$(deepest plain.h5) > 0.1'"
 ok "dt is the scene's, halved" eval "dts whole.h5 | jq -s -e 'all(. == 0.004 or ((0.004 / .) | log2 | . == floor))'"
 ok "it is halved and doubled" eval "dts whole.h5 | jq -s -e '. as \$d | (map(select(. < 1e-3)) | length > 2) and (map(select(. == 0.004)) | length > 2) and any(range(1; length); \$d[.] > \$d[. - 1])'"

@@ -79,7 +79,7 @@ ok "also through a pipe" cmp "$tmp/last.png" <(nsd-cat "$tmp/out.h5" | view)
 ok "a trajectory and the stream of its frames end alike" cmp "$tmp/last.png" <(view "$tmp/stream.h5")
 ok "the last of several files is drawn" cmp "$tmp/last.png" <(view "$tmp/start.h5" "$tmp/out.h5")
 ok "--step of the last frame is the last frame" cmp "$tmp/last.png" <(view --step 60 "$tmp/out.h5")
-ok "-s 20 is step 20" cmp <(view -s 20 "$tmp/out.h5") <(nsd-cat --steps 20 "$tmp/out.h5" | view)
+ok "-s 20 is step 20" cmp <(view -s 20 "$tmp/out.h5") <(nsd-cat --frames 20 "$tmp/out.h5" | view)
 ok "of a stream, too" cmp <(view -s 20 "$tmp/out.h5") <(view -s 20 <"$tmp/stream.h5")
 differs() { ! cmp -s "$@"; }
 ok "which looks different" differs "$tmp/last.png" <(view -s 20 "$tmp/out.h5")
@@ -104,18 +104,18 @@ is "need no word" "$(cat "$tmp/err")" ""
 
 nsd-gen -d 2 60 | nsd-step -n 1200 --every 100 --contacts -o "$tmp/forces.h5" 2>/dev/null
 for option in --network --contacts '--network --force 1e9' '-c force' '-c contacts' '-c spin' '-c height' '-c mass' --bare '--pale 0.5' \
-    '--cut 1,0,0,0.001'; do
+    '--clip 1,0,0,0.001'; do
     # shellcheck disable=SC2086 # words
     ok "$option changes the picture" differs <(view "$tmp/forces.h5") <(view $option "$tmp/forces.h5")
     # shellcheck disable=SC2086 # words
     ok "$option: the same for any number of threads" cmp <(view -j 1 $option "$tmp/forces.h5") <(view -j 3 $option "$tmp/forces.h5")
 done
-for option in '--perspective 40' '--cut 1,0,0,0.001' '--perspective 40 --cut 0,-1,0.3,0'; do
+for option in '--perspective 40' '--clip 1,0,0,0.001' '--perspective 40 --clip 0,-1,0.3,0'; do
     # shellcheck disable=SC2086 # words
     ok "balls: $option changes the picture" differs "$tmp/last.png" <(view $option "$tmp/out.h5")
 done
-ok "a plane beyond all cuts nothing" cmp <(view --bare "$tmp/out.h5") <(view --bare --cut 1,0,0,9 "$tmp/out.h5")
-ok "the normal may have any length" cmp <(view --cut 1,0,0,0.001 "$tmp/out.h5") <(view --cut 2,0,0,0.002 "$tmp/out.h5")
+ok "a plane beyond all cuts nothing" cmp <(view --bare "$tmp/out.h5") <(view --bare --clip 1,0,0,9 "$tmp/out.h5")
+ok "the normal may have any length" cmp <(view --clip 1,0,0,0.001 "$tmp/out.h5") <(view --clip 2,0,0,0.002 "$tmp/out.h5")
 refuses 65 "forces that were not kept" nsd-view --network "$tmp/out.h5"
 like "says what keeps them" "$(cat "$tmp/err")" 'nsd-step --contacts keeps them'
 nsd-detect "$tmp/out.h5" >"$tmp/touch.h5"
@@ -257,7 +257,7 @@ for option in '--every 0' '--every -1' '--every 1.5' '-s -1' '-s x' '--every 1' 
     '--background fff' '--background #ffffff' '--background gggggg' '--background=' '--range 1' '--range 1,1' \
     '--range 2,1' '--range inf,inf' '--range 0,1 -c kind' '--box 0,1' '--box 0,1,0,1,0' '--box 0,1,0,1,1,0' \
     '--box 1,0,0,1,0,1' '--box 0,0,0,1,0,1' '--box 0,1e200,0,1,0,1' '--box 0,1,0,1,0,1,' '--samples 0' \
-    '--samples 9' '-j 0' '-j x' '--perspective' '--perspective 130' '--cut 0,0,0,1' '--cut 1,0,0' '--cut x' '--pale 2' \
+    '--samples 9' '-j 0' '-j x' '--perspective' '--perspective 130' '--clip 0,0,0,1' '--clip 1,0,0' '--clip x' '--pale 2' \
     '--follow x' '--force 0' '-c value' '--column a' '--rate 0'; do
     # shellcheck disable=SC2086 # words
     refuses 64 "nsd-view $option" nsd-view $option "$tmp/keep.h5"
@@ -290,6 +290,10 @@ stand '[0, 0, 9.81]' '[.[0], -.[1], -.[2]]' >"$tmp/over.h5"
 stand '[9.81, 0, 0]' '[-.[2], .[1], .[0]]' >"$tmp/turned.h5"
 view --plain "$tmp/down.h5" >"$tmp/down.png"
 ok "in space gravity points down in a picture" cmp "$tmp/down.png" <(view --plain "$tmp/over.h5")
+jq -n '{ dt: 1e-3, bodies: [{ x: [0, 0, 5.04e-4], radius: 5e-4 }, { x: [0, 0, 0.0132], radius: 5e-4 }] }' | nsd-gen - >"$tmp/tall.h5"
+view --size 200x900 -c height "$tmp/tall.h5" >"$tmp/tall.png"
+picture "the ends of a palette are two numbers, also in a narrow picture" "$tmp/tall.png" \
+    "(lambda ink: max(b - a for a, b in zip(ink, ink[1:])))([x for x in range(int(0.45 * w)) if any(max(at(x, y)) < 130 for y in range(h - 14, h))]) > 8"
 # the rows and columns that coloured grains fill, above the legend
 grains='[[f(k) for f in (min, max) for k in [[(x, y)[j] for x in range(w) for y in range(h - 100) if max(at(x, y)) - min(at(x, y)) > 40]]] for j in (0, 1)]'
 /usr/bin/python3 -c '' 2>/dev/null && python "$tmp/down.png" "print($grains, file=open('$tmp/grains', 'w')) or 1"

@@ -84,7 +84,7 @@ step -n $steps --every $steps "$tmp/mesh.h5" | nsd-cat --last >"$tmp/last-mesh.h
 
 for k in last last-mesh; do
     nsd-detect "$tmp/$k.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/parts.h5"
-    step --global auto -n 1 "$tmp/$k.h5" | cat >"$tmp/whole.h5"
+    step --solver auto -n 1 "$tmp/$k.h5" | cat >"$tmp/whole.h5"
     ok "detect | solve | move is nsd-step, $k" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
     for j in 2 4; do
         step -j $j -n 20 "$tmp/$k.h5" >"$tmp/j$j.h5"
@@ -98,7 +98,7 @@ for k in last last-mesh; do
     ok "a run that goes on from its file is the run, to the bit, $k" same_particles "$tmp/parts.h5" "$tmp/whole.h5"
 done
 for m in sbp sal ebp eal; do
-    step -m $m --eps 1e-8 --max-sweeps 20000 -n 2 --contacts "$tmp/last.h5" | nsd-cat --last >"$tmp/one.h5"
+    step -m $m --tolerance 1e-8 --max-sweeps 20000 -n 2 --contacts "$tmp/last.h5" | nsd-cat --last >"$tmp/one.h5"
     is "-m $m: nsd-err finds it solved" "$(nsd-err "$tmp/one.h5" | jq '.natural < 1.1e-8')" true
 done
 step --contacts -n 3 "$tmp/last-mesh.h5" >"$tmp/kept.h5"
@@ -117,10 +117,10 @@ plane() # JQ of a wall
     jq -n --argjson wall "$1" '{ dim: 2, dt: 1e-4, mu: 0.4, walls: [$wall], density: 2500,
         bodies: [{ count: 30, radius: { uniform: [0.9e-3, 1e-3] }, box: { x: [-5e-3, 5e-3], y: [2e-4, null] } }] }'
 }
-plane '{"point": [0, 0], "normal": [0, 1]}' | nsd-gen - | step -n $steps --every $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/plane"
+plane '{"point": [0, 0], "normal": [0, 1]}' | nsd-gen - | step -n $steps --every $steps --tolerance 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/plane"
 for wall in '{"segment": [[-0.1, 0], [0.1, 0]]}' '{"polygon": {"points": [[-0.1, 0], [0, 0], [0.1, 0], [0.1, -0.1]]}}' \
     '{"polygon": {"points": [[-0.1, 0], [-0.001, 0], [0.0003, 0], [0.1, 0]], "closed": false}}'; do
-    plane "$wall" | nsd-gen - | step -n $steps --every $steps --eps 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/other"
+    plane "$wall" | nsd-gen - | step -n $steps --every $steps --tolerance 1e-11 --max-sweeps 100000 | nsd-cat --last | nsd-info -p >"$tmp/other"
     like "discs fall on it as on a line: ${wall:0:40}" "$(jq -s '[.[] | .x[0:2]] | (length / 2) as $n |
         [range($n) as $i | range(2) as $k | .[$i][$k] - .[$i + $n][$k] | fabs] | max < 1e-7' "$tmp/plane" "$tmp/other")" true
 done

@@ -15,8 +15,8 @@ meta() { sed -n 's/.*id="meta">\(.*\)<\/script>/\1/p' "$1" | jq -r "$2"; }
 is "a frame for each" "$(meta "$tmp/out.html" '.frames | length')" 30
 nsd-web --every 10 "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
 is "--every" "$(meta "$tmp/few.html" '[.frames[].s] | @csv')" 30,330,630
-nsd-web --steps 600: "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
-is "--steps" "$(meta "$tmp/few.html" '.frames[0].s')" 600
+nsd-web --frames 600: "$tmp/out.h5" >"$tmp/few.html" 2>/dev/null
+is "--frames" "$(meta "$tmp/few.html" '.frames[0].s')" 600
 is "it says that numbers are rounded" "$(meta "$tmp/out.html" '.said | test("rounded: positions to [0-9.e-]+ m")')" true
 energy() { nsd-info "$tmp/out.h5" | jq -s "$1"; }
 is "curves are of the document" "$(meta "$tmp/out.html" '.curves["kinetic energy"].value[29] * 1e9 | round')" \
@@ -94,7 +94,7 @@ nsd-gen 20 | nsd-detect --fclib=local | tail -c +513 >"$tmp/both.hdf5"
 h5copy -i "$tmp/both.hdf5" -o "$tmp/problem.hdf5" -s /fclib_local -d /fclib_local
 refuses 65 "an FCLIB problem has no grains" nsd-web "$tmp/problem.hdf5"
 status 66 "a file that is not there" nsd-web "$tmp/none.h5"
-refuses 64 "a range that is none" nsd-web --steps 1:x "$tmp/out.h5"
+refuses 64 "a range that is none" nsd-web --frames 1:x "$tmp/out.h5"
 refuses 66 "curves that are not there" nsd-web --stat "$tmp/none" "$tmp/out.h5"
 
 if [ -z "$thin" ]; then

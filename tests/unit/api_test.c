@@ -533,7 +533,7 @@ static void test_failure(void)
     must(nsd_from_scene(&r, scene, NULL), NULL);
     must(nsd_failure(r, &text), r);
     ok(!*text, "before the first step none has failed");
-    must(nsd_set(r, "global", "auto"), r);
+    must(nsd_set(r, "solver", "auto"), r);
     must(nsd_step(r, 2) || nsd_failure(r, &text), r);
     ok(strstr(text, "2 steps not converged (first step 1, wall ") && strstr(text, " and body 0)"),
        "steps that fail are known, with who is concerned: %s", text);
@@ -573,7 +573,7 @@ static void test_stiffness(void)
     struct nsd_run *r =
         scene("{\"dt\": 1e-3, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}], "
               "\"bodies\": [{\"x\": [0, 0, 0.01], \"radius\": 0.01, \"mass\": 0.02}]}");
-    must(nsd_set(r, "eps", "1e-9") || nsd_step(r, 20) || nsd_set(r, "stiffness", "1e5") ||
+    must(nsd_set(r, "tolerance", "1e-9") || nsd_step(r, 20) || nsd_set(r, "stiffness", "1e5") ||
              nsd_step(r, 400),
          r);
     const double sunk = 0.01 - array(r, "position", NULL)[2], wanted = 0.02 * 9.81 / 1e5;
@@ -623,7 +623,7 @@ static void test_errors(void)
         { nsd_step(r, -1), NSD_USAGE, "steps back" },
         { nsd_until(r, INFINITY), NSD_USAGE, "until never" },
         { nsd_until(r, 1e300), NSD_USAGE, "too many steps" },
-        { nsd_set(r, "eps", "small"), NSD_USAGE, "no number" },
+        { nsd_set(r, "tolerance", "small"), NSD_USAGE, "no number" },
         { nsd_set(r, "epsilon", "1"), NSD_USAGE, "no option" },
         { nsd_set(r, NULL, "1"), NSD_USAGE, "no name" },
         { nsd_set(r, "dt", "-1"), NSD_USAGE, "no time step" },
@@ -685,8 +685,8 @@ static double some(void)
     return draw(20) ? 1e-3 * ((double)draw(2001) - 1000) : odd[draw(8)];
 }
 
-static const char *const words[] = { "eps",
-                                     "method",
+static const char *const words[] = { "tolerance",
+                                     "local",
                                      "threads",
                                      "warm",
                                      "dt",
@@ -694,7 +694,7 @@ static const char *const words[] = { "eps",
                                      "forces",
                                      "layers",
                                      "box",
-                                     "overlap",
+                                     "overlap-rule",
                                      "theta",
                                      "1e-6",
                                      "sbp",

@@ -482,7 +482,8 @@ static void test_bad_scenes(void)
         { "{\"dt\": 1,\n \"dt\": 2}", "2:5: duplicate object key near '\"dt\"'" },
         { "{\"dt\": 1,\n  oops}", "2:6: string or '}' expected near 'oops'" },
         { "[1]", "1:1: needs an object {...}" },
-        { "{}", "1:1: dt: is missing" },
+        { "{}", "dt: is missing, and nothing in the scene moves, so no time step can be chosen: "
+                "give a number of seconds" },
         { "{\"dt\": 0}", "1:2: dt: must be positive" },
         { "{\n \"dt\": \"1\"}", "2:2: dt: needs a number of seconds, or \"auto\"" },
         { "{\"dt\": 1, \"mu\": -0.1}", "1:11: mu: must not be negative" },
@@ -490,7 +491,10 @@ static void test_bad_scenes(void)
         { "{\"dt\": 1, \"dim\": 4}", "1:11: dim: must lie in [2, 3]" },
         { "{\"dt\": 1, \"seed\": 0.5}", "1:11: seed: needs an integer" },
         { "{\"dt\": 1, \"title\": 5}", "1:11: title: needs a string" },
+        { "{\"dt\": 1, \"allow_overlap\": 1}", "1:11: allow_overlap: needs true or false" },
         { "{\"dt\": 1, \"overlap\": 1}", "1:11: overlap: needs true or false" },
+        { "{\"dt\": 1, \"allow_overlap\": true, \"overlap\": true}",
+          "1:34: overlap: now called \"allow_overlap\", which is given, too" },
         { "{\"dt\": 1, \"gravity\": [0, 1]}", "1:11: gravity: needs [x, y, z]" },
         { "{\"dt\": 1, \"gravity\": [0, 1, null]}", "1:29: gravity[2]: needs a number" },
         { "{\"dt\": 1, \"dim\": 2, \"gravity\": [0, 1, 2]}",
@@ -588,7 +592,7 @@ static void test_damage(void)
 static const char *const whole_scene[] = {
     "{\"title\": \"all\", \"dim\": 3, \"dt\": 1e-3, \"theta\": 0.5, \"gravity\": [0, 0, -9.81],"
     "\"seed\": 3, \"density\": 2500, \"mu\": 0.3, \"e_n\": 0.1, \"e_t\": 0, \"time\": 0,"
-    "\"overlap\": true, \"kinds\": {\"steel\": {\"density\": 7800}},"
+    "\"allow_overlap\": true, \"kinds\": {\"steel\": {\"density\": 7800}},"
     "\"pairs\": [{\"pair\": [\"ball\", \"steel\"], \"mu\": 0.1, \"e_n\": 0.5, \"e_t\": 0.1}],"
     "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 0, 1], \"kind\": \"steel\","
     "  \"load\": {\"along\": [0, 0, 1], \"mass\": 2, \"force\": 3, \"speed\": 0.1}},"
@@ -628,7 +632,8 @@ static const char *const whole_scene[] = {
     "6]}},"
     " {\"below\": {\"point\": [0, 0, -9], \"normal\": [0, 0, 1]}}]}",
 
-    "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, -9.81], \"overlap\": true,"
+    "{\"title\": \"build\", \"dim\": 2, \"dt\": 1e-3, \"gravity\": [0, -9.81], \"allow_overlap\": "
+    "true,"
     "\"walls\": [{\"point\": [0, -9], \"normal\": [0, 1], \"load\": {\"along\": [0, 1],"
     "  \"mass\": 1}}, {\"segment\": [[-9, -5], [9, -5]], \"drives\": [{\"about\": [0, 0],"
     "  \"speed\": 0.1}]}, {\"circle\": {\"center\": [0, 0], \"radius\": 40, \"side\": \"inside\"},"
@@ -653,7 +658,8 @@ static const char *const whole_scene[] = {
     "  \"mass\": [[1, null, null], [null, 1, 1], [null, 1, null]]}},"
     "\"bodies\": [{\"count\": 8, \"radius\": 0.5, \"spacing\": 1.2}]}",
 
-    "{\"title\": \"build\", \"dt\": 1e-3, \"gravity\": [0, 0, -1], \"overlap\": true, \"cell\": {"
+    "{\"title\": \"build\", \"dt\": 1e-3, \"gravity\": [0, 0, -1], \"allow_overlap\": true, "
+    "\"cell\": {"
     "  \"lengths\": [9, 9, 9], \"repeats\": [true, false, false]}, \"walls\": [{\"point\":"
     "  [0, 0, -1], \"normal\": [0, 0, 1], \"drives\": [{\"along\": [0, 0, 1], \"speed\": 1}]},"
     " {\"cylinder\": {\"point\": [0, 4, 4], \"axis\": [1, 0, 0], \"radius\": 9}, \"drives\":"

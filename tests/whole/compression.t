@@ -60,7 +60,7 @@ round() # WALL MODE E: its speed after 2.4 s over that before, and how deep it i
         bodies: [{ x: [0.095, 0, 0], radius: 0.005, v: [0, 0.76, 0] } | if $w == "circle" then .x |= .[:2] | .v |= .[:2] else . end],
         walls: [if $w == "sphere" then { sphere: { center: [0, 0, 0], radius: 0.1, side: "inside" } } elif $w == "circle" then { circle: { center: [0, 0], radius: 0.1 } }
             else { cylinder: { point: [0, 0, 0], axis: [0, 0, 1], radius: 0.1 } } end] }' | nsd-gen - |
-        nsd-step --overlap "$2" -n 2400 --every 2400 2>/dev/null | nsd-info --last -p - |
+        nsd-step --overlap-rule "$2" -n 2400 --every 2400 2>/dev/null | nsd-info --last -p - |
         jq -c 'select(.x) | [(.v | map(. * .) | add | sqrt / 0.76), ((.x | map(. * .) | add | sqrt) - 0.095) / 0.005]'
 }
 for wall in cylinder sphere circle; do

@@ -44,7 +44,7 @@ for tiles in 1 16 64; do
     done
     ok "$balls balls, auto: the bytes of the CPU" same "$tmp/$tiles.h5"
     ok "$balls balls, Anderson's mixing to 1e-6: the bytes of the CPU" \
-        same "$tmp/$tiles.h5" --global anderson --criterion natural --eps 1e-6
+        same "$tmp/$tiles.h5" --solver anderson --criterion natural --tolerance 1e-6
 done
 ok "a history of every sweep: the bytes of the CPU" same "$tmp/1.h5" --criterion glob --history --max-sweeps 100
 ok "every criterion judged after every sweep: the bytes of the CPU" \
@@ -85,7 +85,7 @@ is "with -m the order is then colour" "$(nsd-info "$tmp/out.h5" | jq -r 'select(
 ok "--log has the bytes that went over the bus" \
     jq -e '.device | .bytes_to > 1e5 and .bytes_from > 2e4 and .kernels > 100 and (.name | length) > 3' "$tmp/log"
 ok "numbers come back from a sweep, not vectors" \
-    eval 'nsd-solve --device opencl -m exact --eps 0 --max-sweeps 400 --log "$tmp/long" "$tmp/1.h5" >"$tmp/out.h5" &&
+    eval 'nsd-solve --device opencl -m exact --tolerance 0 --max-sweeps 400 --log "$tmp/long" "$tmp/1.h5" >"$tmp/out.h5" &&
           jq -s -e "(.[1].device.bytes_from - .[0].device.bytes_from) / (.[1].sweeps - .[0].sweeps) < 200 and
                     .[0].device.bytes_to == .[1].device.bytes_to" "$tmp/log" "$tmp/long"'
 
@@ -115,7 +115,7 @@ faulty() # FAULT COMMAND ...
 fails() # FAULT REGEX: it ends with 69 and this reason, and writes nothing
 {
     local s=0
-    faulty "$1" nsd-solve --criterion natural --eps 1e-8 --device opencl "$tmp/1.h5" >"$tmp/out" 2>"$tmp/err" || s=$?
+    faulty "$1" nsd-solve --criterion natural --tolerance 1e-8 --device opencl "$tmp/1.h5" >"$tmp/out" 2>"$tmp/err" || s=$?
     [ $s = 69 ] && [ ! -s "$tmp/out" ] && [ "$(grep -c '^nsd-solve: ' "$tmp/err")" = 1 ] && grep -E -q "$2" "$tmp/err"
 }
 ok "that driver without a fault gives the bytes of the CPU" \

@@ -40,7 +40,7 @@ unique()
     jq -n "{ dt: 1e-4, density: 2500, seed: 3, stiffness: \"auto\" } + $3" | nsd-gen - >"$tmp/start.h5"
     nsd-step -n "$2" --every "$2" "$tmp/start.h5" 2>/dev/null | nsd-cat --last >"$tmp/packing.h5"
     nsd-detect "$tmp/packing.h5" >"$tmp/found.h5"
-    status 0 "$name: is solved cold" nsd-solve -e --cold --criterion natural --eps 3e-11 --max-sweeps $most "$tmp/found.h5"
+    status 0 "$name: is solved cold" nsd-solve -e --cold --criterion natural --tolerance 3e-11 --max-sweeps $most "$tmp/found.h5"
     mv "$tmp/out" "$tmp/solved.h5"
     ok "$name: has more than 150 contacts" [ "$(forces "$tmp/solved.h5" | tee "$tmp/forces" | wc -l)" -gt 150 ]
     while read -r start way; do
@@ -55,7 +55,7 @@ unique()
             [ -f "$file" ] || shaken "$tmp/solved.h5" "$file"
         fi
         # shellcheck disable=SC2086 # a way is several words
-        nsd-solve $way --criterion natural --eps 3e-11 --max-sweeps $most "$file" >"$tmp/way.h5" 2>/dev/null
+        nsd-solve $way --criterion natural --tolerance 3e-11 --max-sweeps $most "$file" >"$tmp/way.h5" 2>/dev/null
         ok "$name: $start${way:+, $way}" near "$tmp/way.h5"
     done <<'END'
 warm -w --order natural
@@ -78,7 +78,7 @@ ranks() # NAME K ...: of the last packing, in the order of blocks
         rm -f "$tmp/ranks.h5"
         local run=(timeout 300 mpirun --oversubscribe --bind-to none -n "$k")
         [ "$k" != 1 ] || run=()
-        "${run[@]}" nsd-step --cold --order block -n 1 --contacts --criterion natural --eps 3e-11 --max-sweeps $most \
+        "${run[@]}" nsd-step --cold --order block -n 1 --contacts --criterion natural --tolerance 3e-11 --max-sweeps $most \
             -o "$tmp/ranks.h5" "$tmp/packing.h5" </dev/null 2>/dev/null
         ok "$name: by $k processes in the order of blocks" near "$tmp/ranks.h5"
     done

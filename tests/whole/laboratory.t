@@ -9,13 +9,13 @@ n=150
 jq -n --argjson n $n '($n * 0.5236 / 0.5 | log / 3 | exp) as $L |
     { dim: 3, dt: 0.02, gravity: [0, 0, 0], density: 1.88, seed: 3, mu: 0, cell: { lengths: [$L, $L, $L], stress: { pressure: 1, factor: [[0, 0], [4, 1]] } },
       bodies: [{ random: { count: $n }, radius: { uniform: [0.4, 0.6] } }] }' | nsd-gen - |
-    nsd-step --overlap gap --until 25 --every 25s -o "$tmp/start.h5" 2>/dev/null
+    nsd-step --overlap-rule gap --until 25 --every 25s -o "$tmp/start.h5" 2>/dev/null
 
 # path NAME MU STEPS CELL: strained at 0.01 per s, whose inertial number is that; [q/p, fraction, p, volumetric strain] of the second half
 path()
 {
     nsd-info --scene "$tmp/start.h5" | jq --argjson mu "$2" --argjson cell "$4" '.mu = $mu | .bodies[0].at_rest = true | .cell = $cell' | nsd-gen - >"$tmp/$1-start.h5"
-    nsd-step --overlap gap -n "$3" --every 10 --contacts -o "$tmp/$1.h5" "$tmp/$1-start.h5" 2>/dev/null
+    nsd-step --overlap-rule gap -n "$3" --every 10 --contacts -o "$tmp/$1.h5" "$tmp/$1-start.h5" 2>/dev/null
     nsd-stat -m strain,stress,fraction "$tmp/$1-start.h5" "$tmp/$1.h5" | jq -s -c 'def mean: add / length; map(select(.stress.p)) | .[length / 2 | floor:] | [(map(.stress.q) | mean) / (map(.stress.p) | mean), (map(.fraction.fraction) | mean), (map(.stress.p) | mean),
         (map(.strain.volumetric) | mean), (map(.stress.tensor | .[2][2] - (.[0][0] + .[1][1]) / 2) | mean) / (map(.stress.p) | mean)]' >"$tmp/$1.json"
     cat "$tmp/$1.json"
@@ -51,11 +51,11 @@ ok "the sides of a triaxial test carry their stress, to 4 %" \
 biaxial() # SIGN: sin of the mobilised friction of discs, from the same start
 {
     jq --argjson sign "$1" '.cell = {gradient: [[0, 0], [0, (-0.01 * $sign)]], stress: {target: [[1, null], [null, null]]}}' "$tmp/discs.json" | nsd-gen - |
-        nsd-step --overlap gap -n 2500 --every 10 --contacts 2>/dev/null | nsd-stat -m stress | jq -s 'def mean: add / length; map(select(.stress.p)) |
+        nsd-step --overlap-rule gap -n 2500 --every 10 --contacts 2>/dev/null | nsd-stat -m stress | jq -s 'def mean: add / length; map(select(.stress.p)) |
         .[length / 3 | floor:] | (map(.stress.tensor[1][1]) | mean) as $y | (map(.stress.tensor[0][0]) | mean) as $x | ($y - $x) / ($y + $x)'
 }
 jq -n '{ dim: 2, dt: 0.02, gravity: [0, 0], density: 1.257, seed: 5, mu: 0.5, cell: { lengths: [14.5, 14.5], stress: { pressure: 1, factor: [[0, 0], [4, 1]] } },
-    bodies: [{ random: { count: 200 }, radius: { uniform: [0.4, 0.6] } }] }' | nsd-gen - | nsd-step --overlap gap --until 25 --every 25s -o "$tmp/discs.h5" 2>/dev/null
+    bodies: [{ random: { count: 200 }, radius: { uniform: [0.4, 0.6] } }] }' | nsd-gen - | nsd-step --overlap-rule gap --until 25 --every 25s -o "$tmp/discs.h5" 2>/dev/null
 nsd-info --scene "$tmp/discs.h5" | jq '.bodies[0].at_rest = true' >"$tmp/discs.json"
 squeezed=$(biaxial 1) stretched=$(biaxial -1)
 diag "sin phi $squeezed compressed, $stretched extended"

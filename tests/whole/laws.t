@@ -23,7 +23,7 @@ whole()
     local group j m
     nsd-detect "$tmp/$1" | solve >"$tmp/solved.h5"
     nsd-move "$tmp/solved.h5" >"$tmp/parts.h5"
-    step --global auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
+    step --solver auto -n 1 "$tmp/$1" | cat >"$tmp/one.h5"
     for group in /particles /nsd/bonds /nsd/law /nsd/solver; do
         ok "$1: detect | solve | move and step give the same bits of $group" \
             cmp <(dump "$tmp/parts.h5" $group) <(dump "$tmp/one.h5" $group)
@@ -66,7 +66,7 @@ ceiling 1.001 >"$tmp/holds.h5"
 ceiling 0.999 >"$tmp/falls.h5"
 height() { nsd-info --last -p "$1" | jq '.x[2]'; }
 for m in sbp sal ebp eal exact; do
-    step -m $m --criterion natural --eps 1e-10 -n 50 -o "$tmp/held.h5" "$tmp/holds.h5"
+    step -m $m --criterion natural --tolerance 1e-10 -n 50 -o "$tmp/held.h5" "$tmp/holds.h5"
     like "-m $m: a ball hangs from a ceiling by a little more than its weight" \
         "$(height "$tmp/held.h5" | jq '(. + 0.01 | fabs) < 1e-12')" true
     rm "$tmp/held.h5"
@@ -92,7 +92,7 @@ is "no bridge is made over a gap" "$(nsd-detect "$tmp/apart.h5" | nsd-info | tai
 jq -n '{ dt: 1e-6, gravity: [0, 0, 0], overlap: true, capillary: { volume: 1e-10, tension: 0.072, wetting: 0.3 },
     bodies: [{ x: [1e-6, 0, 0], radius: 1e-3, density: 1e5, v: [-0.5, 0, 0] }, { x: [0.003, 0, 0], radius: 2e-3, density: 1e5, v: [0.5, 0, 0] }] }' |
     nsd-gen - >"$tmp/parting.h5" # the first step finds them touching
-step --global auto -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
+step --solver auto -n 700 --contacts --log "$tmp/parting.log" -o "$tmp/parted.h5" "$tmp/parting.h5"
 nsd-info -c "$tmp/parted.h5" >"$tmp/parted"
 like "a bridge pulls with the closed form of its length" \
     "$(jq -s 'map(select(.gap > 0) | (4e-3 / 3) as $R | (2e-10 / (3.141592653589793 * $R)) as $c2 |
@@ -107,14 +107,14 @@ jq -n '{ dt: 2e-5, mu: 0.4, e_n: 0.2, capillary: { volume: 1e-11, tension: 0.072
     walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
     bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] }' |
     nsd-gen - >"$tmp/grains.h5"
-step --global auto -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
+step --solver auto -n 400 --every 400 --log "$tmp/wet.log" -o "$tmp/wetted.h5" "$tmp/grains.h5"
 nsd-cat --last "$tmp/wetted.h5" >"$tmp/wet.h5"
 like "wet grains: energy is balanced in every step" "$(misfit "$tmp/wet.log" | jq '. < 1e-13')" true
 like "wet grains: nothing dissipates less than nothing" "$(jq -s 'map(.balance.dissipation) | min > -1e-12' "$tmp/wet.log")" true
 whole wet.h5
 for g in auto nlgs anderson; do
-    nsd-detect "$tmp/wet.h5" | solve --global $g --criterion natural --eps 1e-6 >"$tmp/g.h5"
-    like "wet grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
+    nsd-detect "$tmp/wet.h5" | solve --solver $g --criterion natural --tolerance 1e-6 >"$tmp/g.h5"
+    like "wet grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural <= 1e-6')" true
 done
 # FORM PACKING CONTACTS: "true" where the problem that FCLIB gets has the velocities of these contacts, more than 20
 foreign()
@@ -125,7 +125,7 @@ import h5py, sys
 with h5py.File(sys.argv[1], 'r') as a, h5py.File(sys.argv[2], 'w') as b:
     a.copy(sys.argv[3], b)
 PYTHON
-    solve --criterion natural --eps 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
+    solve --criterion natural --tolerance 1e-10 "$tmp/problem.h5" | nsd-info -c >"$tmp/foreign"
     nsd-info -c "$3" | jq -s --slurpfile f "$tmp/foreign" \
         '[., $f] | transpose | map(.[0].u[0] * (1 + .[0].e_n) - .[1].u[0] | fabs) | length > 20 and max < 1e-6'
 }
@@ -205,7 +205,7 @@ attracts "the corner of three planes" 23.1 '{ cohesion: { force: 7.7 }, walls: [
 attracts "a bridge to four rectangles" '(4 * 3.141592653589793 * 0.05 * 0.072)' "{ capillary: { volume: 1e-8, tension: 0.072 }, $four, bodies: [{ x: [0, 0, -0.05], radius: 0.05 }] }"
 for walls in "$four" 'walls: [{ point: [0, 0, 0], normal: [0, 0, -1] }]'; do
     jq -n "{ dt: 1e-3, adhesion: { c_n: 1e8, w: 1e6, area: 1e-4 }, $walls, bodies: [{ x: [0, 0, -0.05], radius: 0.05 }] }" | nsd-gen - |
-        step -n 100 --every 100 --eps 1e-10 -o "$tmp/hangs.h5"
+        step -n 100 --every 100 --tolerance 1e-10 -o "$tmp/hangs.h5"
     height "$tmp/hangs.h5"
 done >"$tmp/heights"
 like "a ball hangs from a bond to four rectangles as from one to a plane" "$(jq -s '(.[0] - .[1] | fabs) < 1e-8 and .[0] < -0.0515' "$tmp/heights")" true
@@ -269,10 +269,10 @@ slope()
 slope 0.1 0.101 >"$tmp/stays.h5"
 slope 0.1 0.04 >"$tmp/rolls.h5"
 for m in sbp sal ebp eal exact auto; do
-    step -m $m --criterion natural --eps 1e-10 -n 100 "$tmp/stays.h5" >"$tmp/stayed.h5"
+    step -m $m --criterion natural --tolerance 1e-10 -n 100 "$tmp/stays.h5" >"$tmp/stayed.h5"
     like "-m $m: a ball stays on a slope of less than mu_r/R" \
         "$(nsd-info --last -p "$tmp/stayed.h5" | jq '(.v | map(fabs) | max) < 1e-9')" true
-    step -m $m --criterion natural --eps 1e-10 -n 100 "$tmp/rolls.h5" >"$tmp/rolled.h5"
+    step -m $m --criterion natural --tolerance 1e-10 -n 100 "$tmp/rolls.h5" >"$tmp/rolled.h5"
     like "-m $m: and rolls down a steeper one with 5/7 (g sin - mu_r/R g cos)" \
         "$(nsd-info --last -p "$tmp/rolled.h5" | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
     rm "$tmp/stayed.h5" "$tmp/rolled.h5"
@@ -280,7 +280,7 @@ done
 # over the effective radius: r at a wall, r1 r2/(r1 + r2) of two balls
 nsd-info --scene "$tmp/rolls.h5" | jq '.rolling = { mu_r_ratio: 0.03, mu_r: 1e-4 }' | nsd-gen - >"$tmp/ratio.h5"
 is "mu_r_ratio at a wall is mu_r/R" \
-    "$(step -m exact --criterion natural --eps 1e-10 -n 100 "$tmp/ratio.h5" | nsd-info --last -p | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
+    "$(step -m exact --criterion natural --tolerance 1e-10 -n 100 "$tmp/ratio.h5" | nsd-info --last -p | jq '(.v[0] / (0.1 * 5 / 7 * 9.81 * 0.06) - 1 | fabs) < 1e-9')" true
 jq -n '{ dt: 1e-3, mu: 0.6, rolling: { mu_r_ratio: 0.3, mu_p_ratio: 0.06, mu_p: 1e-3 },
     bodies: [{ x: [0, 0, 0], radius: 0.01 }, { x: [0.03, 0, 0], radius: 0.02 }] }' | nsd-gen - | nsd-detect >"$tmp/two.h5"
 is "of two balls it is of r1 r2/(r1 + r2), and added" "$(nsd-info -c "$tmp/two.h5" | jq -c '[.mu_r, .mu_p] | map(. * 1e9 | round)')" '[2000000,1400000]'
@@ -292,7 +292,7 @@ for how in '{ v: [0.1, 0, 0], w: [0, 10, 0] }|.x[0] / (7 * 0.1 * 0.1 / (10 * 0.0
         bodies: [{ x: [0, 0, 0.01], radius: 0.01 } + '"$motion"'] }' | nsd-gen - >"$tmp/moves.h5"
     n=1000
     [[ $what != .w* ]] || n=100
-    step --eps 1e-10 -n $n --every $n --log "$tmp/moves.log" "$tmp/moves.h5" >"$tmp/moved.h5"
+    step --tolerance 1e-10 -n $n --every $n --log "$tmp/moves.log" "$tmp/moves.h5" >"$tmp/moved.h5"
     like "a ball that moves as $motion ends as the closed form says" \
         "$(nsd-info --last -p "$tmp/moved.h5" | jq "($what - 1 | fabs) < $tolerance")" true
     like "and its energy is balanced" "$(misfit "$tmp/moves.log" | jq '. < 1e-12')" true
@@ -308,13 +308,13 @@ rm "$tmp/some.h5"
 like "rolling grains: energy is balanced in every step" "$(misfit "$tmp/rolling.log" | jq '. < 1e-12')" true
 whole rolling.h5
 for m in sbp sal ebp eal exact; do
-    nsd-detect "$tmp/rolling.h5" | solve -m $m --criterion natural --eps 1e-8 --max-sweeps 100000 >"$tmp/m.h5"
+    nsd-detect "$tmp/rolling.h5" | solve -m $m --criterion natural --tolerance 1e-8 --max-sweeps 100000 >"$tmp/m.h5"
     like "rolling grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 2e-8')" true
 done
 nsd-detect "$tmp/rolling.h5" >"$tmp/contacts.h5"
 for g in anderson auto; do
-    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
-    like "rolling grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 2e-8')" true
+    solve --solver $g --criterion natural --tolerance 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    like "rolling grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 2e-8')" true
     like "in fewer sweeps than Gauss-Seidel" "$(jq -n --argjson a "$(nsd-info "$tmp/g.h5" | tail -n 1)" \
         --argjson b "$(nsd-info "$tmp/m.h5" | tail -n 1)" '$a.sweeps < $b.sweeps')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
@@ -322,7 +322,7 @@ for g in anderson auto; do
 done
 refuses 65 "rolling grains: nor is there an FCLIB problem of them" nsd-detect --fclib=local "$tmp/rolling.h5"
 jq '.rolling = { mu_r: 1e-4 }' scenes/press.json | nsd-gen - >"$tmp/press.h5"
-refuses 65 "nor are they solved with loads" nsd-step --global auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
+refuses 65 "nor are they solved with loads" nsd-step --solver auto -n 1000 -o "$tmp/pressed.h5" "$tmp/press.h5"
 like "moments are within their limits" "$(nsd-info -c "$tmp/m.h5" | jq -s \
     'map(select(.mu_r) | (.moment[1] * .moment[1] + .moment[2] * .moment[2] | sqrt) <= 1e-4 * .r[0] * (1 + 1e-9) + 1e-30 and
         (.moment[0] | fabs) <= 5e-5 * .r[0] * (1 + 1e-9) + 1e-30) | length > 20 and all')" true
@@ -361,7 +361,7 @@ like "viscosity makes it cost more" "$(pull 1e-7 '[1,0,0]' 1e-5 | jq '.[1] > 2.2
 jq -n '{ dt: 1e-3, mu: 0.3, adhesion: { c_n: 1e12, w: 1e9, area: 1e-4 },
     bodies: [{ x: [0, 0, 0], radius: 0.01, fixed: true }, { x: [0, 0, -0.02], radius: 0.01, density: 1e4 }] }' | nsd-gen - >"$tmp/weld.h5"
 for m in sbp sal ebp eal exact; do
-    step -m $m --criterion natural --eps 1e-10 -n 20 "$tmp/weld.h5" >"$tmp/welded.h5"
+    step -m $m --criterion natural --tolerance 1e-10 -n 20 "$tmp/weld.h5" >"$tmp/welded.h5"
     like "-m $m: a welded ball hangs, its bond as long as its weight makes it" "$(nsd-info --last -p "$tmp/welded.h5" |
         jq -s '(4 / 3 * 3.141592653589793e-6 * 1e4 * 9.81 / 1e8) as $d | (-0.02 - .[1].x[2] - $d | fabs) < 0.01 * $d')" true
     rm "$tmp/welded.h5"
@@ -372,7 +372,7 @@ beam()
 {
     jq -n --argjson n "$1" '{ dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1], adhesion: { c_n: 1e9, w: 1e6, area: 1 },
         bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - >"$tmp/beam.h5"
-    step --max-sweeps 100000 --criterion natural --eps 1e-7 -n 4 "$tmp/beam.h5" >"$tmp/bent.h5"
+    step --max-sweeps 100000 --criterion natural --tolerance 1e-7 -n 4 "$tmp/beam.h5" >"$tmp/bent.h5"
     nsd-info --last -p "$tmp/bent.h5" | jq -s --argjson n "$1" 'map(select(.x[0] > $n - 0.5).x[1]) | (1 - add) / 2 / (2 * pow($n; 4) / 8e9) - 1'
     rm "$tmp/bent.h5"
 }
@@ -385,7 +385,7 @@ for part in 1.02 0.98; do
     jq -n --argjson part $part '6 as $n | { dim: 2, dt: 1, density: (4 / 3.141592653589793), gravity: [0, -1],
         adhesion: { c_n: 1e9, w: ($part * $n * $n | . * . / 1e9), area: 1 },
         bodies: [range(0; $n + 1) as $i | range(0; 2) as $j | { x: [$i, $j], radius: 0.5, fixed: ($i == 0) }] }' | nsd-gen - |
-        step --overlap keep --max-sweeps 100000 --criterion natural --eps 1e-8 -n 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
+        step --overlap-rule keep --max-sweeps 100000 --criterion natural --tolerance 1e-8 -n 6 --log "$tmp/breaks.log" -o "$tmp/breaks.h5"
     like "a bonded beam breaks where a bond bears S sqrt(w c_n), not below: $part" \
         "$(jq -s 'map(.balance.broken) | add > 0' "$tmp/breaks.log")" "$(jq -n "$part < 1")"
     rm "$tmp/breaks.h5"
@@ -406,7 +406,7 @@ grains() # ADHESION
     jq -n --argjson a "$1" '{ dt: 2e-5, mu: 0.4, e_n: 0.2, walls: [{ box: { x: [0, 0.006], y: [0, 0.006], z: [0, null] } }],
         bodies: [{ random: { count: 80 }, radius: { uniform: [4e-4, 6e-4] }, box: { x: [0, 0.006], y: [0, 0.006], z: [0, 0.006] }, v: [0, 0, -0.2] }] } +
         if $a then { adhesion: $a } else {} end' | nsd-gen - >"$tmp/grains.h5"
-    step --global auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
+    step --solver auto -n 400 --every 400 --log "$tmp/bonded.log" -o "$tmp/some.h5" "$tmp/grains.h5"
     nsd-cat --last "$tmp/some.h5" >"$tmp/bonded.h5"
     rm "$tmp/some.h5"
 }
@@ -419,12 +419,12 @@ like "bonded grains: energy is balanced in every step" "$(misfit "$tmp/bonded.lo
 whole bonded.h5
 nsd-detect "$tmp/bonded.h5" >"$tmp/contacts.h5"
 for m in sbp sal ebp eal exact; do
-    solve -m $m --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
+    solve -m $m --criterion natural --tolerance 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/m.h5"
     like "bonded grains: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-7')" true
 done
 for g in auto anderson; do
-    solve --global $g --criterion natural --eps 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
-    like "bonded grains: --global $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
+    solve --solver $g --criterion natural --tolerance 1e-8 --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/g.h5"
+    like "bonded grains: --solver $g solves them" "$(nsd-err "$tmp/g.h5" | jq '.natural < 1e-7')" true
     like "and finds the same velocities" "$(jq -n --slurpfile a <(nsd-info -c "$tmp/m.h5") --slurpfile b <(nsd-info -c "$tmp/g.h5") \
         '[$a, $b] | transpose | map(.[0].u[0] - .[1].u[0] | fabs) | length > 20 and max < 1e-6')" true
 done
@@ -452,7 +452,7 @@ near() { jq -en "($1 - $2 | fabs) <= $3 * (if $2 > 0 then $2 else 1 end)" >/dev/
 last() { nsd-info --last -p "$1"; }
 weight=$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 9.81')
 for k in 1e5 1e6; do
-    soft '{"stiffness": '$k'}' 0.01 0 | step --eps 1e-9 -n 400 --every 400 -o "$tmp/rest.h5"
+    soft '{"stiffness": '$k'}' 0.01 0 | step --tolerance 1e-9 -n 400 --every 400 -o "$tmp/rest.h5"
     ok "a ball at rest sinks by m g/k, k = $k" near "$(last "$tmp/rest.h5" | jq '0.01 - .x[2]')" "$(jq -n "$weight / $k")" 1e-6
     rm "$tmp/rest.h5"
 done
@@ -462,20 +462,20 @@ for e in 0 0.3 0.7 1; do
     rm "$tmp/bounce.h5"
 done
 for m in sbp sal ebp eal exact; do
-    soft '{"e_n": 0.5}' 0.01 1 | step -m $m --eps 1e-9 -n 400 --every 400 -o "$tmp/rolled.h5"
+    soft '{"e_n": 0.5}' 0.01 1 | step -m $m --tolerance 1e-9 -n 400 --every 400 -o "$tmp/rolled.h5"
     ok "-m $m: a ball slides, then rolls at 5/7 of its speed" near "$(last "$tmp/rolled.h5" | jq '.v[0]')" "$(jq -n 5/7)" 1e-9
     rm "$tmp/rolled.h5"
 done
 # a brick on a slope below the angle of friction: its springs carry it
 jq -n '{ dt: 1e-3, mu: 0.5, gravity: [2, 0, -9], stiffness: { normal: 1e6, tangential: 5e5 },
     walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], shapes: { brick: { box: [0.04, 0.04, 0.01] } },
-    bodies: [{ x: [0, 0, 0.005], shape: "brick", size: 1 }] }' | nsd-gen - | step --eps 1e-9 -n 3000 --every 3000 -o "$tmp/brick.h5"
+    bodies: [{ x: [0, 0, 0.005], shape: "brick", size: 1 }] }' | nsd-gen - | step --tolerance 1e-9 -n 3000 --every 3000 -o "$tmp/brick.h5"
 # four springs of 5e5 N/m along the slope, and the turn by its pull at the centre, 5 mm above them
 ok "a brick on a slope stays, displaced by m g sin/(4 k_t)" near "$(last "$tmp/brick.h5" | jq '.x[0]')" "$(jq -n '0.08 / 2e6 + 0.08 * 2.5e-5 / (4e6 * 4e-4)')" 1e-2
 
 # with rolling friction: beyond its limit, and below it with springs of k_t R^2; and with cohesion
 jq -n '{ dt: 1e-3, mu: 0.6, gravity: [3, 0, -9], stiffness: 1e6, rolling: { mu_r: 1e-3 }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
-    bodies: [{ x: [0, 0, 0.01], radius: 0.01 }] }' | nsd-gen - | step --criterion natural --eps 1e-10 -n 100 --every 100 -o "$tmp/down.h5"
+    bodies: [{ x: [0, 0, 0.01], radius: 0.01 }] }' | nsd-gen - | step --criterion natural --tolerance 1e-10 -n 100 --every 100 -o "$tmp/down.h5"
 ok "a ball rolls down a slope with 5/7 (g sin - mu_r/R g cos)" near "$(last "$tmp/down.h5" | jq '.v[0]')" 0.15 1e-9
 # tilted KEYS BODY: below the angle of rolling friction
 tilted()
@@ -484,7 +484,7 @@ tilted()
         walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.01] } + $body] } + $more' | nsd-gen -
 }
 for m in sbp sal ebp eal exact; do
-    tilted '{}' '{ "radius": 0.01 }' | step -m $m --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5"
+    tilted '{}' '{ "radius": 0.01 }' | step -m $m --criterion natural --tolerance 1e-11 -n 100 --every 100 -o "$tmp/down.h5"
     # F/k_t by the slip, and F R/(k_t R^2) R by the turn
     ok "-m $m: a ball is held on a slope, displaced by 2 F/k_t" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
         "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 7 / 1e6')" 1e-6
@@ -493,18 +493,18 @@ done
 # two balls as one grain, whose bounding ball has a radius of 16 mm: two contacts, each with k_t (16 mm)^2
 tilted '{ "shapes": { "pair": { "balls": [[0, 0.006, 0, 0.01], [0, -0.006, 0, 0.01]] } } }' \
     '{ "shape": "pair", "size": 1 }' >"$tmp/pair.h5"
-step --criterion natural --eps 1e-11 -n 100 --every 100 -o "$tmp/down.h5" "$tmp/pair.h5"
+step --criterion natural --tolerance 1e-11 -n 100 --every 100 -o "$tmp/down.h5" "$tmp/pair.h5"
 ok "two balls as one grain are held by 2 k_t and 2 k_t R^2" near "$(last "$tmp/down.h5" | jq '.x[0]')" \
     "$(nsd-info -p "$tmp/pair.h5" | jq '.mass * (1 + (1 / 1.6) * (1 / 1.6)) / (2 * 2e6 / 7)')" 1e-5
 # k_r h^2/I of a spinning ball in one step
 tilted '{ "gravity": [0, 0, -9], "rolling": { "mu_p": 100 } }' '{ "radius": 0.01, "w": [0, 0, 1] }' |
-    step --criterion natural --eps 1e-12 -n 1 -o "$tmp/spun.h5"
+    step --criterion natural --tolerance 1e-12 -n 1 -o "$tmp/spun.h5"
 ok "a spring against pivoting: an implicit step of k_t R^2" near "$(last "$tmp/spun.h5" | jq '.w[2]')" \
     "$(jq -n '4 / 3 * 3.141592653589793 * 1e-6 * 2500 * 0.4 | 1 / (1 + 2 / 7 / .)')" 1e-9
 for f in 1.001 0.999; do
     jq -n --argjson f "$(jq -n "$f * $weight")" '{ dt: 1e-3, stiffness: 1e6, cohesion: { force: $f },
         walls: [{ normal: [0, 0, -1], point: [0, 0, 0] }], bodies: [{ x: [0, 0, -0.01], radius: 0.01 }] }' | nsd-gen - |
-        step --eps 1e-9 -n 100 --every 100 | last - | jq '.x[2] > -0.0100001' >>"$tmp/hangs"
+        step --tolerance 1e-9 -n 100 --every 100 | last - | jq '.x[2] > -0.0100001' >>"$tmp/hangs"
 done
 is "a ball hangs from a ceiling by 1.001 of its weight, and falls from 0.999" "$(tr '\n' ' ' <"$tmp/hangs")" "true false "
 
@@ -514,10 +514,10 @@ nsd-cat --last "$tmp/heap.h5" >"$tmp/springs.h5"
 nsd-detect "$tmp/springs.h5" >"$tmp/found.h5"
 reactions() # WAY ...
 {
-    nsd-solve --criterion natural --eps 3e-11 --max-sweeps 100000 "$@" "$tmp/found.h5" 2>/dev/null | nsd-info -c | jq -c 'select(.r) | .r'
+    nsd-solve --criterion natural --tolerance 3e-11 --max-sweeps 100000 "$@" "$tmp/found.h5" 2>/dev/null | nsd-info -c | jq -c 'select(.r) | .r'
 }
 reactions --cold >"$tmp/r"
-for way in '-m exact --order random' '-m eal' '--global nlgs --order natural'; do
+for way in '-m exact --order random' '-m eal' '--solver nlgs --order natural'; do
     # shellcheck disable=SC2086 # a way is several words
     reactions $way >"$tmp/other"
     ok "$way finds the same reactions, to 1e-5 of their mean" \
@@ -526,7 +526,7 @@ for way in '-m exact --order random' '-m eal' '--global nlgs --order natural'; d
 done
 whole springs.h5
 like "a heap at rest stays at rest" "$(step -n 500 --every 500 "$tmp/springs.h5" | nsd-info | tail -n 1 | jq '.kinetic_energy < 1e-8 and .balance.implicit >= 0')" true
-nsd-detect --fclib=global "$tmp/springs.h5" | solve --eps 1e-12 | nsd-err >"$tmp/global.err"
+nsd-detect --fclib=global "$tmp/springs.h5" | solve --tolerance 1e-12 | nsd-err >"$tmp/global.err"
 like "the global form is the same problem" "$(jq '.natural < 1e-9' "$tmp/global.err")" true
 
 # a wedge that locks itself: Newton's law has no solution there
@@ -625,7 +625,7 @@ jq -n '{ dt: 2e-3, mu: 0.3, density: 1000, shapes: { brick: { box: [0.2, 0.1, 0.
     adhesion: { c_n: 1e8, c_t: 5e7, w: 1e9, area: 1e-3 },
     bodies: [{ x: [0, 0, 0], shape: "brick", fixed: true }, { x: [0.03, 0, -0.1], shape: "brick" }] }' | nsd-gen - >"$tmp/weld.h5"
 for m in sbp sal ebp eal exact; do
-    step -m $m --criterion natural --eps 1e-10 -n 300 --every 300 --contacts --log "$tmp/weld.log" "$tmp/weld.h5" >"$tmp/welded.h5"
+    step -m $m --criterion natural --tolerance 1e-10 -n 300 --every 300 --contacts --log "$tmp/weld.log" "$tmp/weld.h5" >"$tmp/welded.h5"
     # the four springs: a force m g, and its moment about the middle of the bond, 15 mm off the centre of mass
     like "-m $m: a brick hangs from its bond" "$(nsd-info -c "$tmp/welded.h5" | jq -s '(2 * 9.81) as $f | (map(.r[0]) | add / -2e-3) as $pull |
         length == 4 and all(.beta == 1) and ($pull / $f - 1 | fabs) < 1e-3 and
@@ -636,7 +636,7 @@ for w in 2.1 0.95; do # what comes at once stretches a spring up to twice as far
     jq -n --argjson w $w '{ dt: 1e-4, mu: 0.3, density: 1000, shapes: { cube: { box: [0.1, 0.1, 0.1] } },
         adhesion: { c_n: 1e12, c_t: 1e12, w: (($w * 9.81 / 1e-3) as $s | $s * $s / 1e12), area: 1e-3 },
         bodies: [{ x: [0, 0, 0], shape: "cube", fixed: true }, { x: [0, 0, -0.1], shape: "cube", density: 1000 }] }' | nsd-gen - >"$tmp/weld.h5"
-    step --criterion natural --eps 1e-8 -n 100 --every 100 --contacts "$tmp/weld.h5" >"$tmp/welded.h5"
+    step --criterion natural --tolerance 1e-8 -n 100 --every 100 --contacts "$tmp/weld.h5" >"$tmp/welded.h5"
     like "a cube hangs from a bond of $w times its weight, or does not" \
         "$(nsd-info --last -p "$tmp/welded.h5" | jq -s '.[1].x[2] > -0.1001')" "$(jq -n "$w > 1")"
 done
@@ -645,7 +645,7 @@ jq -n '{ dt: 1e-3, mu: 0.3, density: 1000, cell: { lengths: [0.5, 0.5, 1], repea
     shapes: { brick: { box: [0.2, 0.1, 0.1] } }, adhesion: { c_n: 1e9, c_t: 5e8, w: 1e9, area: 1e-3 },
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [2, -1, 0] }],
     bodies: [{ x: [0.1, 0.1, 0.05], shape: "brick", v: [2, -1, 0] }] }' | nsd-gen - |
-    step --criterion natural --eps 1e-10 -n 500 --every 500 --contacts -o "$tmp/ride.h5"
+    step --criterion natural --tolerance 1e-10 -n 500 --every 500 --contacts -o "$tmp/ride.h5"
 like "a brick rides on the floor that it is bonded to, through the border of a cell that repeats" \
     "$(nsd-info --last -p "$tmp/ride.h5" | jq '.image == [2, -1, 0] and ([.x[0] - 0.1, .x[1] - 0.1, .x[2] - 0.05, .w[]] | map(fabs) | max < 1e-9)')" true
 like "by its four bonds alone, none of them stretched" \
@@ -667,7 +667,7 @@ shaped() # LAWS STEPS: bricks, rods, clumps and balls that fall into a box
     like "and more than 30 contacts are left" "$(nsd-info -c "$tmp/contacts.h5" | jq -s 'length > 30')" true
     local m
     for m in "${methods[@]}"; do
-        solve -m "$m" --global anderson --criterion natural --eps 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
+        solve -m "$m" --solver anderson --criterion natural --tolerance 1e-7 --max-sweeps 20000 "$tmp/contacts.h5" >"$tmp/m.h5"
         like "shaped grains with $1: -m $m solves them" "$(nsd-err "$tmp/m.h5" | jq '.natural < 1e-6')" true
     done
 }
@@ -685,7 +685,7 @@ twice() # BODIES
     jq -n '{ dt: 1e-4, mu: 0.4, density: 2500, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], shapes: { brick: { box: [0.01, 0.01, 0.01] } },
         rolling: { mu_r: 2e-4, mu_p: 1e-4 }, adhesion: { c_n: 1e10, c_t: 5e9, w: 1e-3, area: 1e-6, forever: true },
         bodies: ([{ count: 20, radius: 0.002, box: { x: [0, 0.02], y: [0, 0.02], z: [0, null] }, v: [0.05, 0, -0.3] }] + '"$1"') }' | nsd-gen - |
-        step --global nlgs --criterion natural --eps 1e-11 --overlap keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
+        step --solver nlgs --criterion natural --tolerance 1e-11 --overlap-rule keep -n 60 --log "$tmp/twice.log" | nsd-info --last -p | jq -c 'select(.radius == 0.002) | .x'
 }
 if [ -z "$thin" ]; then # a minute each under the sanitizers, of sweeps that are run elsewhere
     twice '[]' >"$tmp/numbers"
@@ -712,7 +712,7 @@ for grain in disc box; do
         walls: [{ circle: { center: [0, 0], radius: 0.03 }, drives: [{ about: [0, 0], speed: 6 }] }],
         bodies: [{ random: { count: 40 }, radius: { uniform: [1.4e-3, 1.6e-3] }, box: { x: [-0.02, 0.02], y: [-0.02, 0.02] } } +
             if $grain == "box" then { shape: "box" } else {} end] }' | nsd-gen - |
-        step -n 250 --every 250 --criterion natural --eps 1e-3 --log "$tmp/turns.log" -o "$tmp/turned.h5"
+        step -n 250 --every 250 --criterion natural --tolerance 1e-3 --log "$tmp/turns.log" -o "$tmp/turned.h5"
     like "a drum of $grain grains that roll, hold together and break: energy is balanced in every step" \
         "$(misfit "$tmp/turns.log" | jq '. < 1e-12')" true
     like "and the drum has done work, and bonds have broken" \

@@ -54,10 +54,10 @@ nsd-gen 300 | nsd-step --small-steps 0 -n 900 --every 900 2>/dev/null | nsd-cat 
 three=1 ok "300 balls: the bytes of one process on $all" same "$tmp/heap.h5" "$all" -n 10 --contacts
 ok "with a stiffness of contacts" same "$tmp/heap.h5" 3 -n 5 --stiffness auto --contacts
 ok "in the natural order, by nlgs" same "$tmp/heap.h5" 3 -n 5 -m sbp --order natural --max-sweeps 30
-ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --global anderson --eps 1e-7
+ok "by Anderson's acceleration, to a tight criterion" same "$tmp/heap.h5" 3 -n 3 --solver anderson --tolerance 1e-7
 [ -n "$thin" ] || ok "by another criterion, with warm starts" same "$tmp/heap.h5" 3 -n 5 --criterion scaled --warm
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step --small-steps 0 -n 216 --every 216 --overlap keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
-alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap keep --eps 1e-10
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step --small-steps 0 -n 216 --every 216 --overlap-rule keep 2>/dev/null | nsd-cat --last >"$tmp/jam.h5"
+alone=1 ok "where auto goes on with Newton's method, which the first makes alone" same "$tmp/jam.h5" 2 -n 1 --overlap-rule keep --tolerance 1e-10
 
 while read -r before scene ranks steps alone name; do
     [ -z "$thin" ] || [ "$alone" != 0 ] || steps=1
@@ -126,8 +126,8 @@ blocks() # FILE K EPS ARGUMENT ...: to the criterion, and moving as the order of
     shift 3
     rm -f "$tmp"/one.h5 "$tmp"/block.h5
     set -- --criterion natural "$@"
-    nsd-step --small-steps 0 "$@" --eps "$eps" -o "$tmp/one.h5" "$file" &&
-        ranks "$k" "$@" --eps "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
+    nsd-step --small-steps 0 "$@" --tolerance "$eps" -o "$tmp/one.h5" "$file" &&
+        ranks "$k" "$@" --tolerance "$eps" --contacts --order block -o "$tmp/block.h5" "$file" || return 1
     jq -n --argjson e "$(natural "$tmp/block.h5")" --argjson eps "$eps" -e '($e | type) == "number" and $e <= $eps' && /usr/bin/python3 - "$eps" "$tmp/one.h5" "$tmp/block.h5" <<'EOF'
 import io, sys, h5py
 import numpy as np
@@ -144,22 +144,22 @@ EOF
 # grains that still move: a pile at rest has several solutions, and each order of sweeps finds its own
 nsd-gen 300 | nsd-step --small-steps 0 -n 400 --every 400 2>/dev/null | nsd-cat --last >"$tmp/moving.h5"
 # positions that overlap are moved apart by ten sweeps, which end where they end: so without, or one step
-ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/moving.h5" 2 1e-8 -n 5 --overlap keep
-[ -n "$thin" ] || ok "on 8" blocks "$tmp/moving.h5" 8 1e-8 -n 5 --overlap keep
+ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/moving.h5" 2 1e-8 -n 5 --overlap-rule keep
+[ -n "$thin" ] || ok "on 8" blocks "$tmp/moving.h5" 8 1e-8 -n 5 --overlap-rule keep
 three=1 ok "with bodies moved apart" blocks "$tmp/moving.h5" 3 1e-8 -n 1
-ok "over a floor that is shaken, in a cell that repeats" blocks "$tmp/vibrated.h5" 3 1e-8 -n 2 --overlap keep
-ok "in a cell that is sheared" blocks "$tmp/shear.h5" 3 1e-8 -n 2 --overlap keep
-ok "with clumps, capsules, hulls" blocks "$tmp/rubble.h5" 2 1e-8 -n 1 --overlap gap
-ok "with cohesion" blocks "$tmp/cohesive.h5" 3 1e-8 -n 2 --overlap keep
+ok "over a floor that is shaken, in a cell that repeats" blocks "$tmp/vibrated.h5" 3 1e-8 -n 2 --overlap-rule keep
+ok "in a cell that is sheared" blocks "$tmp/shear.h5" 3 1e-8 -n 2 --overlap-rule keep
+ok "with clumps, capsules, hulls" blocks "$tmp/rubble.h5" 2 1e-8 -n 1 --overlap-rule gap
+ok "with cohesion" blocks "$tmp/cohesive.h5" 3 1e-8 -n 2 --overlap-rule keep
 after 300 scenes/rolling.json
 nsd-step --small-steps 0 -n 1 -o "$tmp/solved.h5" --contacts "$tmp/rolling.h5" 2>/dev/null
-ok "with bonds of clumps, capsules, hulls" blocks "$tmp/glued.h5" 3 1e-6 -n 1 --overlap keep
-ok "with rolling friction" blocks "$tmp/rolling.h5" 3 1e-6 -n 1 --overlap keep
-ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --global anderson --overlap keep
-ok "with bonds" blocks "$tmp/bonded.h5" 3 1e-8 -n 3 --overlap keep
-ok "with rolling friction, from the last reactions and moments" blocks "$tmp/solved.h5" 3 1e-6 -n 2 --warm --overlap keep
-ok "with grains that pour" blocks "$tmp/pour.h5" 2 1e-8 -n 3 --overlap keep
-ok "with a program in the loop" blocks "$tmp/moving.h5" 3 1e-8 -n 3 --overlap keep --with "$acts"
+ok "with bonds of clumps, capsules, hulls" blocks "$tmp/glued.h5" 3 1e-6 -n 1 --overlap-rule keep
+ok "with rolling friction" blocks "$tmp/rolling.h5" 3 1e-6 -n 1 --overlap-rule keep
+ok "by Anderson's acceleration" blocks "$tmp/rolling.h5" 2 1e-6 -n 1 --solver anderson --overlap-rule keep
+ok "with bonds" blocks "$tmp/bonded.h5" 3 1e-8 -n 3 --overlap-rule keep
+ok "with rolling friction, from the last reactions and moments" blocks "$tmp/solved.h5" 3 1e-6 -n 2 --warm --overlap-rule keep
+ok "with grains that pour" blocks "$tmp/pour.h5" 2 1e-8 -n 3 --overlap-rule keep
+ok "with a program in the loop" blocks "$tmp/moving.h5" 3 1e-8 -n 3 --overlap-rule keep --with "$acts"
 overlaps() # FILE: m, the largest of the last frames
 {
     nsd-info "$1" | jq -s 'map(select(.max_overlap != null)) | last | .max_overlap'
@@ -354,7 +354,7 @@ else
 fi
 jq -n '{ dim: 2, dt: 1e-3, walls: [{ normal: [0, 1], point: [0, 0] }], bodies: [{ x: [0, 0.01], radius: 0.01 }] }' | nsd-gen - >"$tmp/disc.h5"
 ok "of one disc" same "$tmp/disc.h5" 3 -n 2
-ok "and in blocks" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --overlap keep
+ok "and in blocks" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --overlap-rule keep
 
 # ---- what goes wrong ----
 

@@ -19,7 +19,7 @@ below() { jq -n "($1) < ($2)"; }
 lean() # t mu shape: the speed after half a second, m/s, and the spin, rad/s
 {
     scene "$brick, \"tall\": {\"box\": [0.1, 0.2, 0.2]}" "{\"x\": [0, 0, $4], \"shape\": \"$3\"}" ", \"gravity\": [$(jq -n "9.81 * $1"), 0, -9.81]" |
-        jq ".mu = $2" | nsd-gen - | nsd-step -n 500 --every 500 --eps 1e-8 --warm 2>/dev/null | nsd-info --last -p | jq -c '[.v[0], .w[1]]'
+        jq ".mu = $2" | nsd-gen - | nsd-step -n 500 --every 500 --tolerance 1e-8 --warm 2>/dev/null | nsd-info --last -p | jq -c '[.v[0], .w[1]]'
 }
 is 'a brick on a slope less steep than its friction stays' "$(lean 0.49 0.5 brick 0.05 | jq 'map(fabs < 1e-3) | all')" true
 is 'on a steeper one it slides with g (tan - mu)' \
@@ -29,7 +29,7 @@ is 'and tips at 0.51, width over height' "$(lean 0.51 0.9 tall 0.1 | jq '.[1] > 
 
 # A cube that falls on a corner comes to rest on a face, and its reactions carry it.
 scene "$cube" '{"x": [0, 0, 0.12], "shape": "cube", "orientation": [0.5, 0.3, 0.1]}' |
-    nsd-gen - | nsd-step -n 1500 --every 500 --contacts --eps 1e-8 --warm 2>/dev/null >"$tmp/cube.h5"
+    nsd-gen - | nsd-step -n 1500 --every 500 --contacts --tolerance 1e-8 --warm 2>/dev/null >"$tmp/cube.h5"
 is 'a cube that is dropped rests on four corners' "$(last "$tmp/cube.h5" .contacts)" 4
 is 'that carry its weight' \
     "$(nsd-info --last -c "$tmp/cube.h5" | jq -s '(map(.r[0]) | add) / (2500e-3 * 9.81 * 1e-3) - 1 | fabs < 1e-6')" true
@@ -38,7 +38,7 @@ is 'at rest' "$(last "$tmp/cube.h5" '.kinetic_energy < 1e-10')" true
 
 # Symmetric: from a full solution all corners carry the same.
 scene "$cube" '{"x": [0, 0, 0.05], "shape": "cube"}' | jq '.mu = 0' | nsd-gen - | nsd-detect --gap 1e-9 |
-    nsd-solve -m exact --global auto --eps 1e-10 2>/dev/null | nsd-info -c |
+    nsd-solve -m exact --solver auto --tolerance 1e-10 2>/dev/null | nsd-info -c |
     jq -s 'map(.r[0]) | (max - min) / max < 1e-3' >"$tmp/equal"
 is 'its corners carry equal parts' "$(cat "$tmp/equal")" true
 
@@ -51,16 +51,16 @@ is 'and stands' "$(nsd-info --last -p "$tmp/stands.h5" | jq -s '.[-1].x | (.[2] 
 
 # A capsule rolls down a slope as a cylinder with round ends does: a = g sin / (1 + I/(m r^2)).
 scene '"pill": {"capsule": {"length": 0.3, "radius": 0.1}}' '{"x": [0, 0, 0.1], "shape": "pill", "orientation": [0, 0, 1.5707963267948966]}' \
-    ', "gravity": [1, 0, -9.81]' | nsd-gen - | nsd-step -n 500 --every 500 --eps 1e-10 --warm 2>/dev/null >"$tmp/pill.h5"
+    ', "gravity": [1, 0, -9.81]' | nsd-gen - | nsd-step -n 500 --every 500 --tolerance 1e-10 --warm 2>/dev/null >"$tmp/pill.h5"
 is 'a capsule rolls as fast as its moment of inertia lets it' \
     "$(nsd-info --last -p "$tmp/pill.h5" | jq '3.141592653589793 as $p | ($p * 0.3 * 1e-2) as $c | (4 / 3 * $p * 1e-3) as $b |
         (($c / 2 + 0.4 * $b) / ($c + $b)) as $k | (.v[0] / (0.5 / (1 + $k)) - 1 | fabs) < 1e-3')" true
 
 # A clump of one ball is a ball, but for the lever arms in what overlaps.
 scene '"one": {"balls": [[0, 0, 0, 0.1]]}' '{"x": [0, 0, 0.1], "shape": "one", "v": [1, 0, 0]}' | nsd-gen - |
-    nsd-step -n 400 --every 400 --eps 1e-10 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/clump"
+    nsd-step -n 400 --every 400 --tolerance 1e-10 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/clump"
 scene '' '{"x": [0, 0, 0.1], "radius": 0.1, "v": [1, 0, 0]}' | nsd-gen - |
-    nsd-step -n 400 --every 400 --eps 1e-10 --overlap gap-project 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/ball"
+    nsd-step -n 400 --every 400 --tolerance 1e-10 --overlap-rule gap-project 2>/dev/null | nsd-info --last -p | jq -c '[.x[0], .v[0], .w[1]]' >"$tmp/ball"
 is 'a clump of one ball moves as the ball' \
     "$(jq -s '[.[0], .[1]] | transpose | map((.[0] / .[1] - 1 | fabs) < 1e-4) | all' "$tmp/clump" "$tmp/ball")" true
 
@@ -84,7 +84,7 @@ arch()
         printf "[[%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g], [%.15g, %.15g]]}}, \"bodies\": [", i * c, -i * s, o * c, -o * s, o * c, o * s, i * c, i * s
         for (k = 0; k < n; k++)
             printf "%s{\"x\": [%.15g, %.15g], \"shape\": \"stone\", \"orientation\": %.15g}", k ? ", " : "", g * cos((k + 0.5) * d), g * sin((k + 0.5) * d), (k + 0.5) * d
-        print "]}" }' | nsd-gen - | nsd-step -n 1000 --every 1000 --warm --eps 1e-6 2>/dev/null | nsd-info --last -p | jq -s '.[10].x[1] > 0.95'
+        print "]}" }' | nsd-gen - | nsd-step -n 1000 --every 1000 --warm --tolerance 1e-6 2>/dev/null | nsd-info --last -p | jq -s '.[10].x[1] > 0.95'
 }
 is 'an arch of 21 stones stands with a thickness of 0.11 radii [Couplet, Heyman: 0.107]' "$(arch 0.11 21)" true
 is 'and falls with 0.105' "$(arch 0.105 21)" false
@@ -98,7 +98,7 @@ lean() # part of the critical mu: how high the cards' centres are after 0.4 s, o
         x = L / 2 * s - c / 2 * k; z = r + L / 2 * k + c / 2 * s; apex = L * s + r; mu = part * (L * s - c * k) / 2 / (L * k + r)
         printf "{\"dt\": 1e-3, \"mu\": %.12g, \"shapes\": {\"card\": {\"box\": [%g, 0.063, %g], \"round\": %g}}, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}],", mu, c, L, r
         printf "\"bodies\": [{\"x\": [%.12g, 0, %.12g], \"shape\": \"card\", \"orientation\": [0, %g, 0]}, {\"x\": [%.12g, 0, %.12g], \"shape\": \"card\", \"orientation\": [0, %g, 0]}]}", x - apex, z, a, apex - x, z, -a
-    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --eps 1e-8 2>/dev/null | nsd-info --last -p | jq -s 'map(.x[2]) | add / 2 / 0.04137'
+    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --tolerance 1e-8 2>/dev/null | nsd-info --last -p | jq -s 'map(.x[2]) | add / 2 / 0.04137'
 }
 is 'two cards lean against each other with a friction of 1.01 times what statics asks for' "$(below '0.995' "$(lean 1.01)")" true
 is 'and slide apart with 0.98 times' "$(below "$(lean 0.98)" 0.9)" true
@@ -133,7 +133,7 @@ dominoes() # height thickness gap: the speed by that theory, and by nsd between 
     awk -v h="$1" -v d="$2" -v s="$3" 'BEGIN {
         printf "{\"dim\": 2, \"dt\": 2e-4, \"mu\": 0, \"pairs\": [{\"pair\": [\"ball\", \"wall\"], \"mu\": 5}], \"walls\": [{\"point\": [0, 0], \"normal\": [0, 1]}], \"shapes\": {\"domino\": {\"box\": [%g, %g]}}, \"bodies\": [", d, h
         for (k = 0; k < 20; k++) printf "%s{\"x\": [%.9g, %.9g], \"shape\": \"domino\" %s}", k ? ", " : "", k * (s + d), h / 2, k ? "" : ", \"w\": -10, \"v\": [" 5 * h ", " 5 * d "]"
-        print "]}" }' | nsd-gen - | nsd-step --until 0.6 --every 5 --warm --eps 1e-6 2>/dev/null | nsd-info -p |
+        print "]}" }' | nsd-gen - | nsd-step --until 0.6 --every 5 --warm --tolerance 1e-6 2>/dev/null | nsd-info -p |
         jq -n --argjson pitch "$(jq -n "$2 + $3")" 'reduce (inputs | select(.id == 8 or .id == 18) | select((.w[2] | fabs) > 0.05)) as $b ({};
             if .["\($b.id)"] then . else .["\($b.id)"] = $b.step end) | 10 * $pitch / (.["18"] - .["8"]) / 2e-4'
 }
@@ -149,7 +149,7 @@ roll() # shape
         printf "{\"dt\": 1e-3, \"mu\": 0.3, \"gravity\": [2, 1, -9.81], \"shapes\": {\"pill\": {\"capsule\": {\"length\": 0.2, \"radius\": 0.05}}, \"clump\": {\"balls\": ["
         for (k = 0; k < n; k++) printf "%s[%.12g, 0, 0, 0.05]", k ? ", " : "", -0.1 + 0.2 * k / (n - 1)
         printf "]}}, \"walls\": [{\"point\": [0, 0, 0], \"normal\": [0, 0, 1]}], \"bodies\": [{\"x\": [0, 0, 0.1], \"shape\": \"%s\", \"orientation\": [0.1, 0.3, 0.7]}]}", s
-    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --eps 1e-8 2>/dev/null | nsd-info --last -p | jq -c '[.mass, .v[0], .v[1], .w[0], .w[1]]'
+    }' | nsd-gen - | nsd-step -n 400 --every 400 --warm --tolerance 1e-8 2>/dev/null | nsd-info --last -p | jq -c '[.mass, .v[0], .v[1], .w[0], .w[1]]'
 }
 is 'a clump of balls along a line moves as the capsule' \
     "$(jq -n --argjson a "$(roll pill)" --argjson b "$(roll clump)" '[$a, $b] | transpose | map((.[0] / .[1] - 1 | fabs) < 2e-4) | all')" true
@@ -160,7 +160,7 @@ packs() # SHAPE...: as the body's keys
 {
     printf '{"dim": 2, "dt": 1e-3, "mu": 0.5, "shapes": {"six": {"regular": {"sides": 6, "radius": 1}}, "many": {"regular": {"sides": 24, "radius": 1}},
         "pill": {"capsule": {"length": 0.05, "radius": 1}}}, "walls": [{"box": {"x": [0, 0.6], "y": [0, null]}}], "bodies": [{"count": 300, %s "radius": {"uniform": [0.01, 0.018]}}]}' "${1-}" |
-        nsd-gen - | nsd-step -n 1500 --every 1500 --global auto 2>/dev/null | nsd-info --last -p |
+        nsd-gen - | nsd-step -n 1500 --every 1500 --solver auto 2>/dev/null | nsd-info --last -p |
         jq -s '(map(.mass) | add) as $m | $m / 2500 / (1.2 * (map(.x[1] * .mass) | add) / $m)'
 }
 if [ -z "$thin" ]; then
@@ -178,7 +178,7 @@ on()
 {
     printf '{"dt": 1e-3, "mu": 0.5, "shapes": {"plank": {"box": [0.6, 0.1, 0.02]}, "cube": {"box": [0.1, 0.1, 0.1]}, "pill": {"capsule": {"length": 0.5, "radius": 0.01}}},
         "bodies": [{"x": [%s, 0, %s], "shape": "%s", "orientation": %s}], "walls": [%s]}' "$2" "$3" "$4" "${5-[0, 0, 0]}" "$1" >"$tmp/on.json"
-    nsd-gen "$tmp/on.json" | nsd-step -n 500 --every 500 --contacts --eps 1e-8 --warm 2>/dev/null >"$tmp/on.h5"
+    nsd-gen "$tmp/on.json" | nsd-step -n 500 --every 500 --contacts --tolerance 1e-8 --warm 2>/dev/null >"$tmp/on.h5"
     nsd-info --last -p "$tmp/on.h5" | jq -c '[.x[2], (.w | map(. * .) | add | sqrt), .mass]' >"$tmp/body"
     nsd-info --last -c "$tmp/on.h5" | jq -s '[length, (map(.r[0]) | add // 0)]' | jq -c --slurpfile b "$tmp/body" '[$b[0][0], $b[0][1], .[0], .[1] / ($b[0][2] * 9.81e-3)]'
 }
@@ -246,7 +246,7 @@ printf '{"dt": 1e-3, "density": 2600, "mu": 0.5, "shapes": {"stone": %s, "cube":
     {"count": 25, "shape": "cube", "orientation": "random", "size": {"uniform": [0.05, 0.1]}, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [1.1, null]}},
     {"count": 25, "shape": "tetra", "orientation": "random", "size": 0.05, "box": {"x": [0, 0.4], "y": [0, 0.4], "z": [2.8, null]}}]}' "$(jq -c .shapes.stone scenes/rubble.json)" >"$tmp/rests.json"
 if [ -z "$thin" ]; then
-    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --global auto 2>/dev/null >"$tmp/rests.h5"
+    nsd-gen "$tmp/rests.json" | nsd-step -n 4000 --every 100 --solver auto 2>/dev/null >"$tmp/rests.h5"
     is 'a heap of polyhedra stands still: below 1e-6 m g d in all' \
         "$(nsd-info "$tmp/rests.h5" | jq -s --argjson e "$(nsd-info --last -p "$tmp/rests.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')" \
             'map(select(.step > 3000).kinetic_energy) | length == 10 and max < 1e-6 * $e')" true
@@ -274,7 +274,7 @@ for _ in 1 2 3; do
     nsd-detect "$tmp/pipe.h5" | nsd-solve 2>/dev/null | nsd-move >"$tmp/next.h5"
     mv "$tmp/next.h5" "$tmp/pipe.h5"
 done
-nsd-step --global auto -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
+nsd-step --solver auto -n 3 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/three.h5"
 ok 'detect | solve | move is nsd-step' same_particles "$tmp/pipe.h5" "$tmp/three.h5"
 nsd-step -n 30 "$tmp/heap.h5" 2>/dev/null | nsd-cat --last >"$tmp/whole.h5"
 nsd-step -n 17 "$tmp/heap.h5" 2>/dev/null >"$tmp/half.h5"
@@ -283,11 +283,11 @@ ok 'a run that goes on from its file is the run, to the bit' same_particles "$tm
 
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 for m in sbp sal ebp eal exact; do
-    nsd-solve -m "$m" --eps 1e-6 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$m.h5"
+    nsd-solve -m "$m" --tolerance 1e-6 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$m.h5"
     is "$m solves it" "$(nsd-err "$tmp/$m.h5" | jq '.natural < 1.1e-6')" true
 done
 for g in nlgs anderson; do
-    nsd-solve --global "$g" --eps 1e-4 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$g.h5"
+    nsd-solve --solver "$g" --tolerance 1e-4 --max-sweeps 20000 "$tmp/contacts.h5" 2>/dev/null >"$tmp/$g.h5"
     is "and so does $g" "$(nsd-err "$tmp/$g.h5" | jq '.natural < 1.1e-4')" true
 done
 
@@ -295,11 +295,11 @@ done
 for form in local global; do
     nsd-detect --fclib=$form "$tmp/heap.h5" >"$tmp/both.h5"
     foreign "$tmp/both.h5" "$tmp/$form.raw"
-    is "as FCLIB's $form problem it can be solved" "$(nsd-solve --eps 1e-6 "$tmp/$form.raw" 2>/dev/null | nsd-err | jq '.natural < 1.1e-6')" true
+    is "as FCLIB's $form problem it can be solved" "$(nsd-solve --tolerance 1e-6 "$tmp/$form.raw" 2>/dev/null | nsd-err | jq '.natural < 1.1e-6')" true
 done
 
 # A scene from a document has its shapes.
-printf '{"dt": 1e-3, "mu": 0.5, "overlap": true, "bodies": [{"document": "%s"}]}' "$tmp/heap.h5" | nsd-gen - >"$tmp/from.h5"
+printf '{"dt": 1e-3, "mu": 0.5, "allow_overlap": true, "bodies": [{"document": "%s"}]}' "$tmp/heap.h5" | nsd-gen - >"$tmp/from.h5"
 is 'bodies from a document have their shapes' "$(nsd-info -p "$tmp/from.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)" \
     "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map([.shape, .x, .q]) | tojson' | cksum)"
 is 'nsd-info says which' "$(nsd-info -p "$tmp/heap.h5" | jq -s 'map(.shape) | unique | join(" ")')" '"clump cube rounded stone"'
@@ -476,7 +476,7 @@ between() # DIM F: velocity along gravity after 0.2 s, and the largest spin
     jq -n --argjson d "$1" --argjson F "$2" '{ dim: $d, dt: 1e-3, mu: 0.5, shapes: { b: { box: [0.2, 0.16, 0.12][:$d] } },
         bodies: [{ x: [0, 0, 0][:$d], shape: "b", mass: 1 }], walls: [{ point: [-0.1, 0, 0][:$d], normal: [1, 0, 0][:$d] },
             { point: [0.1, 0, 0][:$d], normal: [-1, 0, 0][:$d], load: { along: [1, 0, 0][:$d], mass: 1, force: -$F } }] }' | nsd-gen - |
-        nsd-step -n 200 --eps 1e-4 --every 200 2>/dev/null | nsd-info --last -p | jq -c --argjson d "$1" '[.v[$d - 1], (.w | map(fabs) | max)]'
+        nsd-step -n 200 --tolerance 1e-4 --every 200 2>/dev/null | nsd-info --last -p | jq -c --argjson d "$1" '[.v[$d - 1], (.w | map(fabs) | max)]'
 }
 for d in 2 3; do
     like "a box between two plates stays (${d}D)" "$(between $d 9.9 | jq 'map(fabs) | max < 1e-3')" true

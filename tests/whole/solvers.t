@@ -7,7 +7,7 @@
 solvers=(auto nlgs anderson)
 
 # A settled heap, and what of it is to be solved
-nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --criterion glob --eps 1e-8 2>/dev/null |
+nsd-gen 60 | nsd-step -m exact --relax 1.5 -n 900 --every 900 --criterion glob --tolerance 1e-8 2>/dev/null |
     nsd-cat --last | nsd-detect --fclib=local >"$tmp/heap.h5"
 nsd-detect "$tmp/heap.h5" >"$tmp/contacts.h5"
 
@@ -21,17 +21,17 @@ below() # DOCUMENT NAME MOST: that number of each line of nsd-err
 
 # ---- the paper's criterion, by bodies; W of the same packing ----
 
-nsd-solve -m exact --criterion glob --eps 1e-13 --max-sweeps 200000 "$tmp/contacts.h5" >"$tmp/truth.h5" 2>/dev/null
+nsd-solve -m exact --criterion glob --tolerance 1e-13 --max-sweeps 200000 "$tmp/contacts.h5" >"$tmp/truth.h5" 2>/dev/null
 velocities() { nsd-info --contacts "$1" | jq -r '.u | @tsv'; }
 for g in "${solvers[@]}"; do
     eps=1e-12
-    status 0 "--global $g converges" nsd-solve -e --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5"
+    status 0 "--solver $g converges" nsd-solve -e --solver "$g" --criterion glob --tolerance $eps --max-sweeps 100000 "$tmp/contacts.h5"
     cp "$tmp/out" "$tmp/$g.h5"
-    ok "--global $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
-    nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
-    ok "--global $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
-    NSD_LANES=2 nsd-solve --global "$g" --criterion glob --eps $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
-    ok "--global $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
+    ok "--solver $g: the criterion, recomputed" below "$tmp/$g.h5" eps_glob "$eps"
+    nsd-solve --solver "$g" --criterion glob --tolerance $eps --max-sweeps 100000 -j 4 "$tmp/contacts.h5" >"$tmp/four.h5" 2>/dev/null
+    ok "--solver $g: the same bytes with four threads" cmp "$tmp/$g.h5" "$tmp/four.h5"
+    NSD_LANES=2 nsd-solve --solver "$g" --criterion glob --tolerance $eps --max-sweeps 100000 "$tmp/contacts.h5" >"$tmp/two.h5" 2>/dev/null
+    ok "--solver $g: and two lanes" cmp "$tmp/$g.h5" "$tmp/two.h5"
 done
 same() # two tables, to within the third number everywhere?
 {
@@ -42,7 +42,7 @@ same() # two tables, to within the third number everywhere?
 for g in auto anderson; do
     velocities "$tmp/truth.h5" >"$tmp/a"
     velocities "$tmp/$g.h5" >"$tmp/b"
-    ok "--global $g: the velocities are Gauss-Seidel's" same "$tmp/a" "$tmp/b" 1e-8
+    ok "--solver $g: the velocities are Gauss-Seidel's" same "$tmp/a" "$tmp/b" 1e-8
 done
 
 # ---- real problems ----
@@ -53,7 +53,7 @@ if [ -d "$problems" ]; then
     for f in "$problems"/*.hdf5 "$problems"/global/*.hdf5; do
         name=${f#"$problems/"}
         [ -z "$thin" ] || [ "$(stat -c %s "$f")" -lt 300000 ] || continue
-        status 0 "$name: auto converges" nsd-solve -e --eps "$tolerance" "$f"
+        status 0 "$name: auto converges" nsd-solve -e --tolerance "$tolerance" "$f"
         ok "$name: to $tolerance, recomputed" below "$tmp/out" natural "$tolerance"
     done
 else
@@ -63,19 +63,19 @@ fi
 # ---- where there is no end ----
 
 hard=$tmp/heap.h5
-status 1 "-e and too few sweeps: status 1" nsd-solve -e --eps 0 --max-sweeps 7 "$hard"
+status 1 "-e and too few sweeps: status 1" nsd-solve -e --tolerance 0 --max-sweeps 7 "$hard"
 like "says NOT CONVERGED" "$(cat "$tmp/err")" "NOT CONVERGED"
 for g in "${solvers[@]}"; do
-    status 0 "--global $g, eps 0: ends" nsd-solve --global "$g" --eps 0 --max-seconds $((thin ? 8 : 4)) "$tmp/contacts.h5"
-    ok "--global $g: what comes back is good all the same" below "$tmp/out" eps_glob 1e-6
+    status 0 "--solver $g, eps 0: ends" nsd-solve --solver "$g" --tolerance 0 --max-seconds $((thin ? 8 : 4)) "$tmp/contacts.h5"
+    ok "--solver $g: what comes back is good all the same" below "$tmp/out" eps_glob 1e-6
 done
-status 0 "-m auto is --global auto" nsd-solve -m auto "$tmp/contacts.h5"
+status 0 "-m auto is --solver auto" nsd-solve -m auto "$tmp/contacts.h5"
 cp "$tmp/out" "$tmp/a.h5"
 nsd-solve "$tmp/contacts.h5" >"$tmp/b.h5" 2>/dev/null
 ok "and the default" cmp <(nsd-info --contacts "$tmp/a.h5") <(nsd-info --contacts "$tmp/b.h5")
-like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.. | .global? // empty')" auto
+like "the document says so" "$(nsd-info "$tmp/b.h5" | jq -r '.options.solver? // empty')" auto
 is "-m alone is Gauss-Seidel" "$(nsd-solve -m sbp "$tmp/contacts.h5" 2>/dev/null | nsd-info - |
-    jq -r '.. | .global? // empty')" nlgs
+    jq -r '.options.solver? // empty')" nlgs
 
 # An operator that no bodies have, and numbers whose squares are none
 spoilt() # NAME PYTHON: of the group g
@@ -89,10 +89,10 @@ if have_h5py; then
     spoilt hole 'g["W/x"][0] = -0.1'
     spoilt huge 'g["vectors/q"][...] *= 1e200'
     for g in "${solvers[@]}"; do
-        status 1 "--global $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/negative.h5"
-        ok "--global $g, -W: nsd-err reads it" nsd-err "$tmp/out"
-        status 1 "--global $g, one entry of W negative" timeout 30 nsd-solve -e --global "$g" --max-sweeps 2000 "$tmp/hole.h5"
-        ok "--global $g, huge q: ends" timeout 30 nsd-solve --global "$g" --max-sweeps 2000 "$tmp/huge.h5"
+        status 1 "--solver $g, -W: NOT CONVERGED" timeout 30 nsd-solve -e --solver "$g" --max-sweeps 2000 "$tmp/negative.h5"
+        ok "--solver $g, -W: nsd-err reads it" nsd-err "$tmp/out"
+        status 1 "--solver $g, one entry of W negative" timeout 30 nsd-solve -e --solver "$g" --max-sweeps 2000 "$tmp/hole.h5"
+        ok "--solver $g, huge q: ends" timeout 30 nsd-solve --solver "$g" --max-sweeps 2000 "$tmp/huge.h5"
     done
 else
     skip "operators of no bodies" "no h5py"
@@ -110,11 +110,11 @@ agree() # NAME FILE: the report's natural map and nsd-err's, within a factor of 
 sweeps=1000000
 [ -z "$thin" ] || sweeps=20000
 for m in exact sbp; do
-    nsd-solve -m $m --criterion natural --eps 0 --max-sweeps $sweeps "$tmp/contacts.h5" >"$tmp/long.h5" 2>/dev/null
+    nsd-solve -m $m --criterion natural --tolerance 0 --max-sweeps $sweeps "$tmp/contacts.h5" >"$tmp/long.h5" 2>/dev/null
     agree "$m, $sweeps sweeps" "$tmp/long.h5"
     ok "$m, $sweeps sweeps: their additions are not in it" below "$tmp/long.h5" natural 1e-13
 done
-for g in "${solvers[@]}"; do agree "--global $g" "$tmp/$g.h5"; done
+for g in "${solvers[@]}"; do agree "--solver $g" "$tmp/$g.h5"; done
 
 # ---- what cannot be done is said ----
 
@@ -123,7 +123,7 @@ if [ -z "$thin" ]; then
     jq -n '{ dt: 1e-3, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
          bodies: [range(102400) | { radius: 0.5, x: [. % 32, (. / 32 | floor) % 32, 0.5 + (. / 1024 | floor)] }] }' |
         nsd-gen - | nsd-detect --gap 1e-6 >"$many"
-    status 0 "very many contacts are not factorised" nsd-solve --criterion natural --eps 0 --max-sweeps 600 --log "$tmp/log" "$many"
+    status 0 "very many contacts are not factorised" nsd-solve --criterion natural --tolerance 0 --max-sweeps 600 --log "$tmp/log" "$many"
     is "but swept" "$(jq -c '[.sweeps, .newton // 0]' "$tmp/log")" '[600,0]'
 fi
 
@@ -131,7 +131,7 @@ fi
 if [ -d "$problems/piles" ] && [ -z "$thin" ]; then
     nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile8000.h5"
     # seconds of the processor, of which a busy machine gives fewer in the same time
-    spent=$(TIMEFORMAT=%0U && { time nsd-solve --criterion natural --eps 1e-9 --max-seconds 4 \
+    spent=$(TIMEFORMAT=%0U && { time nsd-solve --criterion natural --tolerance 1e-9 --max-seconds 4 \
         "$tmp/pile8000.h5" >"$tmp/out" 2>/dev/null; } 2>&1)
     ok "auto ends within its seconds" [ "$spent" -lt 8 ]
 fi
@@ -140,7 +140,7 @@ fi
 
 work() # GLOBAL FILE EPS: what a solve that converges has cost, ns; null where it does not
 {
-    nsd-solve -m exact --global "$1" --criterion natural --eps "$3" --max-sweeps 50000 --log "$tmp/work" "$2" \
+    nsd-solve -m exact --solver "$1" --criterion natural --tolerance "$3" --max-sweeps 50000 --log "$tmp/work" "$2" \
         >"$tmp/out" 2>/dev/null
     jq 'if .converged then .work else null end' "$tmp/work"
 }
@@ -175,43 +175,43 @@ fi
 
 jq '.e_n = 0 | .e_t = 0 | .mu = 0.3 | .bodies[0].spacing = 1.2' scenes/gas.json | nsd-gen - >"$tmp/gas.h5"
 status 0 "a gas that cools: where no reactions are needed, rounding is no error" \
-    nsd-step -e --criterion natural --eps 1e-6 -n 300 --every 300 --max-sweeps 3000 "$tmp/gas.h5"
+    nsd-step -e --criterion natural --tolerance 1e-6 -n 300 --every 300 --max-sweeps 3000 "$tmp/gas.h5"
 jq '.seed = 7' scenes/paper/example2.json | nsd-gen - >"$tmp/jam.h5"
 status 0 "a jam: 400 steps of example 2, seed 7" \
-    nsd-step -e --criterion natural --eps 1e-4 -n 400 --every 400 --log "$tmp/log" "$tmp/jam.h5"
+    nsd-step -e --criterion natural --tolerance 1e-4 -n 400 --every 400 --log "$tmp/log" "$tmp/jam.h5"
 ok "and no small map of reactions that grow passes for a solution" \
     jq -se 'map(.natural_q) | max < 0.3' "$tmp/log"
 
 status 0 "--max-seconds 0.001 is no error" nsd-solve --max-seconds 0.001 "$tmp/contacts.h5"
 refuses 64 "--max-seconds 0" nsd-solve --max-seconds 0 "$tmp/contacts.h5"
-refuses 64 "--global nothing" nsd-solve --global nothing "$tmp/contacts.h5"
+refuses 64 "--solver nothing" nsd-solve --solver nothing "$tmp/contacts.h5"
 for g in cg prox ipm; do
-    refuses 64 "--global $g is refused" nsd-solve --global $g "$tmp/contacts.h5"
+    refuses 64 "--solver $g is refused" nsd-solve --solver $g "$tmp/contacts.h5"
     like "with what to use instead" "$(cat "$tmp/err")" "$g is no longer available: auto"
 done
 nsd-gen 0 | nsd-detect >"$tmp/none.h5"
 for g in "${solvers[@]}"; do
-    status 0 "--global $g of no contacts" nsd-solve -e --global "$g" "$tmp/none.h5"
+    status 0 "--solver $g of no contacts" nsd-solve -e --solver "$g" "$tmp/none.h5"
 done
 
 # ---- a settled pile, where a few contacts hold the sweeps up and are solved by themselves ----
 
 jq ".mu = 0.8" scenes/paper/example3.json | nsd-gen - |
-    nsd-step -m exact --relax 1.5 -n 955 --every 955 --overlap keep --criterion glob --eps 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
-status 0 "steps of a settled pile to 1e-12" nsd-step -e --criterion glob --eps 1e-12 -n 12 --contacts --log "$tmp/log" "$tmp/pile.h5"
+    nsd-step -m exact --relax 1.5 -n 955 --every 955 --overlap-rule keep --criterion glob --tolerance 1e-5 2>/dev/null | nsd-cat --last >"$tmp/pile.h5"
+status 0 "steps of a settled pile to 1e-12" nsd-step -e --criterion glob --tolerance 1e-12 -n 12 --contacts --log "$tmp/log" "$tmp/pile.h5"
 cp "$tmp/out" "$tmp/one.h5"
 ok "three of them or more by one or two thousand sweeps and Newton's steps" \
     jq -se 'map(select(.newton > 0 and .sweeps < 2500)) | length >= 3' "$tmp/log"
 ok "the criterion, recomputed" jq -se 'map(.eps_glob) | max <= 1e-12' <(nsd-err "$tmp/one.h5")
-nsd-step --criterion glob --eps 1e-12 -n 12 --contacts -j 4 "$tmp/pile.h5" >"$tmp/four.h5" 2>/dev/null
+nsd-step --criterion glob --tolerance 1e-12 -n 12 --contacts -j 4 "$tmp/pile.h5" >"$tmp/four.h5" 2>/dev/null
 ok "the same bytes with four threads" cmp "$tmp/one.h5" "$tmp/four.h5"
-NSD_LANES=2 nsd-step --criterion glob --eps 1e-12 -n 12 --contacts "$tmp/pile.h5" >"$tmp/two.h5" 2>/dev/null
+NSD_LANES=2 nsd-step --criterion glob --tolerance 1e-12 -n 12 --contacts "$tmp/pile.h5" >"$tmp/two.h5" 2>/dev/null
 ok "and two lanes" cmp "$tmp/one.h5" "$tmp/two.h5"
 
 for mu in 0 1e-9 2; do
     jq ".mu = $mu | .bodies[0].count = 60" scenes/paper/example3.json | nsd-gen - |
-        nsd-step -m exact --relax 1.5 -n 700 --every 700 --eps 1e-6 --max-sweeps 200 2>/dev/null | nsd-cat --last |
+        nsd-step -m exact --relax 1.5 -n 700 --every 700 --tolerance 1e-6 --max-sweeps 200 2>/dev/null | nsd-cat --last |
         nsd-detect >"$tmp/mu.h5"
-    status 0 "auto, mu = $mu" nsd-solve -e --criterion glob --eps 1e-11 "$tmp/mu.h5"
+    status 0 "auto, mu = $mu" nsd-solve -e --criterion glob --tolerance 1e-11 "$tmp/mu.h5"
 done
 done_testing

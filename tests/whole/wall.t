@@ -8,16 +8,16 @@
 
 resting() { jq -n --argjson dim "$1" '{dim: $dim, dt: 1e-4, mu: 0.3, density: 2500, bodies: [{x: ([0, 0, 1e-3] | if $dim == 2 then [0, 1e-3] else . end), radius: 1e-3}],
     walls: [{normal: (if $dim == 2 then [0, 1] else [0, 0, 1] end), point: (if $dim == 2 then [0, 0] else [0, 0, 0] end)}]}' |
-    if [ "$1" = 2 ]; then jq '.gravity = [0, -9.81]'; else cat; fi | nsd-gen - | nsd-detect | nsd-solve --eps 1e-12 2>/dev/null | nsd-err | jq .self_stress; }
+    if [ "$1" = 2 ]; then jq '.gravity = [0, -9.81]'; else cat; fi | nsd-gen - | nsd-detect | nsd-solve --tolerance 1e-12 2>/dev/null | nsd-err | jq .self_stress; }
 is "a ball at rest: 2/7" "$(resting 3 | jq '. - 2/7 | fabs < 1e-14')" true
 is "a disc at rest: 1/3" "$(resting 2 | jq '. - 1/3 | fabs < 1e-14')" true
 
 # ---- four balls that wedge themselves in: reactions grow, nothing moves ----
 
-jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap keep --criterion natural 2>/dev/null |
-    nsd-cat --steps 217 | nsd-detect --overlap keep >"$tmp/jam.h5"
+jq '.seed = 7' scenes/paper/example2.json | nsd-gen - | nsd-step -n 217 --overlap-rule keep --criterion natural 2>/dev/null |
+    nsd-cat --frames 217 | nsd-detect --overlap-rule keep >"$tmp/jam.h5"
 for eps in 1e-4 1e-5 1e-6; do
-    nsd-solve --global nlgs -m exact --criterion natural --eps $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
+    nsd-solve --solver nlgs -m exact --criterion natural --tolerance $eps --max-sweeps 1000000 "$tmp/jam.h5" >"$tmp/jam-$eps.h5" 2>/dev/null
     nsd-err "$tmp/jam-$eps.h5" >"$tmp/jam-$eps"
 done
 like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1], .[1] / .[2]] | all(. > 8 and . < 12)' "$tmp"/jam-1e-[456])" '^true$'
@@ -25,7 +25,7 @@ like "self-stress falls as eps does" "$(jq -s 'map(.self_stress) | [.[0] / .[1],
 # ---- the page's own numbers, from M and H ----
 
 if /usr/bin/python3 -c 'import scipy' 2>/dev/null; then
-    nsd-detect --overlap keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global"
+    nsd-detect --overlap-rule keep --fclib=global <"$tmp/jam.h5" >"$tmp/jam.global"
     scripts/wall/wall.py follow "$tmp/jam.global" "$tmp"/jam-1e-[456].h5 >"$tmp/follow"
     is "the self-stress and the map of nsd-err are those of M and H" \
         "$(jq -s '[.[0:3], .[3:]] | transpose | map((.[0].self_stress / .[1].self_stress - 1 | fabs < 1e-9) and (.[0].natural / .[1].natural - 1 | fabs < 1e-6)) | all' \
@@ -50,12 +50,12 @@ if [ -n "$thin" ]; then
     skip "sweeps of 8000 balls" "they are made without sanitizers"
 elif [ -e "$problems/piles/pile8000.h5" ]; then
     nsd-detect "$problems/piles/pile8000.h5" >"$tmp/pile.h5"
-    status 1 "they are given up" nsd-solve --strict --criterion natural --eps 1e-8 "$tmp/pile.h5"
+    status 1 "they are given up" nsd-solve --strict --criterion natural --tolerance 1e-8 "$tmp/pile.h5"
     cp "$tmp/out" "$tmp/given-up.h5"
     like "nsd-solve says so" "$(cat "$tmp/err")" 'given up: the sweeps wander'
     like "long before the limit, with the best that they found" \
         "$(nsd-info "$tmp/given-up.h5" | jq -c 'select(.sweeps) | [.sweeps < 50000, .converged, .natural < 1e-5]')" '^\[true,false,true\]$'
-    NSD_LANES=2 nsd-solve -j 2 --criterion natural --eps 1e-8 "$tmp/pile.h5" >"$tmp/again.h5" 2>/dev/null
+    NSD_LANES=2 nsd-solve -j 2 --criterion natural --tolerance 1e-8 "$tmp/pile.h5" >"$tmp/again.h5" 2>/dev/null
     ok "at the same sweep for any threads and width" cmp "$tmp/given-up.h5" "$tmp/again.h5"
     status 0 "the default is not concerned" nsd-solve --strict "$tmp/pile.h5"
 else

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import difflib
 import os
 import re
 import sys
@@ -20,8 +21,8 @@ that was stopped.
       --timeout S               end an evaluation after S seconds of real time [never]
       --quiet                   write no progress
 
-      --help                    print this text
-      --version                 print the version
+  -h, --help                    print this text
+  -V, --version                 print the version
 
 Examples:
   nsd-fit -j 2 drum.json && jq .parameters drum.fit/result.json
@@ -53,6 +54,10 @@ class Options(argparse.ArgumentParser):
         return HELP
 
     def error(self, message: str) -> NoReturn:
+        unknown = re.match(r"unrecognized arguments: (--[^ =]+)", message)
+        if unknown:
+            near = difflib.get_close_matches(unknown[1], self._option_string_actions, 1)
+            message = f"{unknown[1]}: no such option" + (f"; did you mean {near[0]}?" if near else "")
         print(f"nsd-fit: {message}\nusage: nsd-fit [OPTION ...] PROBLEM.json, see nsd-fit --help", file=sys.stderr)
         sys.exit(64)
 
@@ -69,8 +74,8 @@ def read_options(version: str) -> argparse.Namespace:
     p.add_argument("-o", "--output")
     p.add_argument("--timeout", type=float)
     p.add_argument("--quiet", action="store_true")
-    p.add_argument("--help", action="help")
-    p.add_argument("--version", action="version", version=f"nsd-fit {version}")
+    p.add_argument("-h", "--help", action="help")
+    p.add_argument("-V", "--version", action="version", version=f"nsd-fit {version}")
     a = p.parse_args()
     if not 1 <= a.jobs <= 4096:
         p.error("--jobs: not from 1 to 4096")

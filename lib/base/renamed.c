@@ -1,0 +1,42 @@
+#include "base/renamed.h"
+
+#include <string.h>
+
+static const struct renamed table[] = {
+    { "nsd-solve", "global", "solver", true },
+    { "nsd-step nsd_set document", "global", "solver", false },
+    { "nsd-solve nsd-step nsd_set", "method", "local", false },
+    { "nsd-cat nsd-export nsd-info nsd-stat nsd-web", "steps", "frames", false },
+    { "nsd-view", "cut", "clip", false },
+    { "nsd-detect nsd-solve nsd-step", "overlap", "overlap-rule", true },
+    { "nsd_set", "overlap", "overlap-rule", false },
+    { "nsd-solve nsd-step", "eps", "tolerance", true },
+    { "nsd_set document", "eps", "tolerance", false },
+    { "nsd-solve nsd-step nsd_set", "newton-eps", "newton-tolerance", false },
+    { "document", "newton_eps", "newton_tolerance", false },
+    { "nsd-solve nsd-step nsd_set", "paper", "protocol=paper", false },
+    { "scene", "overlap", "allow_overlap", true },
+};
+enum { RENAMED = sizeof table / sizeof table[0] };
+
+bool words_have(const char *words, const char *word, size_t n)
+{
+    for (const char *s = words; s && *s; s += strcspn(s, " ")) {
+        s += strspn(s, " ");
+        if (strcspn(s, " ") == n && !memcmp(s, word, n)) return true;
+    }
+    return false;
+}
+
+const struct renamed *renamed_at(int k)
+{
+    return k < RENAMED ? &table[k] : NULL;
+}
+
+const struct renamed *renamed_find(const char *in, const char *was, size_t n)
+{
+    for (int k = 0; k < RENAMED; k++)
+        if (words_have(table[k].in, in, strlen(in)) && words_have(table[k].was, was, n))
+            return &table[k];
+    return NULL;
+}

@@ -1,0 +1,22 @@
+/*
+ * base/renamed.h: names of version 1 that users wrote, and what they are called since version 2: options of tools and of nsd_set(), and
+ * keys of scenes. One table for all, so that an old name is refused with the new one.
+ */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+struct renamed {
+    const char *
+        in; /* with blanks between: tools; "nsd_set"; "scene"; "document": the options of a solve, which keep their old names there */
+    const char *was, *is; /* without dashes */
+    bool accepted; /* the old name still works: it stands in scenes and scripts that others keep */
+};
+
+/* The row of the n bytes of a name in a tool, "nsd_set", "scene" or "document"; NULL: it was never renamed */
+const struct renamed *renamed_find(const char *in, const char *was, size_t n);
+/* Row k of the table; NULL past the last */
+const struct renamed *renamed_at(int k);
+/* Are these n bytes among words with blanks between? */
+bool words_have(const char *words, const char *word, size_t n);
