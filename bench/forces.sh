@@ -12,7 +12,7 @@ half=$(awk "BEGIN { printf \"%.17g\", 0.003564814875007254 * ($n / 500) ^ (1 / 3
 cc -O2 -o "$work/dem" bench/reference/dem.c -lm
 
 # a settled pile, made larger until nothing touches: it falls by the overlaps that it has had
-jq -n --argjson n "$n" --argjson a "$half" --argjson mu $mu '{ dt: 1e-4, density: 2500, mu: $mu, seed: 3, stiffness: "auto",
+jq -n --argjson n "$n" --argjson a "$half" --argjson mu $mu '{ dt: 1e-4, density: 2500, mu: $mu, seed: 3, stiffness: 9561,
     bodies: [{ count: $n, radius: { uniform: [4.4e-4, 5e-4] }, v: [0, 0, -0.1], box: { x: [-$a, $a], y: [-$a, $a], z: [0, null] } }],
     walls: [{ box: { x: [-$a, $a], y: [-$a, $a], z: [0, null] } }] }' | nsd-gen - |
     nsd-step -n 3000 --every 3000 2> /dev/null | nsd-cat --last > "$work/settled.h5"
