@@ -1,6 +1,6 @@
 # wall.mk: what holds up the solvers on large piles, measured, and its page (make wall).
 #
-#   OUT/N/pile.h5           a pile of N balls, after 450 steps, in a box as wide as it is high, with its contacts
+#   OUT/N/pile.h5           a pile of N balls, after 450 steps, or 1000 of 100 000 balls, in a box as wide as it is high, with its contacts
 #   OUT/N/global.h5         its M, H, f, w and mu
 #   OUT/N/sweeps-K.h5       after K sweeps
 #   OUT/N/auto.h5           what nsd-solve finds
@@ -19,7 +19,7 @@ EACH  := 1000 2000 4000 $(if $(QUICK),,8000 16000 32000 64000 128000 256000)# sw
 END   := $(if $(QUICK),4000,64000)# where the law is made linear, and proximal steps begin
 COUNT := $(if $(QUICK),20,60)# eigenvalues
 EPS   := 1e-4 1e-5 1e-6 1e-7
-MORE  ?=# N=DOCUMENT of other piles, for the table of stiffnesses
+LARGE := $(if $(QUICK),,32000 100000)# for the table of stiffnesses
 SOFT  := $(if $(QUICK),0 1e-2,0 1e-4 1e-3 3e-3 1e-2 3e-2 1e-1)# compliances, of W
 # make takes a blank for the end of a name, the shell a quote for its own
 $(if $(findstring ',$(OUT))$(word 2,$(OUT)),$(error wall.mk: OUT=$(OUT): the name of the folder has a blank or a quote))
@@ -40,7 +40,7 @@ $(OUT)/README.md: $(P)/page.py $(OUT)/map.svg $(OUT)/spectrum.svg $(SIZES:%=$(OU
 $(OUT)/%/pile.h5: $(P)/pile.jq
 	@echo "wall: $*" >&2
 	mkdir -p $(@D)
-	jq -n --argjson n $* -f $(P)/pile.jq | nsd-gen - | nsd-step --criterion natural -n 450 --every 450 2>$(@D)/step.log | nsd-cat --last | nsd-detect >$@
+	jq -n --argjson n $* -f $(P)/pile.jq | nsd-gen - | nsd-step --criterion natural -n $(if $(filter 100000,$*),1000,450) --every 1000 2>$(@D)/step.log | nsd-cat --last | nsd-detect >$@
 
 $(OUT)/%/global.h5: $(OUT)/%/pile.h5
 	nsd-detect --fclib=global <$< >$@
@@ -76,10 +76,10 @@ $(OUT)/%/soft.jsonl: $(OUT)/%/soft.h5 $(P)/wall.py
 	nsd-detect $< | nsd-solve --cold --criterion natural --tolerance 1e-10 >$(@D)/soft-solved.h5 2>/dev/null
 	nsd-detect --fclib=global <$< >$(@D)/soft-global.h5
 	$(P)/wall.py spectrum $(@D)/soft-global.h5 $(@D)/soft-solved.h5 $(COUNT) >$@
-$(OUT)/stiffness.tsv: $(SIZES:%=$(OUT)/%/pile.h5) $(P)/stiffness.sh
-	ALPHAS="$(SOFT)" $(P)/stiffness.sh $(foreach n,$(SIZES),$n=$(OUT)/$n/pile.h5) $(MORE) >$@
+$(OUT)/stiffness.tsv: $(SIZES:%=$(OUT)/%/pile.h5) $(LARGE:%=$(OUT)/%/pile.h5) $(P)/stiffness.sh
+	ALPHAS="$(SOFT)" $(P)/stiffness.sh $(foreach n,$(SIZES) $(LARGE),$n=$(OUT)/$n/pile.h5) >$@
 $(OUT)/change.tsv: $(OUT)/$(LAST)/pile.h5 $(P)/change.sh $(P)/change.py
-	ALPHAS="$(if $(QUICK),0 1e-2,0 1e-4 1e-3 1e-2)" $(P)/change.sh $< >$@
+	ALPHAS="$(if $(QUICK),0 1e-2,0 1e-4 1e-3 3e-3 1e-2)" $(P)/change.sh $< >$@
 
 # step 217 of four balls of the paper's example 2, another seed: they wedge themselves in
 $(OUT)/jam/jam.h5: scenes/paper/example2.json

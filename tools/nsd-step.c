@@ -242,21 +242,31 @@ static void summary(int64_t made)
              (long long)total.growing, total.approach);
 }
 
+static const char *range_text(char *text, size_t size, double least, double most)
+{
+    if (least < most)
+        snprintf(text, size, "%.3g to %.3g", least, most);
+    else
+        snprintf(text, size, "%.3g", most);
+    return text;
+}
+
 /* With which stiffness the contacts were solved, where they have one */
 static void say_stiffness(const struct packing *p)
 {
-    double k[2];
+    struct stiffness of[2];
     const double soft = stiffness_softness(p);
-    stiffness_range(p, k);
-    if (!(k[1] > 0)) return;
     char range[60];
-    if (k[0] < k[1])
-        snprintf(range, sizeof range, "%.3g to %.3g", k[0], k[1]);
-    else
-        snprintf(range, sizeof range, "%.3g", k[1]);
-    warn("stiffness of contacts %s N/m, compliance %.2g of W%s", range, soft,
-         soft < STIFFNESS_SOFT ? ": too stiff for dt to keep sweeps from growing with the packing"
-                               : "");
+    stiffness_range(p, of);
+    if (of[1].soft > 0)
+        warn("stiffness of contacts auto: compliance %s of the W of each",
+             range_text(range, sizeof range, of[0].soft, of[1].soft));
+    if (of[1].k > 0)
+        warn("stiffness of contacts %s N/m, compliance %.2g of W%s",
+             range_text(range, sizeof range, of[0].k, of[1].k), soft,
+             soft < COMPLIANCE_SOFT
+                 ? ": too stiff for dt to keep sweeps from growing with the packing"
+                 : "");
 }
 
 /* ---- how far it is ---- */

@@ -240,7 +240,7 @@ struct contact_law_end contact_law_end(const struct packing *p, const struct con
     const struct pair_law *l = law_of(p, c);
     struct contact_law_end e = { .beta = t->beta };
     if (t->spring[0] > 0) {
-        struct spring_end s = spring_end(p->dt, c, t, found, opening_of(p, c, step_ahead(p)));
+        struct spring_end s = spring_end(p, c, t, found, opening_of(p, c, step_ahead(p)));
         e.gap = c->gap + p->dt * s.un;
         for (int k = 0; k < 3; k++) e.stretch[k] = s.stretch[k];
         if (moment) spring_turn_end(p->dt, t, moment, e.turn);
@@ -306,7 +306,7 @@ struct contact_law_account contact_law_account(const struct packing *p, const st
         before += spring_energy(t, t->jump, t->turn);
         after += spring_energy(t, end->stretch, end->turn);
         a.implicit = spring_implicit(t, end->stretch, end->turn);
-        a.rise = spring_rise(p, c, t, end->stretch[0]), after += a.rise;
+        a.rise = spring_rise(p, c, t, end->gap, end->stretch[0]), after += a.rise;
     }
     a.change = after - before, a.stored = after;
     return a;
@@ -365,7 +365,8 @@ static bool bond_of(const struct packing *p, const struct contacts *s, int64_t i
     *b = (struct bond){ .a = c->a, .b = c->b, .feature = c->feature, .n = c->n };
     for (int k = 0; k < 3; k++) b->shift[k] = c->shift[k];
     b->pressed = contact_law_is_pressed(p, c, t, &s->found[i], &e);
-    if (b->pressed) b->rest = spring_rest_after(p, c, t);
+    if (b->pressed) b->rest = spring_rest_after(p, c, t, e.gap, e.stretch[0]);
+    if (b->pressed && law_of(p, c)->soft > 0) b->spring = t->spring[0];
     b->gap = e.gap, b->beta = made.bonded ? law_of(p, c)->beta : e.beta;
     b->wet = e.wet ? BOND_WET : made.wet && e.gap < bridge_reach(law_of(p, c)) ? BOND_WETTED : 0;
     if (!b->wet && !(b->beta > 0) && !rests && !b->pressed) return false;

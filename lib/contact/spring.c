@@ -84,42 +84,78 @@ static bool spring_meets(struct contact_law *t, const struct packing *p, const s
     spring_impulse(&m, off, t->hit);
     t->hit[0] = fmax(0, t->hit[0]);
     spring_cut(c->mu * t->hit[0], t->hit + 1);
-    const bool meets = -t->spring[0] * t->jump[0] * p->dt <= SLIGHT * t->hit[0];
+    const bool meets =
+        packing_complies(p, c) || -t->spring[0] * t->jump[0] * p->dt <= SLIGHT * t->hit[0];
     for (int k = 0; k < 3 && !meets; k++) t->hit[k] = 0;
     return meets;
 }
 
 /* t->turn, out of what is remembered, within the limits of the moment that n allows */
-static void spring_turned(struct contact_law *t, const struct contact *c, const struct bond *old)
+static void spring_turned(struct contact_law *t, const struct contact *c, const struct bond *old,
+                          double scale)
 {
-    const vec3 turn = v3_turn_along(old->n, c->n, old->turn);
+    const vec3 turn = v3_scale(scale, v3_turn_along(old->n, c->n, old->turn));
     const double push = t->spring[0] * fmax(0, -t->jump[0]), most = t->mu_p * push / t->roll;
     t->turn[0] = fmax(-most, fmin(most, v3_dot(turn, c->n)));
     t->turn[1] = v3_dot(turn, c->t1), t->turn[2] = v3_dot(turn, contact_t2(c));
     spring_cut(t->mu_r * push / t->roll, t->turn + 1);
 }
 
+static double inverse_mass(const struct packing *p, int32_t i)
+{
+    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
+}
+
+/* N/m: k_n and k_t of the contact; false: it is rigid. */
+static bool spring_stiffness(const struct packing *p, const struct contact *c, double k[2])
+{
+    const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
+    k[0] = l->kn, k[1] = l->kt;
+    if (l->soft > 0) {
+        const double W = inverse_mass(p, c->a) + inverse_mass(p, c->b);
+        k[0] = 1 / (l->soft * W * p->dt * p->dt), k[1] = SPRING_ACROSS * k[0];
+    }
+    return k[1] > 0 && isfinite(k[0]);
+}
+
+/* Do its bodies part? */
+static bool spring_parts(const struct packing *p, const struct contact *c)
+{
+    return v3_dot(meeting_of(p, c).before, c->n) > freedoms_calm(p);
+}
+
+/* Of a remembered spring: what its stretch is now, over what it was, to push as before. 1: k is that of the pair. */
+static double spring_scale(const struct contact_law *t, const struct packing *p,
+                           const struct contact *c, const struct bond *old)
+{
+    return packing_complies(p, c) && old->spring > 0 ? old->spring / t->spring[0] : 1;
+}
+
 void spring_set(struct contact_law *t, const struct packing *p, struct contact *c,
                 const struct bond *old)
 {
-    const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
     const bool pressed = old && old->pressed;
-    if (!pair_law_springs(l) || t->beta > 0) return;
-    t->spring[0] = l->kn, t->spring[1] = l->kt;
-    const double R = packing_smaller_radius(p, c);
-    if (t->mu_r > 0 || t->mu_p > 0) t->roll = l->kt * R * R;
-    const double rest = fmin(0, pressed ? fmax(old->rest, c->gap) : c->gap);
+    if (t->beta > 0 || !spring_stiffness(p, c, t->spring)) {
+        t->spring[0] = t->spring[1] = 0;
+        return;
+    }
+    const double R = packing_smaller_radius(p, c), scale = pressed ? spring_scale(t, p, c, old) : 1;
+    if (t->mu_r > 0 || t->mu_p > 0) t->roll = t->spring[1] * R * R;
+    double rest = pressed ? fmax(old->rest, c->gap) : c->gap;
+    if (scale != 1) rest += (1 - scale) * (c->gap - rest);
+    rest = fmin(0, rest);
     t->jump[0] = c->gap - rest;
     if (pressed) {
-        vec3 slip = v3_turn_along(old->n, c->n, old->slip);
+        vec3 slip = v3_scale(scale, v3_turn_along(old->n, c->n, old->slip));
         t->jump[1] = v3_dot(slip, c->t1), t->jump[2] = v3_dot(slip, contact_t2(c));
-        spring_cut(c->mu * l->kn * fmax(0, -t->jump[0]) / l->kt, t->jump + 1);
-        if (t->roll > 0) spring_turned(t, c, old);
+        spring_cut(c->mu * t->spring[0] * fmax(0, -t->jump[0]) / t->spring[1], t->jump + 1);
+        if (t->roll > 0) spring_turned(t, c, old, scale);
     }
-    if (pressed) c->en = c->et = 0;
+    const bool follows = packing_complies(p, c);
+    if (pressed && !follows) c->en = c->et = 0;
     if (spring_meets(t, p, c))
         t->state |= CONTACT_LAW_MEETS, t->turn[0] = t->turn[1] = t->turn[2] = 0;
-    else
+    else if (!(follows && t->jump[0] <= 0 && spring_parts(p, c)))
         c->en = c->et = 0;
 }
 
@@ -130,21 +166,35 @@ void spring_seen(double dt, const struct contact *c, const struct contact_law *t
     for (int k = 0; k < 2; k++) compliance[k] = 1 / (t->spring[k] * dt * dt);
     for (int k = 0; k < 3; k++) {
         law[k] = t->jump[k] / dt;
-        if (meets)
-            law[k] = (k == 0 && !(c->en > 0) ? fmax(0, law[k]) : 0) - compliance[k > 0] * t->hit[k];
+        if (meets) law[k] = k == 0 && !(c->en > 0) ? fmax(0, law[k]) : 0;
+        if (t->hit[k] != 0) law[k] -= compliance[k > 0] * t->hit[k];
     }
 }
 
-struct spring_end spring_end(double dt, const struct contact *c, const struct contact_law *t,
-                             const struct found *found, double before)
+/* Has the spring no part in an impact of its contact? */
+static bool spring_rests(const struct packing *p, const struct contact *c,
+                         const struct contact_law *t)
 {
+    return packing_complies(p, c) && (t->state & CONTACT_LAW_MEETS || c->en > 0);
+}
+
+struct spring_end spring_end(const struct packing *p, const struct contact *c,
+                             const struct contact_law *t, const struct found *found, double before)
+{
+    const double dt = p->dt;
     double law[3], compliance[2];
     struct spring_end e;
     spring_seen(dt, c, t, law, compliance);
     e.un = (1 + c->en) * found->u[0] - c->en * before - law[0] - compliance[0] * found->r[0];
     e.stretch[0] = t->jump[0] + dt * e.un;
     const bool meets = t->state & CONTACT_LAW_MEETS;
-    for (int k = 1; k < 3; k++) e.stretch[k] = meets ? 0 : -found->r[k] / (dt * t->spring[1]);
+    for (int k = 1; k < 3; k++)
+        e.stretch[k] = meets ? 0 : -(found->r[k] - t->hit[k]) / (dt * t->spring[1]);
+    if (spring_rests(p, c, t)) {
+        e.stretch[0] = fmax(fmin(0, t->jump[0]), e.stretch[0]);
+        for (int k = 1; k < 3; k++) e.stretch[k] = t->jump[k];
+    }
+    for (int k = 1; k < 3 && packing_complies(p, c) && !(found->r[0] > 0); k++) e.stretch[k] = 0;
     return e;
 }
 
@@ -181,17 +231,27 @@ double spring_implicit(const struct contact_law *t, const double end[3], const d
                   t->roll * square_of(turn));
 }
 
-double spring_rest_after(const struct packing *p, const struct contact *c,
-                         const struct contact_law *t)
+/* m: g_0 when the step is over, before it rises */
+static double spring_rest_end(const struct packing *p, const struct contact *c,
+                              const struct contact_law *t, double gap, double stretch)
 {
-    return fmin(0, c->gap - t->jump[0] + p->dt * packing_most_fall(p));
+    return spring_rests(p, c, t) ? gap - stretch : c->gap - t->jump[0];
+}
+
+double spring_rest_after(const struct packing *p, const struct contact *c,
+                         const struct contact_law *t, double gap, double stretch)
+{
+    const double soft = p->law[packing_pair(p, c->a, c->b)].soft;
+    // a spring whose stiffness follows from dt then pushes by the weight of its pair more
+    const double rise = (soft > 0 ? soft : 1) * p->dt * packing_most_fall(p);
+    return fmin(0, spring_rest_end(p, c, t, gap, stretch) + rise);
 }
 
 double spring_rise(const struct packing *p, const struct contact *c, const struct contact_law *t,
-                   double x)
+                   double end, double x)
 {
-    const double rest = c->gap - t->jump[0], gap = rest + x;
-    const double risen = gap - fmin(0, fmax(spring_rest_after(p, c, t), gap));
+    const double rest = spring_rest_end(p, c, t, end, x), gap = rest + x;
+    const double risen = gap - fmin(0, fmax(spring_rest_after(p, c, t, end, x), gap));
     const double before = fmin(0, x), after = fmin(0, risen);
     return rest < 0 ? 0.5 * t->spring[0] * (after * after - before * before) : 0;
 }

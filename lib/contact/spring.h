@@ -37,6 +37,13 @@
  * rebound with a part of about c/W of its speed. Instead of C r it has C (r - r^): r^, the impulse of the impact, were
  * the pair alone. A pair alone then has Newton's law exactly, and where others hold it C bounds r. Its moment has no spring. e is 0
  * unless the pair is new: it has not pushed in the step before.
+ *
+ * Where a pair has a compliance alpha instead, k_n = 1/(alpha W h^2), W = 1/m_a + 1/m_b, so that C = alpha W whatever h is.
+ * Such springs are no property of the bodies. When k changes they push as before: x_t and phi change by the ratio of k, and
+ * g_0 takes the difference along n. g_0 rises by alpha g h^2, by which the push grows by a weight. An impact is any pair
+ * that approaches so fast, also one that has pushed; its spring rests in the step, and pushes as before after it; e is that of
+ * rigid contacts; and r^ of all contacts is found by
+ * step/hit_bound.h, so that springs leave nothing of impacts.
  */
 #pragma once
 
@@ -59,8 +66,8 @@ void spring_seen(double dt, const struct contact *c, const struct contact_law *t
 struct spring_end {
     double stretch[3], un;
 };
-struct spring_end spring_end(double dt, const struct contact *c, const struct contact_law *t,
-                             const struct found *found, double before);
+struct spring_end spring_end(const struct packing *p, const struct contact *c,
+                             const struct contact_law *t, const struct found *found, double before);
 
 /* The same of a moment, in rad/s; returns 1/(kg m^2), 0: rigid */
 double spring_turn_seen(double dt, const struct contact_law *t, double law[3]);
@@ -73,13 +80,13 @@ double spring_energy(const struct contact_law *t, const double x[3], const doubl
 /* J, at least 0: what an implicit step loses of it, k/2 times the square of what the stretch changes by */
 double spring_implicit(const struct contact_law *t, const double end[3], const double phi[3]);
 
-/* m, at most 0: g_0 when the step is over */
+/* m, at most 0: g_0 when the step is over; gap and stretch (m): at its end */
 double spring_rest_after(const struct packing *p, const struct contact *c,
-                         const struct contact_law *t);
+                         const struct contact_law *t, double gap, double stretch);
 
-/* J: what the rise of g_0 gives to the spring, whose stretch x_n (m) was when the step was over */
+/* J: what the rise of g_0 gives to the spring, whose gap was `end` and stretch x_n (m) when the step was over */
 double spring_rise(const struct packing *p, const struct contact *c, const struct contact_law *t,
-                   double x);
+                   double end, double x);
 
 /* m, at most 0: the gap that a contact has but for its spring, which carries the rest */
 double spring_unloaded_gap(const struct contact *c, const struct contact_law *t);

@@ -29,7 +29,7 @@ const struct cli_option options_run[] = {
 static const char *stiffness; /* --stiffness */
 
 const struct cli_option options_contacts[] = {
-    { CLI_TEXT, 0, "stiffness", &stiffness, "K|rigid|auto",
+    { CLI_TEXT, 0, "stiffness", &stiffness, "K|rigid|auto[:ALPHA]",
       .help = "set the stiffness of contacts, N/m [document, else rigid]" },
     { 0 },
 };
@@ -141,18 +141,14 @@ void options_stiffness(struct frame *f, const char *fixed)
 {
     struct packing *p = &f->packing;
     struct failure failure = { 0 };
-    double k, was[2];
+    struct stiffness to;
     if (!stiffness) return;
     if (options.protocol && strcmp(stiffness, "rigid"))
         die_usage("--stiffness: contacts of the paper are rigid, and --protocol paper is given");
-    if (stiffness_read(&k, stiffness, p, &failure)) {
-        if (failure.status == EX_USAGE) die_usage("--stiffness: %s", failure.text);
-        die(failure.status, "--stiffness: %s", failure.text);
-    }
-    stiffness_range(p, was);
-    if (fixed && (was[0] != k || was[1] != k))
-        die_usage("--stiffness: %s has %g N/m, and a trajectory has one", fixed, was[1]);
-    if (!fixed && stiffness_set(p, k, &failure))
+    if (stiffness_read(&to, stiffness, &failure)) die_usage("--stiffness: %s", failure.text);
+    if (fixed && !stiffness_is(p, to))
+        die_usage("--stiffness: %s has another one, and a trajectory has one", fixed);
+    if (!fixed && stiffness_set(p, to, &failure))
         die(failure.status, "--stiffness: %s", failure.text);
     if (p->law && !f->contacts.law &&
         contacts_alloc_laws(&f->contacts)) // those of the last step were rigid

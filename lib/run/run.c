@@ -283,17 +283,16 @@ static int run_set_flag(bool *to, const char *name, const char *value, struct fa
 
 static int run_set_stiffness(struct nsd_run *r, const char *text, struct failure *failure)
 {
-    double k, was[2];
+    struct stiffness to;
     struct failure why = { 0 };
     struct packing *p = &r->f.packing;
-    stiffness_range(p, was);
-    if (stiffness_read(&k, text, p, &why))
+    if (stiffness_read(&to, text, &why))
         return failure_set(failure, why.status, "stiffness: %s", why.text);
-    if (r->out && (was[0] != k || was[1] != k))
+    if (r->out && !stiffness_is(p, to))
         return failure_set(failure, NSD_USAGE,
                            "stiffness: a trajectory has one: nsd_finish() ends it");
     r->chosen = false;
-    if (stiffness_set(p, k, failure)) return failure->status;
+    if (stiffness_set(p, to, failure)) return failure->status;
     if (p->law && !r->f.contacts.law && contacts_alloc_laws(&r->f.contacts))
         return failure_set(failure, NSD_SOFTWARE, "no memory for the laws");
     return 0;

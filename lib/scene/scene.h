@@ -30,7 +30,6 @@ struct scene_law {
     EVERY_PAIR_COLUMN(PAIR_NUMBER) /* mu, en, et, mu_s, v_s, inert */
     struct pair_law pair_law;
     double young;      /* Pa: gives k_n [scene/stiffness.h]; 0: does not */
-    bool softest;      /* k_n is the least that the scene needs: "auto" */
     double tangential; /* N/m: k_t that the scene gives; 0: it follows k_n */
 };
 

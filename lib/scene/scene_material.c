@@ -1,6 +1,7 @@
 /* scene/scene_material.c: materials, and the law of each pair of them, from their JSON. */
 
 #include "scene/scene_read.h"
+#include "scene/stiffness.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -170,7 +171,7 @@ static int read_impact(jnode n, struct scene *s, void *member)
 #undef AT
 #define AT(member) offsetof(struct scene_law, member)
 
-/* K, "auto", or {"normal": K, "tangential": K}, or {"young": E} */
+/* K, "auto", or {"normal": K, "tangential": K}, {"young": E, "tangential": K}, {"compliance": ALPHA} */
 static const struct key stiffness_key[] = {
     { "normal", &key_positive, AT(pair_law.kn), "N/m", "-", "1e5", "Normal force per overlap.",
       .choice = 1 },
@@ -178,20 +179,35 @@ static const struct key stiffness_key[] = {
       "Young's modulus E: the normal stiffness is pi/4 E d, d the smallest diameter, in the plane "
       "E: that of a bar with the cross-section and the length of the smallest grain.",
       .choice = 1 },
+    { "compliance", &key_share, AT(pair_law.soft), "-", "-", "1e-2",
+      "alpha, which \"auto\" sets to 1e-2: the normal stiffness of a contact is 1/(alpha W dt^2), "
+      "W = 1/m_a + 1/m_b.",
+      .choice = 1 },
     { "tangential", &key_positive, AT(tangential), "N/m", "2/7 of that", "3e4",
-      "Tangential force per displacement." },
+      "Tangential force per displacement; not with a compliance." },
     { 0 },
 };
-static const struct keys stiffness_keys = { "stiffness", stiffness_key };
+static int finish_stiffness(jnode o, struct scene *s, void *out)
+{
+    const struct scene_law *l = out;
+    (void)s;
+    if (!stiffness_given(l)) return json_node_fault(o, "compliance: must be at least 1e-9");
+    if (l->pair_law.soft > 0 && l->tangential > 0)
+        return json_node_fault(o, "a compliance is that of both directions: leave out tangential");
+    return 0;
+}
+
+static const struct keys stiffness_keys = { "stiffness", stiffness_key,
+                                            .finish = finish_stiffness };
 
 static int read_stiffness(jnode n, const struct key *k, struct scene *s, void *member)
 {
     struct scene_law *l = member;
     (void)k;
-    l->pair_law.kn = l->young = l->tangential = 0, l->softest = false;
+    l->pair_law.kn = l->pair_law.soft = l->young = l->tangential = 0;
     if (json_is_object(n.json)) return keys_read(n, &stiffness_keys, s, l);
     if (!json_is_string(n.json)) return json_node_number(n, J_POSITIVE, &l->pair_law.kn);
-    l->softest = true;
+    l->pair_law.soft = COMPLIANCE_AUTO;
     return strcmp(json_string_value(n.json), "auto")
                ? json_node_fault(n, "needs a number of N/m, an object, or \"auto\"")
                : 0;
@@ -233,7 +249,8 @@ static const struct key law_key[] = {
       .object = &adhesion_keys },
     { "stiffness", &key_stiffness, 0, "N/m", "rigid", "1e5",
       "Stiffness of contacts along the normal (in the plane for each metre of thickness), or an "
-      "object. \"auto\": the least that its loads and speeds ask for. Without it contacts are "
+      "object. \"auto\": that which makes the solves of any time step easy. Without it contacts "
+      "are "
       "rigid, see nsd-methods(7), \"Contacts with a stiffness\"." },
     { 0 },
 };

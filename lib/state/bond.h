@@ -21,6 +21,7 @@ struct bond {
     vec3 n;         /* the contact's normal when this was kept */
     vec3 slip;      /* m: across n: how far the bond, or the spring, is sheared, b against a */
     double rest;    /* m, at most 0: the gap at which the spring does not push */
+    double spring;  /* N/m: k_n of the last step, where the step decides it; else 0 */
     vec3 turn;      /* rad: how far the spring of the moment is turned, b against a */
     /* Of grains that are no balls, a bond keeps the place where it was made [contact/bond_anchor.h]. */
     double area;     /* m^2; 0: none has been kept, and what follows is 0 */

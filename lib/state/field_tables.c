@@ -192,6 +192,7 @@ const struct field law_fields[] = {
     LAW(mu_p_ratio, "mu_p_ratio", "1", NOT_NEGATIVE, "rolling.mu_p_ratio", | FIELD_OPTIONAL),
     LAW(kn, "k_n", "N m-1", NOT_NEGATIVE, "stiffness.normal", | FIELD_OPTIONAL),
     LAW(kt, "k_t", "N m-1", NOT_NEGATIVE, "stiffness.tangential", | FIELD_OPTIONAL),
+    LAW(soft, "compliance", "1", FRACTION, "stiffness.compliance", | FIELD_OPTIONAL),
     { 0 },
 };
 
@@ -219,6 +220,12 @@ static bool has_springs(const void *of)
     return packing_has_springs(of);
 }
 
+/* Springs whose stiffness is that of the step */
+static bool has_compliance(const void *of)
+{
+    return packing_has_compliance(of);
+}
+
 static bool has_rolling(const void *of)
 {
     return packing_rolls(of);
@@ -244,6 +251,8 @@ const struct field bond_fields[] = {
           .range = FIELD_FLAG),
     FIELD(struct bond, rest, F64, 1, "rest", "m", FIELD_MOVES, .when = has_springs,
           .range = FIELD_FINITE),
+    FIELD(struct bond, spring, F64, 1, "spring", "N m-1", FIELD_MOVES, .when = has_compliance,
+          .range = FIELD_NOT_NEGATIVE),
     FIELD(struct bond, turn, F64, 3, "turn", "rad", FIELD_MOVES, .when = has_turning_springs,
           .range = FIELD_FINITE),
     FIELD(struct bond, area, F64, 1, "area", "m2", FIELD_MOVES, .when = has_shapes,

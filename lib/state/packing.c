@@ -135,9 +135,21 @@ bool packing_has_springs(const struct packing *p)
     return false;
 }
 
+bool packing_has_compliance(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
+        if (p->law[k].soft > 0) return true;
+    return false;
+}
+
 bool packing_springs(const struct packing *p, const struct contact *c)
 {
     return p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)]);
+}
+
+bool packing_complies(const struct packing *p, const struct contact *c)
+{
+    return p->law && p->law[packing_pair(p, c->a, c->b)].soft > 0;
 }
 
 int packing_alloc_laws(struct packing *p, struct failure *failure)

@@ -213,6 +213,9 @@ bool packing_may_gain(const struct packing *p);
 /* Have contacts of any pair of materials, and has this one, a stiffness [contact/spring.h]? */
 bool packing_has_springs(const struct packing *p);
 bool packing_springs(const struct packing *p, const struct contact *c);
+/* Have contacts of any pair of materials, and has this one, a stiffness that follows from the time step? */
+bool packing_has_compliance(const struct packing *p);
+bool packing_complies(const struct packing *p, const struct contact *c);
 /* Is Newton's law to be bounded for the contact [step/balance.h]? */
 bool packing_bounds(const struct packing *p, const struct contact *c);
 

@@ -27,6 +27,8 @@ const char *pair_law_trouble(const struct pair_law *l)
         return "an impact is Newton's or bounded: 0, 1 or 2";
     if ((l->kn > 0) != (l->kt > 0))
         return "the stiffness of a contact must be positive along n and across, or 0 for both";
+    if (l->soft > 0 && !(l->soft >= COMPLIANCE_LEAST))
+        return "the compliance of a contact must be 0 or at least 1e-9";
     return NULL;
 }
 

@@ -23,6 +23,9 @@
    whose impacts gain by themselves; never; always */
 enum impact_law { IMPACT_DEFAULT, IMPACT_NEWTON, IMPACT_BOUNDED, IMPACT_LAWS };
 
+/* Of the range of `soft`, up to 1: a smaller one is lost in the rounding of W */
+#define COMPLIANCE_LEAST 1e-9
+
 struct pair_law {
     double cohesion, range; /* N, m */
 
@@ -44,6 +47,8 @@ struct pair_law {
     double kn,
         kt; /* N/m, in the plane of 1 m of thickness: stiffness of the contact along n and across; 0: rigid
                       [contact/spring.h] */
+    double
+        soft; /* instead of both, "auto": the compliance 1/(k_n dt^2) in units of the pair's 1/m_a + 1/m_b */
 };
 
 /* What is wrong with numbers that are in their ranges, or NULL */
@@ -59,7 +64,7 @@ static inline bool pair_law_adheres(const struct pair_law *l)
 }
 static inline bool pair_law_springs(const struct pair_law *l)
 {
-    return l->kn > 0;
+    return l->kn > 0 || l->soft > 0;
 }
 static inline bool pair_law_rolls(const struct pair_law *l)
 {

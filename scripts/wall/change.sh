@@ -8,10 +8,10 @@ work=$(mktemp -d)
 steps=${STEPS:-300} # 0.03 s, in which loads come
 trap 'rm -rf "$work"' EXIT
 nsd-cat --last "$1" >"$work/pile.h5"
-mass=$(nsd-info -p "$work/pile.h5" | jq -s 'map(.mass) | add / length')
 map() { jq -r '.natural' "$work/log"; }
 for alpha in ${ALPHAS:-0 1e-4 1e-3 1e-2}; do
-    k=$(jq -nr --argjson a "$alpha" --argjson m "$mass" 'if $a > 0 then $m / (2 * $a * 1e-8) else "rigid" end')
+    k=auto:$alpha
+    [ "$alpha" != 0 ] || k=rigid
     nsd-step --stiffness "$k" --dt 1e-4 -n "$steps" --every "$steps" "$work/pile.h5" 2>/dev/null | nsd-cat --last | nsd-detect >"$work/found.h5"
     row=$alpha
     for way in '--solver auto' '--solver nlgs -m exact --order random'; do

@@ -53,7 +53,7 @@ def number(text):
 
 
 stiff, soft = {}, []
-for balls, contacts, alpha, _, deep, eps, taken, newton, seconds, natural in cells("stiffness.tsv"):
+for balls, contacts, alpha, deep, eps, taken, newton, seconds, natural in cells("stiffness.tsv"):
     row = stiff.setdefault((balls, alpha), [balls, contacts, alpha, "" if alpha == "0" else e(float(deep))])
     good = float(natural) <= 1.01 * float(eps)
     steps = taken + (f" + {newton}" if newton not in ("", "0") else "")

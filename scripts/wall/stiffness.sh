@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
 # stiffness.sh BALLS=DOCUMENT ...: what a stiffness of contacts does to the solves of piles. A row of tab-separated numbers for
-# each pile, compliance and tolerance: balls, contacts, alpha, k (N/m), static overlap (radii), eps, sweeps, Newton steps, CPU s, the
-# map reached. alpha is the compliance 1/(k dt^2) of two balls of the mean mass over their W_nn; 0: rigid. Each pile makes STEPS
-# [300] steps with its stiffness first, so that it is loaded, rigid ones a tenth and those of 100 000 balls a third of them; the last
-# contacts are solved cold.
+# each pile, compliance and tolerance: balls, contacts, alpha, static overlap (radii), eps, sweeps, Newton steps, CPU s, the
+# map reached. alpha is that of --stiffness auto:ALPHA; 0: rigid. Each pile makes STEPS [300] steps with its stiffness first, so
+# that it is loaded, rigid ones and those of 32 000 balls and more a tenth of them; the last contacts are solved cold.
 set -euo pipefail
 work=$(mktemp -d)
 steps=${STEPS:-300} # 0.03 s, in which loads come
@@ -11,12 +10,11 @@ trap 'rm -rf "$work"' EXIT
 for pile in "$@"; do
     balls=${pile%%=*} document=${pile#*=}
     nsd-cat --last "$document" >"$work/pile.h5"
-    mass=$(nsd-info -p "$work/pile.h5" | jq -s 'map(.mass) | add / length')
     for alpha in ${ALPHAS:-0 1e-4 1e-3 3e-3 1e-2 3e-2 1e-1}; do
-        k=$(jq -nr --argjson a "$alpha" --argjson m "$mass" 'if $a > 0 then $m / (2 * $a * 1e-8) else "rigid" end')
+        k=auto:$alpha
+        [ "$alpha" != 0 ] || k=rigid
         n=$steps
-        [ "$balls" -lt 100000 ] || n=$((steps / 3))
-        [ "$k" != rigid ] || n=$((steps / 10))
+        [ "$k" != rigid ] && [ "$balls" -lt 32000 ] || n=$((steps / 10))
         nsd-step --stiffness "$k" --dt 1e-4 -n "$n" --every "$n" "$work/pile.h5" 2>/dev/null | nsd-cat --last | nsd-detect >"$work/found.h5"
         deep=$(nsd-info -c "$work/found.h5" | jq -n '[inputs | if .stretch then -.stretch[0] else 0 end] | max / 4.7e-4')
         for eps in 1e-4 1e-6 1e-8; do
@@ -25,7 +23,7 @@ for pile in "$@"; do
                 --max-sweeps 1000000 --log "$work/log" "$work/found.h5" >"$work/solved.h5" 2>/dev/null || true
             row=$(jq -r '[.contacts, .sweeps, .newton, .seconds, .natural, .converged] | @tsv' "$work/log" 2>/dev/null || true)
             IFS=$'\t' read -r contacts sweeps newton seconds natural converged <<<"${row:-nan}"
-            printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\n' "$balls" "$contacts" "$alpha" "$k" "$deep" "$eps" \
+            printf '%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\t%s\n' "$balls" "$contacts" "$alpha" "$deep" "$eps" \
                 "$sweeps" "$newton" "$seconds" "$natural"
             [ "$converged" = true ] || break
         done

@@ -23,7 +23,7 @@ static const char rest[] =
     "{ \"dt\": 1e-3, \"mu\": 0.3, \"e_n\": 0.1, \"overlap\": true, \"shapes\": { \"pill\": { "
     "\"capsule\": { \"length\": 1, \"radius\": 0.5 } } },"
     "\"pairs\": [{ \"pair\": [\"ball\", \"ball\"], \"adhesion\": { \"c_n\": 1e4, \"c_t\": "
-    "1e4, \"w\": 0.2, \"eta\": 1e-4 }, \"rolling\": { \"mu_r\": 1e-3 } },"
+    "1e4, \"w\": 0.2, \"eta\": 1e-4 }, \"rolling\": { \"mu_r\": 1e-3 }, \"stiffness\": \"auto\" },"
     "{ \"pair\": [\"ball\", \"wall\"], \"stiffness\": 1e6 }],"
     "\"walls\": [{ \"name\": \"floor\", \"point\": [0, 0, -1], \"normal\": [0, 0, 1], "
     "\"drives\": [{ \"along\": [0, 0, 1], \"amplitude\": 1e-3, \"frequency\": 2 },"

@@ -86,8 +86,9 @@ ranks() # NAME K ...: of the last packing, in the order of blocks
 
 box='walls: [{ box: { x: [-3e-3, 3e-3], y: [-3e-3, 3e-3], z: [0, null] } }]'
 place='x: [-3e-3, 3e-3], y: [-3e-3, 3e-3]'
+# with mu = 1 a contact of this packing has two values with a compliance of 1e-2 of W: nsd-methods(7)
 for mu in 0.3 1; do
-    unique "200 balls, mu = $mu" 1500 "{ mu: $mu, $box, bodies: [{ count: 200, radius: { uniform: [4.4e-4, 5e-4] }, box: { $place, z: [0, null] } }] }"
+    unique "200 balls, mu = $mu" 1500 "{ mu: $mu, stiffness: { compliance: (if $mu < 1 then 1e-2 else 3e-2 end) }, $box, bodies: [{ count: 200, radius: { uniform: [4.4e-4, 5e-4] }, box: { $place, z: [0, null] } }] }"
     ranks "200 balls, mu = $mu" 1 2 4
 done
 # with mu = 1 some forces of such a packing have several values: nsd-methods(7)

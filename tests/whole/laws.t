@@ -568,10 +568,50 @@ stated() # DIM STIFFNESS
     nsd-info "$tmp/stated.h5" | jq -c 'select(.type == "packing").material[0].stiffness // empty'
 }
 for dim in 2 3; do
-    k=$(stated $dim '"auto"' | jq .normal)
+    both=$(stated $dim '"auto"')$(stated $dim '{ "compliance": 1e-2 }')
     stated $dim null
     nsd-detect --stiffness auto "$tmp/stated.h5" >"$tmp/found.h5"
-    ok "in ${dim}D \"auto\" in a scene is --stiffness auto" near "$(nsd-info "$tmp/found.h5" | jq 'select(.type == "packing").material[0].stiffness.normal')" "$k" 1e-15
+    is "in ${dim}D \"auto\" in a scene is --stiffness auto, and a compliance of 1e-2" "$both" \
+        "$(nsd-info "$tmp/found.h5" | jq -c 'select(.type == "packing").material[0].stiffness | ., .' | paste -sd '')"
+done
+refuses 64 "a compliance above 1" nsd-step --stiffness auto:2 "$tmp/stated.h5"
+refuses 65 "a compliance with a tangential stiffness" nsd-gen <(jq -n '{ dt: 1e-3, stiffness: { compliance: 0.1, tangential: 1e3 }, bodies: [{ x: [0, 0, 0], radius: 1 }] }')
+
+# "auto": k = 1/(alpha W dt^2) of each contact. A ball of 1 cm of density 2500 on a light one, on a floor
+light() # DENSITY HEIGHT V KEYS: of the heavy one, its gap and speed
+{
+    jq -n --argjson density "$1" --argjson gap "$2" --argjson v "$3" --argjson more "$4" '{ density: 2500, stiffness: "auto",
+        walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], kinds: { heavy: { density: $density } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 },
+        { x: [0, 0, (0.03 + $gap)], radius: 0.01, v: [0, 0, (-$v)], kind: "heavy" }] } + $more' | nsd-gen -
+}
+for dt in 1e-3 1e-4; do
+    light 2500 0 0 '{ "dt": '$dt' }' | step --criterion natural --tolerance 1e-12 -n 100 --every 100 -o "$tmp/stack.h5"
+    # W = 1/m at the floor, 2/m between the balls
+    ok "auto, dt $dt: two balls sink by alpha W F dt^2 at each contact" near "$(last "$tmp/stack.h5" | jq -s '0.03 - .[1].x[2]')" "$(jq -n "1e-2 * (2 + 2) * 9.81 * $dt * $dt")" 1e-6
+    [ $dt = 1e-4 ] || rm "$tmp/stack.h5"
+done
+for dt in 2.5e-5 4e-4; do
+    step --dt $dt --criterion natural --tolerance 1e-12 -n 30 --log "$tmp/dt.log" -o "$tmp/other.h5" "$tmp/stack.h5"
+    like "with a time step of $dt they stay at rest: springs push as before" "$(jq -s "(map(.balance.kinetic) | max) < 2e-3 * $weight / 9.81 * (9.81 * $dt) * (9.81 * $dt)" "$tmp/dt.log")" true
+    rm "$tmp/other.h5" "$tmp/dt.log"
+done
+rm "$tmp/stack.h5"
+for dt in 1e-3 1e-4 1e-5; do
+    for e in 0 0.5 0.9 1; do
+        jq -n --argjson e $e --argjson dt $dt '{ dt: $dt, density: 2500, e_n: $e, stiffness: "auto", walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
+            bodies: [{ x: [0, 0, (0.01 + 2.5 * $dt)], radius: 0.01, v: [0, 0, -1] }] }' | nsd-gen - | nsd-step -n 5 2>/dev/null |
+            nsd-info -p | jq -s -c --argjson e $e 'map(.v[2]) | -max / min - $e | fabs < 1e-4'
+    done
+done | sort -u >"$tmp/rebounds"
+is "auto: a ball rebounds with e of its speed at any time step" "$(cat "$tmp/rebounds")" true
+jq '.e_n = 0.5' scenes/heap.json | nsd-gen - | step --small-steps 0 --stiffness auto --criterion natural --tolerance 1e-8 -n 300 --every 300 --log "$tmp/heap.log" -o "$tmp/fallen.h5"
+like "auto: discs that rebound gain no energy" "$(jq -s 'all(.converged) and (map(.balance | .dissipation / (.kinetic + 1e-9)) | min) > -1e-6' "$tmp/heap.log")" true
+rm "$tmp/fallen.h5"
+# with C r the heavy ball would keep 0.8 of its speed: C is ten times its 1/m
+for dt in 1e-3 1e-5; do
+    light 2500000 0 1 '{ "dt": '$dt' }' | step -n 1 -o "$tmp/heavy.h5"
+    like "auto, dt $dt: a ball that a light one carries stops within a step" "$(last "$tmp/heavy.h5" | jq -s '.[1].v[2] | fabs < 0.02')" true
+    rm "$tmp/heavy.h5"
 done
 ok "Young's modulus E: pi/4 E d of the smallest ball" near "$(stated 3 '{ "young": 1e7 }' | jq .normal)" "$(jq -n '3.141592653589793 / 4 * 1e7 * 0.02')" 1e-15
 is "in the plane E; and 2/7 of it across, or what is given" "$(stated 2 '{ "young": 7e6 }')$(stated 2 '{ "young": 7e6, "tangential": 5e3 }')" \
