@@ -56,7 +56,7 @@ END
 while read -r tool was is; do
     refuses 64 "$tool --$was" "$tool" "--$was" 1
     like "names the new one" "$(head -1 "$tmp/err")" "^$tool: --$was: now called --$is\$"
-    is "and does not have the old one" "$("$tool" --help | grep -c -e "--$was[ =]")" 0
+    is "and does not have the old one" "$("$tool" --help | grep -c -e "--${was}[ =]")" 0
 done <<'END'
 nsd-step global solver
 nsd-step method local
@@ -90,8 +90,10 @@ like "JSON has the fewest digits that are read as the same number" "$(nsd-info -
 is "nsd-info says what a document is" "$(nsd-info "$tmp/contacts.h5" | jq -r 'select(.frames).type')" packing
 # times with a unit; --every without one is of steps, others of seconds
 while read -r one other; do
-    is "$one is $other" "$(step ${one//,/ } "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')" \
-        "$(step ${other//,/ } "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')"
+    IFS=, read -ra ones <<<"$one"
+    IFS=, read -ra others <<<"$other"
+    is "$one is $other" "$(step "${ones[@]}" "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')" \
+        "$(step "${others[@]}" "$tmp/heap.h5" | nsd-info | jq -c 'select(.step != null) | [.step, .time]')"
 done <<'END'
 -n40,--every=0.5ms -n40,--every=0.0005s
 --until=0.032 --until=32ms

@@ -585,13 +585,13 @@ light() # DENSITY HEIGHT V KEYS: of the heavy one, its gap and speed
         { x: [0, 0, (0.03 + $gap)], radius: 0.01, v: [0, 0, (-$v)], kind: "heavy" }] } + $more' | nsd-gen -
 }
 for dt in 1e-3 1e-4; do
-    light 2500 0 0 '{ "dt": '$dt' }' | step --criterion natural --eps 1e-12 -n 100 --every 100 -o "$tmp/stack.h5"
+    light 2500 0 0 '{ "dt": '$dt' }' | step --criterion natural --tolerance 1e-12 -n 100 --every 100 -o "$tmp/stack.h5"
     # W = 1/m at the floor, 2/m between the balls
     ok "auto, dt $dt: two balls sink by alpha W F dt^2 at each contact" near "$(last "$tmp/stack.h5" | jq -s '0.03 - .[1].x[2]')" "$(jq -n "1e-2 * (2 + 2) * 9.81 * $dt * $dt")" 1e-6
     [ $dt = 1e-4 ] || rm "$tmp/stack.h5"
 done
 for dt in 2.5e-5 4e-4; do
-    step --dt $dt --criterion natural --eps 1e-12 -n 30 --log "$tmp/dt.log" -o "$tmp/other.h5" "$tmp/stack.h5"
+    step --dt $dt --criterion natural --tolerance 1e-12 -n 30 --log "$tmp/dt.log" -o "$tmp/other.h5" "$tmp/stack.h5"
     like "with a time step of $dt they stay at rest: springs push as before" "$(jq -s "(map(.balance.kinetic) | max) < 2e-3 * $weight / 9.81 * (9.81 * $dt) * (9.81 * $dt)" "$tmp/dt.log")" true
     rm "$tmp/other.h5" "$tmp/dt.log"
 done
@@ -604,7 +604,7 @@ for dt in 1e-3 1e-4 1e-5; do
     done
 done | sort -u >"$tmp/rebounds"
 is "auto: a ball rebounds with e of its speed at any time step" "$(cat "$tmp/rebounds")" true
-jq '.e_n = 0.5' scenes/heap.json | nsd-gen - | step --small-steps 0 --stiffness auto --criterion natural --eps 1e-8 -n 300 --every 300 --log "$tmp/heap.log" -o "$tmp/fallen.h5"
+jq '.e_n = 0.5' scenes/heap.json | nsd-gen - | step --small-steps 0 --stiffness auto --criterion natural --tolerance 1e-8 -n 300 --every 300 --log "$tmp/heap.log" -o "$tmp/fallen.h5"
 like "auto: discs that rebound gain no energy" "$(jq -s 'all(.converged) and (map(.balance | .dissipation / (.kinetic + 1e-9)) | min) > -1e-6' "$tmp/heap.log")" true
 rm "$tmp/fallen.h5"
 # with C r the heavy ball would keep 0.8 of its speed: C is ten times its 1/m
