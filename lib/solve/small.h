@@ -47,12 +47,10 @@ struct small_place {
 struct small_bundle {
     int32_t a[BUNDLE], b[BUNDLE]; /* places of bodies [solve/bundle.h] */
     double f[3][BUNDLE];          /* N s: of this step; between steps, what persists of it */
-    double
-        couple[3]
-              [BUNDLE]; /* N m s: d x f, d from a to b where f was made: central forces have none */
-    double kept[BUNDLE];   /* N s: of f along n, with which the step began; SMALL_MEETS */
-    double q[3][BUNDLE];   /* m/s: q - C f_0 */
-    double sum[3][BUNDLE]; /* N s: of f, in the steps before this one */
+    double couple[3][BUNDLE];     /* N m s: d x f where f was made; d: from a to b */
+    double kept[BUNDLE];          /* N s: of f along n, with which the step began; SMALL_MEETS */
+    double q[3][BUNDLE];          /* m/s: q - C f_0 */
+    double sum[3][BUNDLE];        /* N s: of f, in the steps before this one */
     double mu[BUNDLE];
     double e[2][BUNDLE]; /* e_n, e_t */
 };
