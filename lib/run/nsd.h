@@ -90,7 +90,8 @@ void nsd_close(struct nsd_run **run);
 
 /*
  * Sets an option by its long name in nsd-step(1), without dashes: "tolerance", "local", "threads", "warm" ("true" or
- * "false"), "dt" ...; "contacts" and "forces": whether saved frames contain them; and the options of nsd-stat(1) for
+ * "false"), "dt" ...; "contacts" and "forces": whether saved frames contain them; "compare": whether reactions of small
+ * steps are compared with converged ones in each step; and the options of nsd-stat(1) for
  * nsd_measure(): "box", "layers", "point", "plane", "radius", "bins", "distance", "tracer", "sample".
  */
 int nsd_set(struct nsd_run *run, const char *option, const char *value);

@@ -238,7 +238,9 @@ static const struct cli_option *option_named(const char *name)
 
 static int no_such_option(const char *name, struct failure *failure)
 {
-    static const char *const others[] = { "dt", "stiffness", "contacts", "forces", NULL };
+    static const char *const others[] = {
+        "dt", "stiffness", "contacts", "forces", "compare", NULL
+    };
     struct nearest near = { 0 };
     const size_t n = strlen(name);
     const struct renamed *renamed = renamed_find("nsd_set", name, n);
@@ -305,6 +307,7 @@ static int set_option(struct nsd_run *r, const char *name, const char *value,
     if (!strcmp(name, "stiffness")) return run_set_stiffness(r, value, failure);
     if (!strcmp(name, "contacts")) return run_set_flag(&r->contacts, name, value, failure);
     if (!strcmp(name, "forces")) return run_set_flag(&r->forces, name, value, failure);
+    if (!strcmp(name, "compare")) return run_set_flag(&r->compares, name, value, failure);
     if (asked_has(name)) return asked_set(&r->asked, name, value, failure);
     const struct cli_option *o = option_named(name);
     if (!o) return no_such_option(name, failure);
@@ -361,6 +364,7 @@ static int run_advance(struct nsd_run *r, struct report *rep, struct failure *fa
 {
     struct packing *p = &r->f.packing;
     struct driver *d = &r->driver;
+    d->o.compare = r->compares;
     if (driver_begin(d, p, r->tol > 0 ? r->tol : p->tolerance, NULL, failure) ||
         step_advance(p, &r->spare, &d->memory, &d->o, rep, failure))
         return failure->status;

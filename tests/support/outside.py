@@ -66,6 +66,8 @@ for options in ({}, {"contacts": True}, {"forces": True, "tolerance": 1e-6, "cri
     settings = dict(options)
     if settings.pop("cold", None):
         settings["warm"] = False
+    if "contacts" in options or "forces" in options:
+        settings["compare"] = True  # as nsd-step does in frames with contacts
     if os.path.exists(path("mine.h5")):
         os.remove(path("mine.h5"))
     with nsd.Run.from_document(path("begin.h5")) as run:
