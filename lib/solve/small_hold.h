@@ -55,15 +55,6 @@ ALWAYS_INLINE vd small_hold_force(const vd x[HOLD_COUNT], vd g)
     return pick(le(g, x[HOLD_RANGE]), x[HOLD_COHESION], zero) + pick(wet, bridge, zero);
 }
 
-/* A bridge is made at gap g by an impact that leaves no push to the next step. */
-ALWAYS_INLINE void small_hold_impact(vd x[HOLD_COUNT], vd g)
-{
-    vd zero = splat(0);
-    vm made = lt(zero, x[HOLD_BRIDGE]) & ~lt(zero, x[HOLD_WET]) & lt(g, x[HOLD_REACH]);
-    x[HOLD_JOINED] = x[HOLD_JOINED] + pick(made, small_hold_bridge(x, g), zero);
-    x[HOLD_WET] = pick(made, splat(1), x[HOLD_WET]);
-}
-
 /* N s: the pull of a step of h along n, of a pair that has pushed in the step before where `pushed`; bridges are made and
    rupture. dp: its change, of which `warm` persists */
 ALWAYS_INLINE vd small_hold_pull(vd x[HOLD_COUNT], const vd n[3], vd g, vm pushed, double h,

@@ -143,14 +143,6 @@ static void push_reactions(struct small_run *r, int me, int threads)
     }
 }
 
-static void settle_hold(struct small_holds *h, int k, double gap)
-{
-    double x[HOLD_COUNT];
-    for (int j = 0; j < HOLD_COUNT; j++) x[j] = h->x[j][k];
-    small_hold_impact(x, gap);
-    for (int j = 0; j < HOLD_COUNT; j++) h->x[j][k] = x[j];
-}
-
 /* Takes what does not persist of the reaction of a slot out of v^-: v + (v - v^-) then has less of it. */
 static void settle_slot(struct small *s, int64_t slot)
 {
@@ -165,7 +157,6 @@ static void settle_slot(struct small *s, int64_t slot)
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
     const double most = small_persists(&s->rate, held, w, rn);
     if (rn <= most) return;
-    if (s->hold && c->kept[k] < 0) settle_hold(&s->hold[i], k, 2 * half);
     const double left = most / rn, back = 1 - left;
     vec3 m = v3(0, 0, 0), couple = v3(c->couple[0][k], c->couple[1][k], c->couple[2][k]);
     couple = v3_scale(length > 0 ? back / length : 0, couple);

@@ -155,7 +155,6 @@ vec3 small_touch_end(struct small_run *r, struct small_touch *t)
     const double held = t->kept + 2 * t->hold[HOLD_PULL];
     const double most = small_persists(&l->s.rate, held, w, rn);
     if (rn <= most) return none;
-    if (l->s.hold && t->kept < 0) small_hold_impact(t->hold, t->arm - l->s.place[t->body].r);
     const double back = 1 - most / rn;
     small_body_push(&r->l->s.before[t->body], v3_scale(back, f), v3_scale(back, touch_moment(t)));
     for (int k = 0; k < 3; k++) {
