@@ -743,10 +743,11 @@ int tool_main(int argc, char **argv)
     progress_lines(lines);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
-    // a program in the loop needs all bodies, and their contacts, in one place; and --dt auto all bodies
+    // a program in the loop needs all bodies, and their contacts, in one place; --dt auto and springs all bodies
     struct distributed *others =
         processes_take_bodies(contacts || forces || sums || loop_asks(), !options.dt);
-    reader_hands_over(in, loop_asks() || tol > 0 ? NULL : others);
+    const bool whole = loop_asks() || tol > 0 || options_adds_springs();
+    reader_hands_over(in, whole ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
     if (in_place)

@@ -137,6 +137,11 @@ void options_overlap(struct packing *p, bool detected)
     p->overlap = now;
 }
 
+bool options_adds_springs(void)
+{
+    return stiffness && strcmp(stiffness, "rigid") != 0;
+}
+
 void options_stiffness(struct frame *f, const char *fixed)
 {
     struct packing *p = &f->packing;

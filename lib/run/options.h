@@ -37,6 +37,8 @@ void options_overlap(struct packing *packing, bool detected);
 /* Sets the stiffness of contacts: --stiffness, else the frame's own. fixed: a file that has one, which another may not
    follow; or NULL */
 void options_stiffness(struct frame *frame, const char *fixed);
+/* Will that give springs to contacts, whatever the frame has? */
+bool options_adds_springs(void);
 
 /*
  * --log: opens the file at once; then a line of JSON for each solve, with the clock's seconds,

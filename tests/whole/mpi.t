@@ -149,6 +149,7 @@ ok "blocks on 2: the motion of one process, to the criterion" blocks "$tmp/movin
 three=1 ok "with bodies moved apart" blocks "$tmp/moving.h5" 3 1e-8 -n 1
 ok "over a floor that is shaken, in a cell that repeats" blocks "$tmp/vibrated.h5" 3 1e-8 -n 2 --overlap-rule keep
 ok "in a cell that is sheared" blocks "$tmp/shear.h5" 3 1e-8 -n 2 --overlap-rule keep
+ok "with springs that an option gives" blocks "$tmp/moving.h5" 3 1e-8 -n 2 --stiffness 1e4
 ok "with clumps, capsules, hulls" blocks "$tmp/rubble.h5" 2 1e-8 -n 1 --overlap-rule gap
 ok "with cohesion" blocks "$tmp/cohesive.h5" 3 1e-8 -n 2 --overlap-rule keep
 after 300 scenes/rolling.json
