@@ -32,7 +32,7 @@ bool small_copy_init(struct small_copy *c, const struct small_run *r)
     c->change = copy_of(s->change, s->bodies, sizeof *c->change, &good);
     c->touch = copy_of(l->touch, l->touches, sizeof *c->touch, &good);
     c->load = copy_of(r->loads.change, r->loads.list.n, sizeof *c->load, &good);
-    c->point = calloc((size_t)l->meetings.n + 1, sizeof *c->point);
+    c->point = calloc((size_t)l->meetings.n + 1, sizeof(struct small_point *));
     good = good && c->point;
     for (int64_t i = 0; good && i < l->meetings.n; i++)
         c->point[i] =
