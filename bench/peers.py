@@ -148,7 +148,7 @@ def cost(name, quick, out, rounds, chosen):
                 alone = runs(v[:-2])[-1]["span"] if v.endswith("-2") and runs(v[:-2]) else span
                 try:
                     result = one(name, v, scene, document, about, min(span, alone), folder, [],
-                                 BOUND if v in ("nsd", "nsd-2", "liggghts-soft") else BOUND / 3)
+                                 BOUND if v in ("nsd", "nsd-2", "nsd-small", "liggghts-soft") else BOUND / 3)
                 except codes.TooSlow as why:
                     save(path[v], {"variant": v, "balls": count, "runs": [], "why": str(why)})
                     say(f"{name}: {v}: {why}")
