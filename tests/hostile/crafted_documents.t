@@ -138,7 +138,7 @@ for change in "f[C + 'status'][0] = 99" "f[C + 'status'][0] = -1" "f[C + 'body']
 done
 
 # the reactions that the next step starts from
-nsd-step -n 300 --every 300 "$tmp/four.h5" 2>"$tmp/err" >"$tmp/stepped.h5"
+nsd-step -n 3000 --every 3000 "$tmp/four.h5" 2>"$tmp/err" >"$tmp/stepped.h5"
 for change in "f[M + 'impulse'][0, 1] = np.nan" "f[M + 'body'][0] = [-9, 0]" "f[M + 'body'][0] = [0, 4]" "f[M + 'body'][0] = [2, 2]" \
     "f[M + 'body'][1] = f[M + 'body'][0]" "f[M + 'body'][...] = f[M + 'body'][()][::-1]" "f[M + 'count'][0] = 2**40" \
     "f[M + 'start'][0] = -1" "del f[M + 'impulse']" "new(f, M + 'body', data=np.zeros((3, 2)))"; do
