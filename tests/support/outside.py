@@ -379,19 +379,23 @@ ok(not wrong, f"threads that share a run get whole answers {wrong[:1]}")
 
 
 def interrupted(call, after=0.3):
-    """s: how long it takes from Ctrl-C to KeyboardInterrupt; None: there was none"""
-    sent = []
+    """s: how long it takes from Ctrl-C to KeyboardInterrupt; None: there was none. One that comes in a __del__() is lost in
+    Python: after 3 s another is sent."""
+    sent, done = [], threading.Event()
 
     def send():
-        time.sleep(after)
-        sent.append(time.time())
-        os.kill(os.getpid(), signal.SIGINT)
+        while not done.wait(3 if sent else after):
+            sent.append(time.time())
+            os.kill(os.getpid(), signal.SIGINT)
 
     threading.Thread(target=send).start()
     try:
         call()
     except KeyboardInterrupt:
-        return time.time() - sent[0]
+        done.set()
+        return time.time() - sent[-1]
+    finally:
+        done.set()
     return None
 
 
