@@ -381,7 +381,8 @@ ok(not wrong, f"threads that share a run get whole answers {wrong[:1]}")
 def interrupted(call, after=0.3):
     """s: how long it takes from Ctrl-C to KeyboardInterrupt; None: there was none. One that comes in a __del__() is lost in
     Python: after 3 s another is sent."""
-    sent, done = [], threading.Event()
+    sent, done, hook = [], threading.Event(), sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if lost.exc_type is KeyboardInterrupt else hook(lost)
 
     def send():
         while not done.wait(3 if sent else after):
@@ -396,6 +397,7 @@ def interrupted(call, after=0.3):
         return time.time() - sent[-1]
     finally:
         done.set()
+        sys.unraisablehook = hook
     return None
 
 
