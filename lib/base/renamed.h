@@ -1,5 +1,5 @@
 /*
- * base/renamed.h: names of version 1 that users wrote, and what they are called since version 2: options of tools and of nsd_set(), and
+ * base/renamed.h: old names that users wrote, and what they are called now: options of tools and of nsd_set(), and
  * keys of scenes. One table for all, so that an old name is refused with the new one.
  */
 #pragma once
