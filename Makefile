@@ -8,7 +8,7 @@
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
-# make docs       the manuals as HTML, in build/man       make deb       Debian packages, in build/deb
+# make site       all pages and manuals as HTML, build/site  make deb      Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
@@ -171,7 +171,7 @@ tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) 
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-wall setup-check setup-all:
+setup-run setup-paper setup-wall setup-site setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
@@ -363,7 +363,6 @@ $(TIDY): lint-tidy-%:
 
 # ---- what is made for others ----
 
-# The manuals as HTML, in build/man
 MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
@@ -376,26 +375,13 @@ $(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
 
-# Links to manuals that are not ours become plain text.
-BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
-LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
+# Everything that is read, as static HTML in build/site; scripts/site/site.py
+site: setup-site $(MANUALS)
+	scripts/site/site.py $B/site $(MANUALS)
+	@echo "site: $B/site/index.html" >&2
 
-docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
-
-build/man/nsd-cookbook.7.html build/man/nsd-scene.5.html: build/man/%.html: build/man/%
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/%.html: man/%
-	@mkdir -p $(@D)
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/index.html: scripts/man/index.sh $(MANUALS)
-	@mkdir -p $(@D)
-	scripts/man/index.sh $(MANUALS) > $@
-
-build/man/style.css: scripts/man/style.css
-	@mkdir -p $(@D)
-	cp $< $@
+manuals-list: $(MANUALS)
+	@echo $^
 
 # Completion in bash and zsh, out of each tool's table of options
 COMPLETIONS := $(foreach t,$(notdir $(TOOLS)) nsd-fit,$B/completion/bash/$t $B/completion/zsh/_$t)
@@ -479,5 +465,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# make site: no link, anchor or picture leads nowhere; in a browser as wide as a telephone no page is wider than the screen
+# or has an error, and the search finds.
+# shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
+. tests/support/tap.sh
+
+unset MAKEFLAGS MFLAGS MAKELEVEL
+for tool in mandoc cmark-gfm; do
+    command -v "$tool" >/dev/null || { echo "1..0 # SKIP no $tool"; exit 0; }
+done
+read -ra manuals < <(make -s manuals-list)
+site() { scripts/site/site.py "$tmp/site" "${manuals[@]}"; }
+ok "the site is made" site
+faults() { /usr/bin/python3 tests/support/links.py "$tmp/site"; }
+is "no link leads nowhere, and every page can be reached" "$(faults)" ""
+is "it has every manual, with a list of its contents" \
+    "$(for m in "${manuals[@]}"; do grep -q '<details class="contents"' "$tmp/site/man/${m##*/}.html" || echo "$m"; done)" ""
+is "every recipe" "$(for r in cookbook/*/about; do [ -s "$tmp/site/${r%/about}.html" ] || echo "$r"; done)" ""
+is "and every drawing is on a page" \
+    "$(for d in $(git ls-files docs/drawings/*.svg); do grep -rqF "${d##*/}" "$tmp/site" --include=*.html || echo "$d"; done)" ""
+
+# a fault of each kind is found
+cp -r "$tmp/site" "$tmp/kept"
+sed -i 's|</main>|<a href="gone.html">x</a><a href="INSTALL.html#gone">x</a><img src="gone.png" alt=""></main>|' "$tmp/site/index.html"
+is "links that lead nowhere are found" "$(faults | sed 's/.*: no/no/' | paste -sd,)" "no such file,no such place,no such file"
+rm -r "$tmp/site" && mv "$tmp/kept" "$tmp/site"
+mkdir "$tmp/bare" && for f in env python3; do ln -s "/usr/bin/$f" "$tmp/bare"; done
+status 69 "without a tool it ends with 69" env PATH="$tmp/bare" scripts/site/site.py "$tmp/other" man/nsd.7
+like "and names the package" "$(cat "$tmp/err")" "apt-get install cmark-gfm"
+
+# ---- in a browser ----
+
+browse() # what tests/support/site.html finds; errors of the console
+{
+    find "$tmp/site" -name '*.html' ! -path '*/docs/paper/index.html' | sort |
+        sed 's|.*|"file://&",|; 1s/^/var pages = [/; $s/,$/];/' >"$tmp/pages.js"
+    cp tests/support/site.html "$tmp/browse.html"
+    timeout 300 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --allow-file-access-from-files --user-data-dir="$tmp/profile" \
+        --virtual-time-budget=600000 --enable-logging=stderr --dump-dom "file://$tmp/browse.html" 2>"$tmp/console" | sed -n '/<pre id="found">/,/<\/pre>/p' | sed 's/<[^>]*>//g; /^$/d'
+    grep -o 'CONSOLE.*' "$tmp/console" || true
+}
+if command -v chromium >/dev/null; then
+    pages=$(find "$tmp/site" -name '*.html' ! -path '*/docs/paper/index.html' | wc -l)
+    is "in a browser: no page is wider than a telephone, no picture is missing, no error; the search finds" "$(browse)" \
+        "search small-steps: man/nsd-step.1.html#small-steps~2
+search rotating drum: cookbook/drum.html#rotating-drum-with-the-angle-of-its-surface-plotted
+search no-such-word-anywhere: 
+all pages: $pages"
+else
+    skip "in a browser" "no chromium"
+fi
+done_testing
