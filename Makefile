@@ -8,7 +8,8 @@
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
-# make site       all pages and manuals as HTML, build/site  make deb      Debian packages, in build/deb
+# make site       all pages and manuals as HTML, build/site  make drawings  docs/drawings, from scripts/drawings
+# make deb        Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
@@ -323,7 +324,7 @@ coverage:
 # ---- style ----
 
 SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh scripts/site/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -379,6 +380,10 @@ $(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
 site: setup-site $(MANUALS)
 	scripts/site/site.py $B/site $(MANUALS)
 	@echo "site: $B/site/index.html" >&2
+
+# What manuals explain, as SVG in docs/drawings
+drawings:
+	scripts/drawings/make.py docs/drawings
 
 manuals-list: $(MANUALS)
 	@echo $^
@@ -465,5 +470,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -175,10 +175,10 @@ class Site:
         body = re.sub(r'(</?)h([12])\b', lambda m: f'{m[1]}h{int(m[2]) + 1}', body)
         for heading, drawing, caption in re.findall(r'^\.S[hs] ([^\n]*)\n(?:(?!\.S[hs] )[^\n]*\n)*?\.\\" drawing ([\w-]+): ([^\n]*)', text, flags=re.M):
             picture = f'<figure><img src="../docs/drawings/{drawing}.svg" alt="{html.escape(caption)}"><figcaption>{html.escape(caption)}</figcaption></figure>'
-            anchor = re.escape(heading.replace(' ', '_'))
-            body, found = re.subn(rf'(<h[23] class="S[hs]" id="{anchor}">.*?</h[23]>)', lambda m: m[0] + picture, body, count=1, flags=re.S)
+            words = r'\s+'.join(re.escape(html.escape(w, quote=False)) for w in heading.split())
+            body, found = re.subn(rf'<h[23] class="S[hs]"[^>]*>(?:<a[^>]*>)?{words}(?:</a>)?</h[23]>', lambda m: m[0] + picture, body, count=1)
             if not found:
-                self.dead.append(f'{source}: no place for the drawing {drawing}')
+                self.dead.append(f'{self.manuals[name]}: drawing {drawing}: {heading}')
         return 'man/' + name, title, f'<h1>{title}</h1>' + body
 
     def recipe_page(self, source):

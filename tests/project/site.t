@@ -17,7 +17,22 @@ is "it has every manual, with a list of its contents" \
     "$(for m in "${manuals[@]}"; do grep -q '<details class="contents"' "$tmp/site/man/${m##*/}.html" || echo "$m"; done)" ""
 is "every recipe" "$(for r in cookbook/*/about; do [ -s "$tmp/site/${r%/about}.html" ] || echo "$r"; done)" ""
 is "and every drawing is on a page" \
-    "$(for d in $(git ls-files docs/drawings/*.svg); do grep -rqF "${d##*/}" "$tmp/site" --include=*.html || echo "$d"; done)" ""
+    "$(for d in docs/drawings/*.svg; do grep -rqF "${d##*/}" "$tmp/site" --include=*.html || echo "$d"; done)" ""
+
+# ---- the drawings ----
+
+ok "the drawings are made" scripts/drawings/make.py "$tmp/drawings"
+ok "docs/drawings has them (else: make drawings)" diff -r --exclude=README.md "$tmp/drawings" docs/drawings
+shown() { cat "$tmp/drawings"/*.svg | sed 's/<[^>]*>//g' | grep -ohE -e "$1" | sort -u; } # what is written on them
+nsd-gen --keys | cut -f 2 | sort -u >"$tmp/keys"
+is "keys of scenes on them exist" "$(shown '"[a-z_]+"' | tr -d '"' | comm -23 - "$tmp/keys")" ""
+for tool in step solve gen; do "nsd-$tool" --help; done | grep -oE -e '--[a-z-]+' | sort -u >"$tmp/options"
+is "and options" "$(shown '--[a-z]+[a-z-]*' | comm -23 - "$tmp/options")" ""
+is "and tools" "$(for t in $(shown 'nsd-[a-z]+'); do [ -e "man/$t.1" ] || echo "$t"; done)" ""
+is "and parts of a document" "$(sed -n '/Mono/s/<[^>]*>//gp' "$tmp/drawings/document.svg" | tr -d ' .' | tr ',' '\n' | grep '[a-z]' |
+    while read -r part; do grep -qE "/$part(/|\$| )" man/nsd-format.5 || echo "$part"; done)" ""
+
+# ---- links ----
 
 # a fault of each kind is found
 cp -r "$tmp/site" "$tmp/kept"
