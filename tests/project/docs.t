@@ -133,7 +133,7 @@ missing() # files that a text links to
 is "every file that a text links to exists" "$(missing)" ""
 named() # tests that texts name
 {
-    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
+    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)\b' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
         while read -r f; do [ -e "$f" ] || echo "$f"; done
 }
 is "every test that a text names exists" "$(named)" ""
