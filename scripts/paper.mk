@@ -246,7 +246,7 @@ $(OUT)/tables/claims.tsv: $(OUT)/runs.json $(OUT)/same.json $(OUT)/times.tsv $(O
 # ---- figures ----
 
 PILED_UP := example3 example3-2d
-SVG  := signorini coulomb coulombcone strobe closed $(foreach m,$(METHODS) exact,$(foreach s,$(SCENES),conv-$s-$m))
+SVG  := signorini coulomb coulombcone strobe closed $(SCENES:%=conv-%)
 PNG  := $(foreach s,$(DIMS),$s-start $s-end) $(PILED_UP:%=%-rest)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
@@ -273,12 +273,12 @@ $(OUT)/history/%.tsv: $(OUT)/runs/%.h5 $P/history.jq | $(OUT)/history
 
 # Balls with nsd's settings, discs with the paper's: where they converge. Of example 2 the scene's own seed.
 shown_seed = $(if $(filter example2,$1),_9)
+histories = $(foreach m,$(METHODS) exact,$(OUT)/history/$1_$(if $(filter exact,$m),nsd,$2)_$m$(call shown_seed,$(firstword $(subst -, ,$1))).tsv)
 define convergence
-$(OUT)/figures/conv-$1-$2.svg: $(OUT)/history/$1_nsd_$2$(call shown_seed,$1).tsv \
-    $(OUT)/history/$1-2d_$(if $(filter exact,$2),nsd,paper)_$2$(call shown_seed,$1).tsv $P/convergence.gp | $(OUT)/figures
-	@gnuplot -e "method='$2'; balls='$$(word 1,$$^)'; discs='$$(word 2,$$^)'; out='$$@'" $P/convergence.gp
+$(OUT)/figures/conv-$1.svg: $(call histories,$1,nsd) $(call histories,$1-2d,paper) $P/convergence.gp | $(OUT)/figures
+	@gnuplot -e "balls='$(call histories,$1,nsd)'; discs='$(call histories,$1-2d,paper)'; out='$$@'" $P/convergence.gp
 endef
-$(foreach s,$(SCENES),$(foreach m,$(METHODS) exact,$(eval $(call convergence,$s,$m))))
+$(foreach s,$(SCENES),$(eval $(call convergence,$s)))
 
 $(OUT)/figures/closed.svg: $(OUT)/tables/closed.tsv $P/closed.gp | $(OUT)/figures
 	@gnuplot -e "data='$<'; out='$@'" $P/closed.gp
