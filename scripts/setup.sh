@@ -15,7 +15,7 @@ all=("${check[@]}" pandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format gcovr mmdebstrap
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
     debhelper lintian valgrind zsh python3-vtk9 python3-ase python3-mdanalysis python3-gsd python3-sklearn liggghts
-    pocl-opencl-icd ocl-icd-libopencl1 ffmpeg chromium chromium-driver python3-selenium)
+    pocl-opencl-icd ocl-icd-libopencl1 ffmpeg chromium chromium-driver python3-selenium pngquant)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;

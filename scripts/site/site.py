@@ -181,10 +181,14 @@ class Site:
                 self.dead.append(f'{self.manuals[name]}: drawing {drawing}: {heading}')
         return 'man/' + name, title, f'<h1>{title}</h1>' + body
 
+    def recipe_pictures(self, name):
+        """Grains first, which take more bytes than curves"""
+        return sorted(self.find(f'docs/cookbook/{name}/*.png'), key=lambda f: -(TOP / f).stat().st_size)
+
     def recipe_page(self, source):
         title, *lines = (TOP / source / 'about').read_text().splitlines()
         body = run(['cmark-gfm'], f'# {title}\n\n' + '\n'.join(lines))
-        for f in self.find(f'docs/{source}/*.png'):
+        for f in self.recipe_pictures(path.basename(source)):
             body += f'<p><img src="../../{f}" alt="{title}: {path.basename(f)}"></p>'
         names = [path.basename(f) for f in self.find(source + '/*')]
         for f in sorted(names, key=lambda n: (n != 'run.sh', not n.startswith('scene'), n)):
@@ -206,7 +210,7 @@ class Site:
                 if f'cookbook/{r}' not in self.recipes:
                     self.dead.append(f'cookbook/tasks: {r}')
                     continue
-                pictures = self.find(f'docs/cookbook/{r}/*.png')
+                pictures = self.recipe_pictures(r)
                 title = (TOP / f'cookbook/{r}/about').read_text().splitlines()[0]
                 cards += f'<li><a href="{r}">' + (f'<img src="../{pictures[0]}" alt="" loading="lazy">' if pictures else '') + f'<span>{html.escape(title)}</span></a></li>'
             if cards:

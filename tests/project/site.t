@@ -16,6 +16,7 @@ is "no link leads nowhere, and every page can be reached" "$(faults)" ""
 is "it has every manual, with a list of its contents" \
     "$(for m in "${manuals[@]}"; do grep -q '<details class="contents"' "$tmp/site/man/${m##*/}.html" || echo "$m"; done)" ""
 is "every recipe" "$(for r in cookbook/*/about; do [ -s "$tmp/site/${r%/about}.html" ] || echo "$r"; done)" ""
+is "whose tasks name recipes" "$(cut -d : -f 2 cookbook/tasks | tr ' ' '\n' | grep . | while read -r r; do [ -e "cookbook/$r/about" ] || echo "$r"; done)" ""
 is "and every drawing is on a page" \
     "$(for d in docs/drawings/*.svg; do grep -rqF "${d##*/}" "$tmp/site" --include=*.html || echo "$d"; done)" ""
 
