@@ -101,8 +101,10 @@ class Site:
                     inside.append(part)
             elif not any(re.match(r'<(a|h[1-6]|pre|svg|title)\b', t) for t in inside):
                 parts[k] = re.sub(r'\b(nsd(?:-[a-z]+)?)\(([1357])\)', lambda m: self.manual_link(source, m), part)
-                if inside and 'class="Pa"' in inside[-1] and html.unescape(part).strip('/') in self.page:
-                    parts[k] = f'<a href="{self.relative(source, self.page[part.strip("/")])}">{part}</a>'
+                name = html.unescape(part).strip('/')
+                name = 'cookbook/' + name if source == 'man/nsd-cookbook.7' and '/' not in name else name
+                if inside and 'class="Pa"' in inside[-1] and name in self.page:
+                    parts[k] = f'<a href="{self.relative(source, self.page[name])}">{part}</a>'
         return ''.join(parts)
 
     def manual_link(self, source, m):
