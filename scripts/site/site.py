@@ -128,7 +128,7 @@ class Site:
             return f'<h{m[1]} id="{name}"{m[2]}>{m[3]}</h{m[1]}>'
         body = re.sub(r'<h([1-4])([^>]*)>(.*?)</h\1>', named, body, flags=re.S)
         body = self.linked(source, body)
-        body = re.sub(r'<table\b.*?</table>', lambda m: f'<div class="wide">{m[0]}</div>', body, flags=re.S)
+        body = re.sub(r'<table\b(?: class="([\w-]*)")?.*?</table>(?:\s*<br/>)?', lambda m: f'<div class="wide {m[1] or ""}">{m[0]}</div>', body, flags=re.S)
         headings = [(int(h[0]), h[1], plain(h[2])) for h in re.findall(r'<h([1-4])[^>]*? id="([^"]*)"[^>]*>(.*?)</h\1>', body, flags=re.S)]
         if source != 'man/nsd-cookbook.7':  # each recipe has its own page
             self.remember(source, title, body)
@@ -170,6 +170,7 @@ class Site:
         source = TOP / self.manuals[name]
         text = source.read_text()
         body = run(['mandoc', '-T', 'html', '-O', 'fragment,man=%N.%S', str(source)])
+        body = re.sub(r'<a class="In">([^<]*)</a>', r'\1', body)
         body = re.sub(r'<a class="Xr" href="([^"]*)"[^>]*>([^<]*)</a>',
                       lambda m: m[0] if m[1] in self.manuals else m[2], body)
         body = re.sub(r'<table class="(?:head|foot)">.*?</table>', '', body, flags=re.S)
