@@ -161,8 +161,10 @@ class Site:
     def text_page(self, source):
         text = (TOP / source).read_text()
         text = re.sub(r'\A---\n.*?^title: *[\'"]?(.*?)[\'"]?\n.*?^---\n', r'# \1\n', text, flags=re.S | re.M)  # of paper.md
-        text = re.sub(r'\[(@[\w;@ ]+)\]', lambda m: '(' + m[1].replace('@', '') + ')', text)
+        text = re.sub(r'\[(@[\w:;@ ]+)\]', lambda m: '(' + m[1].replace('@', '').replace(':', ' ') + ')', text)  # citations
+        text = re.sub(r'^# References\n*\Z', '# References\n\nare in [paper.bib](paper.bib).\n', text, flags=re.M)
         body = run(['cmark-gfm', '--unsafe', '-e', 'table', '-e', 'strikethrough', '-e', 'autolink'], text)
+        body = re.sub(r'<code>([^<]{1,28})</code>', r'<code class="short">\1</code>', body)  # is not broken at its hyphens
         heading = re.search(r'<h1>(.*?)</h1>', body, re.S)
         return source, plain(heading[1]) if heading else source, body
 
