@@ -129,6 +129,7 @@ class Site:
         body = re.sub(r'<h([1-4])([^>]*)>(.*?)</h\1>', named, body, flags=re.S)
         body = self.linked(source, body)
         body = re.sub(r'<table\b(?: class="([\w-]*)")?.*?</table>(?:\s*<br/>)?', lambda m: f'<div class="wide {m[1] or ""}">{m[0]}</div>', body, flags=re.S)
+        body = re.sub(r'(?<!">)(<img src="([^"]*)"[^>]*>)', r'<a href="\2">\1</a>', body)  # a telephone shows it larger
         headings = [(int(h[0]), h[1], plain(h[2])) for h in re.findall(r'<h([1-4])[^>]*? id="([^"]*)"[^>]*>(.*?)</h\1>', body, flags=re.S)]
         if source != 'man/nsd-cookbook.7':  # each recipe has its own page
             self.remember(source, title, body)

@@ -46,22 +46,21 @@ like "and names the package" "$(cat "$tmp/err")" "apt-get install cmark-gfm"
 
 # ---- in a browser ----
 
-browse() # what tests/support/site.html finds; errors of the console
+browse() # PAGE ...: what tests/support/site.html finds; errors of the console
 {
-    find "$tmp/site" -name '*.html' ! -path '*/docs/paper/index.html' | sort |
-        sed 's|.*|"file://&",|; 1s/^/var pages = [/; $s/,$/];/' >"$tmp/pages.js"
+    printf '"file://%s",\n' "$@" | sed '1s/^/var pages = [/; $s/,$/];/' >"$tmp/pages.js"
     cp tests/support/site.html "$tmp/browse.html"
     timeout 300 chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --allow-file-access-from-files --user-data-dir="$tmp/profile" \
         --virtual-time-budget=600000 --enable-logging=stderr --dump-dom "file://$tmp/browse.html" 2>"$tmp/console" | sed -n '/<pre id="found">/,/<\/pre>/p' | sed 's/<[^>]*>//g; /^$/d'
     grep -o 'CONSOLE.*' "$tmp/console" || true
 }
 if command -v chromium >/dev/null; then
-    pages=$(find "$tmp/site" -name '*.html' ! -path '*/docs/paper/index.html' | wc -l)
-    is "in a browser: no page is wider than a telephone, no picture is missing, no error; the search finds" "$(browse)" \
-        "search small-steps: man/nsd-step.1.html#small-steps~2
-search rotating drum: cookbook/drum.html#rotating-drum-with-the-angle-of-its-surface-plotted
-search no-such-word-anywhere: 
-all pages: $pages"
+    mapfile -t pages < <(find "$tmp/site" -name '*.html' | sort)
+    like "in a browser: no page is wider than a telephone, no picture is missing, no error; the search finds" "$(browse "${pages[@]}" | paste -sd';')" \
+        "^search max-sweeps: man/nsd-[a-z]+[.]1[.]html#max-sweeps;search drum angle: [a-z]+/[^;]*drum[^;]*;search no-such-word-anywhere: ;all pages: ${#pages[@]}$"
+    sed 's|</main>|<img src="gone.png" alt=""><p style="width: 900px">wide</p><script>noSuchFunction()</script></main>|' "$tmp/site/index.html" >"$tmp/site/bad.html"
+    is "and faults are found" "$(browse "$tmp/site/bad.html" | grep -oE 'no picture|wider than a telephone|noSuchFunction is not defined' | sort -u | paste -sd,)" \
+        "no picture,noSuchFunction is not defined,wider than a telephone"
 else
     skip "in a browser" "no chromium"
 fi
