@@ -172,7 +172,7 @@ tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) 
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-wall setup-site setup-check setup-all:
+setup-run setup-wall setup-site setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
@@ -221,7 +221,7 @@ demo: setup-run
 	@PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
 
 # scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
-paper paper-keep: setup-paper
+paper paper-keep: setup-run
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
 	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove tests/whole/paper_page.t)
@@ -470,5 +470,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

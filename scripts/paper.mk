@@ -15,7 +15,7 @@
 #   runs.json          a line for each run: what the tables are made from
 #   same.json          the same contact problems given to every method
 #   times.tsv          CPU seconds, apart: nothing else here differs from one machine to the next
-#   tables/, figures/  what the page shows; README.md, index.html: the page
+#   tables/, figures/  what the page shows; README.md: the page
 #
 # What is there is not made again: to start afresh remove the folder.
 
@@ -30,8 +30,8 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(OUT)/index.html
-	@echo "paper: $(OUT)/index.html, $(OUT)/README.md" >&2
+all: $(OUT)/README.md
+	@echo "paper: $(OUT)/README.md" >&2
 
 # ---- what the paper has, and what is run ----
 
@@ -328,10 +328,6 @@ $(OUT)/README.md: $P/page.md $P/page.awk $(PARTS:%=$(OUT)/tables/%.tsv) \
     $(SVG:%=$(OUT)/figures/%.svg) $(PNG:%=$(OUT)/figures/%.png)
 	@awk -f $P/page.awk -v tables=$(OUT)/tables -v quick='$(QUICK)' $< > $@
 
-$(OUT)/index.html: $(OUT)/README.md $P/page.css
-	@pandoc --self-contained --standalone --from gfm --css $P/page.css \
-	    --metadata title="nsd: the paper, every table and figure" --resource-path $(OUT) -o $@ $<
-
 $(addprefix $(OUT)/,adhesion adhesion-same adhesion-times runs same rest tables closed data history figures) \
 $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 	@mkdir -p $@
@@ -340,6 +336,6 @@ $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 all-keep: all
 	mkdir -p docs/paper
 	rm -rf docs/paper/tables docs/paper/figures
-	cp -r $(OUT)/README.md $(OUT)/index.html $(OUT)/runs.json $(OUT)/same.json $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
+	cp -r $(OUT)/README.md $(OUT)/runs.json $(OUT)/same.json $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
 
 .PHONY: all all-keep

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh run|check|paper|wall|site|all: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|check|wall|site|all: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
@@ -7,11 +7,10 @@ set -euo pipefail
 # without; all: make check-all
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libdeflate-dev libpng-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
-paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
 site=("${run[@]}" mandoc cmark-gfm python3)
 check=("${wall[@]}" "${site[@]:${#run[@]}}" python3-numpy python3-jsonschema perl libfclib-dev opencl-c-headers parallel time)
-all=("${check[@]}" pandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
+all=("${check[@]}" shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format gcovr mmdebstrap
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
     debhelper lintian valgrind zsh python3-vtk9 python3-ase python3-mdanalysis python3-gsd python3-sklearn liggghts
@@ -19,12 +18,11 @@ all=("${check[@]}" pandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
-paper) packages=("${paper[@]}") ;;
 wall) packages=("${wall[@]}") ;;
 site) packages=("${site[@]}") ;;
 check) packages=("${check[@]}") ;;
 all) packages=("${all[@]}") ;;
-*) echo "usage: setup.sh run|check|paper|wall|site|all" >&2; exit 64 ;;
+*) echo "usage: setup.sh run|check|wall|site|all" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

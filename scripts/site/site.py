@@ -2,8 +2,8 @@
 """site.py OUT MANUAL ...: the site, static HTML in the folder OUT, of the Markdown pages, the manuals and the recipes.
 
 A page is where its source is: docs/wall/README.md becomes OUT/docs/wall/index.html, man/nsd-gen.1 OUT/man/nsd-gen.1.html.
-Files that pages link to are copied; a link to a file that does not exist ends the program with status 65. In a manual
-a comment .\\" drawing NAME: CAPTION puts docs/drawings/NAME.svg below the heading before it."""
+Files that pages link to are copied. A link to a file that does not exist ends the program with status 65, and OUT stays as
+it was. In a manual a comment .\\" drawing NAME: CAPTION puts docs/drawings/NAME.svg below the heading before it."""
 import concurrent.futures
 import html
 import json
@@ -43,7 +43,7 @@ def plain(fragment):
 
 class Site:
     def __init__(self, out, manuals):
-        self.out = Path(out)
+        self.out = out
         self.manuals = {path.basename(m): m for m in manuals}  # nsd-gen.1: where its source is
         self.recipes = sorted(path.dirname(a) for a in self.find('cookbook/*/about'))
         texts = [f for g in ('*.md', 'docs/*/README.md', 'bench/README.md', 'bench/results/*/*.md', 'lib/README.md', 'tests/README.md')
@@ -56,7 +56,6 @@ class Site:
         self.folders = []  # that pages link to, and that have no page of their own
         self.index = []    # of the search: page, anchor, title, heading, text
         self.dead = []
-        self.pictures = {path.basename(f)[:-4]: f for f in self.find('docs/drawings/*.svg')}
 
     @staticmethod
     def find(pattern):
@@ -133,22 +132,33 @@ class Site:
         headings = [(int(h[0]), h[1], plain(h[2])) for h in re.findall(r'<h([1-4])[^>]*? id="([^"]*)"[^>]*>(.*?)</h\1>', body, flags=re.S)]
         if source != 'man/nsd-cookbook.7':  # each recipe has its own page
             self.remember(source, title, body)
-        root = path.relpath('.', path.dirname(self.page[source]) or '.')
-        navigation = ''.join(
-            f'<div><b>{group}</b>' + ''.join(
-                f'<a href="{self.relative(source, self.page[s])}"{" class=here" if self.page[s] == self.page[source] else ""}>{html.escape(name)}</a>'
-                for s, name in pages if s in self.page) + '</div>' for group, pages in NAVIGATION)
-        contents = ''
-        if len(headings) > 3:
-            contents = '<details class="contents" open><summary>Contents</summary><ul>' + ''.join(
-                f'<li class="level{level}"><a href="#{a}">{html.escape(text)}</a></li>'
-                for level, a, text in headings[headings[0][0] == 1 and [h[0] for h in headings].count(1) == 1:] if level < 4) + '</ul></details>'
         page = (HERE / 'page.html').read_text()
-        for name, value in (('title', html.escape(title)), ('root', root), ('navigation', navigation), ('contents', contents), ('body', body)):
+        for name, value in (('title', html.escape(title)), ('root', path.relpath('.', path.dirname(self.page[source]) or '.')),
+                            ('navigation', self.navigation(source)), ('contents', self.contents(headings)), ('body', body)):
             page = page.replace(f'@{name}@', value)
         to = self.out / self.page[source]
         to.parent.mkdir(parents=True, exist_ok=True)
         to.write_text(page)
+
+    def navigation(self, source):
+        text = ''
+        for group, pages in NAVIGATION:
+            text += f'<div><b>{group}</b>'
+            for s, name in pages:
+                here = ' class="here"' if self.page[s] == self.page[source] else ''
+                text += f'<a href="{self.relative(source, self.page[s])}"{here}>{html.escape(name)}</a>'
+            text += '</div>'
+        return text
+
+    @staticmethod
+    def contents(headings):
+        """The list of headings, (level, anchor, text), without the title"""
+        if len(headings) < 4:
+            return ''
+        titled = [level for level, _, _ in headings].count(1) == 1
+        rows = ''.join(f'<li class="level{level}"><a href="#{a}">{html.escape(text)}</a></li>'
+                       for level, a, text in headings[titled:] if level < 4)
+        return f'<details class="contents" open><summary>Contents</summary><ul>{rows}</ul></details>'
 
     def remember(self, source, title, body):
         """The text of each section, option and key for the search"""
@@ -198,8 +208,8 @@ class Site:
             body += f'<p><img src="../../{f}" alt="{title}: {path.basename(f)}"></p>'
         names = [path.basename(f) for f in self.find(source + '/*')]
         for f in sorted(names, key=lambda n: (n != 'run.sh', not n.startswith('scene'), n)):
-            text = (TOP / source / f).read_text()
-            if f not in ('about', 'check.sh') and len(text) < 12000:
+            if f not in ('about', 'check.sh') and (TOP / source / f).stat().st_size < 12000:
+                text = (TOP / source / f).read_text(errors='replace')
                 text = re.sub(r'\bnsd-[a-z]+\b', lambda m: f'<a href="../../man/{m[0]}.1">{m[0]}</a>' if m[0] + '.1' in self.manuals else m[0],
                               html.escape(text, quote=False))
                 body += f'<h2>{f}</h2><pre>{text}</pre>'
@@ -239,7 +249,6 @@ class Site:
         return source, source, f'<h1>{source}</h1><ul>' + ''.join(f'<li><a href="{path.basename(source)}/{n}">{n}</a></li>' for n in names) + '</ul>'
 
     def make(self):
-        shutil.rmtree(self.out, ignore_errors=True)
         self.out.mkdir(parents=True)
         jobs = [(self.text_page, f) for f in self.page if f.endswith('.md') and f != 'cookbook/README.md']
         jobs += [(self.manual_page, m) for m in self.manuals] + [(self.recipe_page, r) for r in self.recipes]
@@ -260,11 +269,25 @@ def main():
         if not shutil.which(tool):
             print(f'site.py: {tool}: no such program; it is in the Debian package {package}: apt-get install {package}', file=sys.stderr)
             return 69
-    site = Site(os.path.abspath(sys.argv[1]), sys.argv[2:])
-    site.make()
+    out = Path(sys.argv[1]).absolute()
+    if out.exists() and not (out / 'search-index.js').exists():
+        print(f'site.py: {out}: exists, and is not a site', file=sys.stderr)
+        return 64
+    new = out.with_name(out.name + '.new')
+    shutil.rmtree(new, ignore_errors=True)
+    site = Site(new, sys.argv[2:])
+    try:
+        site.make()
+    except subprocess.CalledProcessError as e:
+        print(f'site.py: {" ".join(e.cmd)}: {e.stderr.strip()}', file=sys.stderr)
+        return 70
     for line in site.dead:
         print(f'site.py: {line}: no such file', file=sys.stderr)
-    return 65 if site.dead else 0
+    if site.dead:
+        return 65
+    shutil.rmtree(out, ignore_errors=True)
+    new.rename(out)
+    return 0
 
 
 if __name__ == '__main__':

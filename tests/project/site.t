@@ -40,6 +40,8 @@ cp -r "$tmp/site" "$tmp/kept"
 sed -i 's|</main>|<a href="gone.html">x</a><a href="INSTALL.html#gone">x</a><img src="gone.png" alt=""></main>|' "$tmp/site/index.html"
 is "links that lead nowhere are found" "$(faults | sed 's/.*: no/no/' | paste -sd,)" "no such file,no such place,no such file"
 rm -r "$tmp/site" && mv "$tmp/kept" "$tmp/site"
+is "a folder that is not a site stays" "$(mkdir "$tmp/mine" && touch "$tmp/mine/file" && scripts/site/site.py "$tmp/mine" "${manuals[@]}" 2>&1 | grep -c 'is not a site'; ls "$tmp/mine")" "1
+file"
 mkdir "$tmp/bare" && for f in env python3; do ln -s "/usr/bin/$f" "$tmp/bare"; done
 status 69 "without a tool it ends with 69" env PATH="$tmp/bare" scripts/site/site.py "$tmp/other" man/nsd.7
 like "and names the package" "$(cat "$tmp/err")" "apt-get install cmark-gfm"
