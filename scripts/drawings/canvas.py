@@ -1,13 +1,13 @@
 """A drawing as SVG: lines, arrows, circles and words, in pixels from the upper left corner.
 
 Colours have one meaning in all drawings: blue is a body, grey a wall, green a velocity or a motion, orange a force or a reaction,
-violet what a user chooses. In words _x or _{xy} is a subscript, ^x or ^{xy} a superscript; mono=True: as it is typed, without these."""
+violet what a user chooses, red a failure. In words _x or _{xy} is a subscript, ^x or ^{xy} a superscript; mono=True: as it is typed, without these."""
 import html
 import math
 import re
 
-INK, BODY, WALL, MOTION, FORCE, CHOICE, PALE = '#222222', '#1f4e79', '#777777', '#3a7d44', '#c05a1a', '#7a4a8a', '#999999'
-FILL = {BODY: '#dce8f2', WALL: '#e6e6e6', MOTION: '#e2f0e4', FORCE: '#f8e8dc', CHOICE: '#efe6f3', INK: '#ffffff', PALE: '#f6f6f6'}
+INK, BODY, WALL, MOTION, FORCE, CHOICE, FAULT, PALE = '#222222', '#1f4e79', '#777777', '#3a7d44', '#c05a1a', '#7a4a8a', '#aa0000', '#999999'
+FILL = {BODY: '#dce8f2', WALL: '#e6e6e6', MOTION: '#e2f0e4', FORCE: '#f8e8dc', CHOICE: '#efe6f3', FAULT: '#e8b0b0', INK: '#ffffff', PALE: '#f6f6f6'}
 
 
 def number(x):

@@ -1,7 +1,7 @@
 """Drawings of the motion and the contact law: nsd-methods(7), Motion, Overlap, Contacts, The law"""
 import math
 
-from canvas import BODY, CHOICE, FORCE, INK, MOTION, PALE, WALL, Canvas
+from canvas import BODY, CHOICE, FAULT, FORCE, INK, MOTION, PALE, WALL, Canvas
 
 
 def step():
@@ -22,7 +22,7 @@ def step():
     boxes = [('every pair finds', 'gap and normal'), ('one sweep: each pair', 'is solved once'), ('bodies move', 'by h')]
     for k, texts in enumerate(boxes):
         x = 20 + 206 * k
-        c.box(x, 162, 176, 50, texts, BODY, 13)
+        c.box(x, 162, 176, 50, texts, INK, 13)
         if k < 2:
             c.arrow(x + 178, 187, x + 204, 187)
     c.bend([(520, 214), (520, 234), (108, 234), (108, 216)], PALE, 1.5)
@@ -47,7 +47,7 @@ def step():
     for k, texts in enumerate([('nsd-detect', 'contacts, in the', 'predicted position'), ('nsd-solve', 'sweeps over all contacts', 'until the tolerance'),
                                ('nsd-move', "velocities q̇' and", "positions q'")]):
         x = 20 + 206 * k
-        c.box(x, 482, 184, 66, texts, BODY, 13, mono=1)
+        c.box(x, 482, 184, 66, texts, INK, 13, mono=1)
         if k < 2:
             c.arrow(x + 185, 515, x + 205, 515)
     return c
@@ -64,14 +64,14 @@ def overlap():
             c.line(a, 52, a, 126, PALE, 1)
             c.line(b, 52, b, 126, PALE, 1)
             c.words(x, 144, 'g' if gap > 0 else '-g', anchor='middle', italic=True)
-            c.line(a, 122, b, 122, FORCE if gap < 0 else MOTION, 3)
+            c.line(a, 122, b, 122, INK, 3)
         c.words(x, 20, text, anchor='middle')
     c.words(20, 182, 'The gap of a pair, in radii r (not to scale)', bold=True, size=15)
     y, at = 300, {'-0.1': 50, '-2R': 200, '-R': 255, '0': 345, '0.001': 430, '0.3': 590}
     c.line(20, y, 620, y, width=2)
-    c.rect(345, y - 5, 85, 10, MOTION, width=0.5)
-    c.rect(200, y - 5, 55, 10, FORCE, width=0.5)
-    c.rect(20, y - 5, 30, 10, '#aa0000', '#e8b0b0', width=0.5)
+    c.rect(345, y - 5, 85, 10, PALE, '#dddddd', width=0.5)
+    c.rect(200, y - 5, 55, 10, CHOICE, width=0.5)
+    c.rect(20, y - 5, 30, 10, FAULT, width=0.5)
     for name, x in at.items():
         c.line(x, y - 9, x, y + 9)
         c.words(x, y + 26, {'-2R': '-2 R', '-R': '-R'}.get(name, name), anchor='middle', size=13)
@@ -120,18 +120,18 @@ def contact():
     c.lines(440, 220, ['r = impulse that a', 'exerts on b, N s', 'r_n > 0: it pushes', 'force on b: r/dt, N'], 20, size=13, colour=FORCE)
     c.line(20, 308, 620, 308, PALE, 1)
     c.words(20, 334, 'A wall and a body', bold=True, size=15)
-    c.wall(40, 440, 380, 440, 1)
-    c.circle(210, 390, 50)
-    c.words(178, 376, 'b', size=18, bold=True, colour=BODY)
+    c.wall(40, 440, 420, 440, 1)
+    c.circle(250, 382, 58)
+    c.words(212, 368, 'b', size=18, bold=True, colour=BODY)
     c.words(50, 430, 'a: the wall', WALL)
-    c.arrow(210, 440, 210, 392, INK, 2.5)
-    c.words(192, 408, 'n', bold=True)
-    c.arrow(226, 440, 226, 368, FORCE, 3)
-    c.words(234, 382, 'r_n n', FORCE)
-    c.arrow(276, 390, 340, 390, MOTION, 2.5)
-    c.words(302, 380, 'u_t', MOTION)
-    c.arrow(210, 446, 150, 446, FORCE, 3)
-    c.words(140, 464, 'r_t: friction opposes u_t', FORCE, 13)
+    c.arrow(250, 440, 250, 392, INK, 2.5)
+    c.words(232, 408, 'n', bold=True)
+    c.arrow(266, 440, 266, 368, FORCE, 3)
+    c.words(272, 402, 'r_n n', FORCE)
+    c.arrow(324, 382, 386, 382, MOTION, 2.5)
+    c.words(346, 372, 'u_t', MOTION)
+    c.arrow(250, 446, 190, 446, FORCE, 3)
+    c.words(176, 464, 'r_t: friction opposes u_t', FORCE, 13)
     c.lines(440, 356, ['The wall is always a, and', 'n points into the interior.', 'In documents body = [a, b]:', 'rows of particles,', 'wall w is -1 - w.'], 20, size=13)
     return c
 

@@ -1,11 +1,11 @@
 """Drawings of the tools and of what they exchange: the pipeline, a document, which step to choose"""
-from canvas import BODY, CHOICE, FORCE, INK, MOTION, PALE, WALL, Canvas
+from canvas import BODY, CHOICE, FORCE, INK, PALE, WALL, Canvas
 
 
 def pipeline():
     c = Canvas(640, 490, 'The pipeline of the tools')
 
-    def tool(x, y, name, text, w=130, colour=BODY):
+    def tool(x, y, name, text, w=130, colour=INK):
         c.box(x, y, w, 48, [name, text], colour, 13, mono=1)
     c.words(20, 28, 'A step by hand', bold=True, size=15)
     tool(20, 44, 'nsd-gen', 'makes a packing')
@@ -23,24 +23,24 @@ def pipeline():
     c.arrow(150, 224, 182, 224)
     tool(182, 200, 'nsd-step -n N', 'makes N steps', 150)
     c.arrow(332, 224, 372, 224)
-    c.rect(372, 196, 130, 56, MOTION, round_=5)
-    c.words(437, 220, 'out.h5', MOTION, 13.5, 'middle', mono=True, bold=True)
+    c.rect(372, 196, 130, 56, PALE, round_=5)
+    c.words(437, 220, 'out.h5', INK, 13.5, 'middle', mono=True, bold=True)
     c.words(437, 239, 'trajectory', anchor='middle', size=13)
     c.bend([(437, 196), (437, 178), (257, 178), (257, 198)], PALE, 1.5)
     c.words(347, 172, 'resume', anchor='middle', size=12.5)
     c.words(514, 220, 'HDF5, in files', size=12.5)
     c.words(514, 238, 'and in pipes', size=12.5)
     c.words(20, 292, 'What reads a document', bold=True, size=15)
-    c.arrow(437, 252, 437, 306, MOTION, 2)
-    c.line(20, 308, 620, 308, MOTION, 2)
+    c.arrow(437, 252, 437, 306, INK, 2)
+    c.line(20, 308, 620, 308, INK, 2)
     readers = [('nsd-info', 'JSON lines'), ('nsd-stat', 'measures'), ('nsd-err', 'errors'), ('nsd-view', 'pictures, films'), ('nsd-web', 'a page to play'),
                ('nsd-export', 'other formats'), ('nsd-cat', 'joins, cuts, thins'), ('import nsd', 'Python module')]
     for k, (name, text) in enumerate(readers):
         x, y = 20 + 152 * (k % 4), 324 + 64 * (k // 4)
         tool(x, y, name, text, 144)
         if k < 4:
-            c.line(x + 72, 308, x + 72, 324, MOTION, 1.5)
-    c.words(20, 476, 'nsd-fit', BODY, 13, mono=True, bold=True)
+            c.line(x + 72, 308, x + 72, 324, INK, 1.5)
+    c.words(20, 476, 'nsd-fit', INK, 13, mono=True, bold=True)
     c.words(84, 476, 'runs a scene again with other parameters, until it repeats measurements', size=12.5)
     c.words(620, 28, 'nsd-gen | nsd-detect | nsd-solve | nsd-move', CHOICE, 12, 'end', mono=True)
     return c
@@ -118,8 +118,8 @@ def choose():
     yes(235)
     answer(206, '(no option)', ['nsd-step makes one solve per step', 'by itself; dt as below'], 62)
     no(264, 290)
-    c.rect(20, 290, 290, 76, MOTION, round_=5)
-    c.words(32, 312, 'small steps, the default', MOTION, 14, bold=True)
+    c.rect(20, 290, 290, 76, PALE, round_=5)
+    c.words(32, 312, 'small steps, the default', INK, 14, bold=True)
     c.lines(32, 332, ['Overlaps are 0.01 to 0.02 radii for any dt:', 'dt is only the unit of steps and frames.'], 18, size=12.5)
     question(392, ['Does the result depend on the overlap?'], 44)
     c.arrow(165, 366, 165, 392)
@@ -132,6 +132,6 @@ def choose():
             ('a few fast bodies', '--substeps divides the steps in which they meet others'),
             ('to be sure', 'half of dt: compare with the scatter between seeds')]
     for k, (name, text) in enumerate(rows):
-        c.words(20, 514 + 21 * k, name, MOTION, 12.5)
-        c.words(190, 514 + 21 * k, text, size=12.5)
+        c.words(20, 514 + 21 * k, name, INK, 12.5, bold=True)
+        c.words(205, 514 + 21 * k, text, size=12.5)
     return c
