@@ -376,12 +376,12 @@ $(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
 
-# Everything that is read, as static HTML in build/site; scripts/site/site.py
-site: setup-site $(MANUALS)
+# All pages, manuals and recipes as static HTML, by scripts/site/site.py; docs: its former name
+docs site: setup-site $(MANUALS)
 	scripts/site/site.py $B/site $(MANUALS)
 	@echo "site: $B/site/index.html" >&2
 
-# What manuals explain, as SVG in docs/drawings
+# The drawings of the manuals, SVG in docs/drawings
 drawings:
 	scripts/drawings/make.py docs/drawings
 
@@ -470,5 +470,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

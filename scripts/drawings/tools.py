@@ -30,7 +30,7 @@ def pipeline():
     c.words(347, 172, 'resume', anchor='middle', size=12.5)
     c.words(514, 220, 'HDF5, in files', size=12.5)
     c.words(514, 238, 'and in pipes', size=12.5)
-    c.words(20, 292, 'What reads a document', bold=True, size=15)
+    c.words(20, 292, 'Programs that read a document', bold=True, size=15)
     c.arrow(437, 252, 437, 306, INK, 2)
     c.line(20, 308, 620, 308, INK, 2)
     readers = [('nsd-info', 'JSON lines'), ('nsd-stat', 'measures'), ('nsd-err', 'errors'), ('nsd-view', 'pictures, films'), ('nsd-web', 'a page to play'),
@@ -64,12 +64,12 @@ def document():
             (2, 'mu, en, et', 'coefficients of the pair', FORCE),
             (2, 'reaction, velocity', 'of the solve: r, N s; u, m/s', FORCE),
             (2, 'status', '0 free, 1 stick, 2 slide, 3 jammed, 4 summed', FORCE),
-            (1, 'nsd', 'what only nsd reads', INK),
+            (1, 'nsd', 'data that only nsd reads', INK),
             (2, 'scene, history', 'the scene; the commands that made this', CHOICE),
             (2, 'material, cell', 'mu, en, et by kinds; gradient and stress', CHOICE),
             (2, 'solver', 'the report of each frame', INK),
-            (2, 'account', 'the worst of all steps', INK),
-            (2, 'memory, bonds', 'what a resumed run needs', INK),
+            (2, 'account', 'the largest errors of all steps', INK),
+            (2, 'memory, bonds', 'state for a resumed run', INK),
             (2, 'outside', 'answers of a program in the loop', INK)]
     top, gap = 30, 23.4
     last = {}
