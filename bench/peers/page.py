@@ -239,7 +239,7 @@ def plot(name, job, folder):
         script += "set multiplot layout 2,1; "
     script += f"set ylabel '{job['label']}'; " + curves(2)
     if two:
-        script += "unset key; set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy, m g d a ball'; " + curves(3)
+        script += "unset key; set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy per ball, m g d'; " + curves(3)
     subprocess.run(["gnuplot", "-e", script], check=True)
     os.remove(path + ".dat")
 
