@@ -189,12 +189,18 @@ class Site:
         body = re.sub(r'<table class="(?:head|foot)">.*?</table>', '', body, flags=re.S)
         title = re.sub(r'(.*)\.(.)', r'\1(\2)', name)
         body = re.sub(r'(</?)h([12])\b', lambda m: f'{m[1]}h{int(m[2]) + 1}', body)
-        for heading, drawing, caption in re.findall(r'^\.S[hs] ([^\n]*)\n(?:(?!\.S[hs] )[^\n]*\n)*?\.\\" drawing ([\w-]+): ([^\n]*)', text, flags=re.M):
-            picture = f'<figure><img src="../docs/drawings/{drawing}.svg" alt="{html.escape(caption)}"><figcaption>{html.escape(caption)}</figcaption></figure>'
+        heading, pictures = '', {}
+        for m in re.finditer(r'^\.(?:S[hs] (.*)|\\" drawing ([\w-]+): (.*))', text, re.M):
+            heading = m[1] or heading
+            if m[2]:
+                caption = html.escape(m[3])
+                pictures[heading] = pictures.get(heading, '') + (f'<figure><img src="../docs/drawings/{m[2]}.svg" alt="{caption}">'
+                                                                 f'<figcaption>{caption}</figcaption></figure>')
+        for heading, picture in pictures.items():
             words = r'\s+'.join(re.escape(html.escape(w, quote=False)) for w in heading.split())
             body, found = re.subn(rf'<h[23] class="S[hs]"[^>]*>(?:<a[^>]*>)?{words}(?:</a>)?</h[23]>', lambda m: m[0] + picture, body, count=1)
             if not found:
-                self.dead.append(f'{self.manuals[name]}: drawing {drawing}: {heading}')
+                self.dead.append(f'{self.manuals[name]}: a place for a drawing: {heading}')
         return 'man/' + name, title, f'<h1>{title}</h1>' + body
 
     def recipe_pictures(self, name):
