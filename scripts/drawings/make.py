@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -Xutf8
 """make.py OUT: the drawings of the manuals and the site, as SVG in the folder OUT, the same bytes each time"""
 import pathlib
 import sys

@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -Xutf8
 """site.py OUT MANUAL ...: the site, static HTML in the folder OUT, of the Markdown pages, the manuals and the recipes.
 
 A page is where its source is: docs/wall/README.md becomes OUT/docs/wall/index.html, man/nsd-gen.1 OUT/man/nsd-gen.1.html.

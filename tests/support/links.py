@@ -1,4 +1,4 @@
-#!/usr/bin/python3
+#!/usr/bin/python3 -Xutf8
 """links.py FOLDER: each link, anchor and picture of the HTML in a folder that leads nowhere, a line each, and pages that nothing
 leads to from index.html"""
 import html.parser
