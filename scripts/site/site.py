@@ -55,7 +55,7 @@ class Site:
         self.page |= {path.dirname(f): p for f, p in self.page.items() if f.endswith('/README.md')}
         self.folders = []  # that pages link to, and that have no page of their own
         self.index = []    # of the search: page, anchor, title, heading, text
-        self.dead = []
+        self.dead = [f'the navigation: {s}' for _, pages in NAVIGATION for s, _ in pages if s not in self.page]
 
     @staticmethod
     def find(pattern):
@@ -144,7 +144,7 @@ class Site:
         text = ''
         for group, pages in NAVIGATION:
             text += f'<div><b>{group}</b>'
-            for s, name in pages:
+            for s, name in (p for p in pages if p[0] in self.page):
                 here = ' class="here"' if self.page[s] == self.page[source] else ''
                 text += f'<a href="{self.relative(source, self.page[s])}"{here}>{html.escape(name)}</a>'
             text += '</div>'
