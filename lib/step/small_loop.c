@@ -311,6 +311,7 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
+        if (r->meets && r->loads.of && !me) small_loads_start(r);
         small_sweeps(r, me, threads);
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();

@@ -27,7 +27,8 @@ struct small_point {
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
     vec3 was[2];   /* m: those at which f was made */
-    vec3 v;        /* m/s: of the wall's material there */
+    vec3 v;        /* m/s: of the wall's material there, without its load; */
+    vec3 D, had_D; /* and per unit of the load's speed; that at which f was made */
     double W[9];   /* 1/kg, in the basis */
 };
 
@@ -39,6 +40,7 @@ struct small_meeting {
     int64_t points, room;
     struct small_point
         *point;  /* [points] by feature: those that are there, or have pushed in this interval */
+    int rounds;  /* of its points in the sweep in hand, at most; 0: none is in reach */
     double work; /* J: on a wall or a body that does not move, in this interval */
 };
 

@@ -150,11 +150,12 @@ static void set_arms(const struct small_run *r, const struct small_meeting *m,
                      struct small_point *t)
 {
     t->b = v3_sub(t->x, v3_add(r->x[m->key.b], image_of(r, m)));
-    t->v = t->a = v3(0, 0, 0);
+    t->v = t->a = t->D = v3(0, 0, 0);
     if (m->key.a < 0)
         t->v = small_wall_velocity(&r->wall[-1 - m->key.a], t->x, t->n);
     else
         t->a = v3_sub(t->x, r->x[m->key.a]);
+    if (small_meeting_loaded(r, m)) t->D = small_load_material(r, -1 - m->key.a, m->key.b, t->x);
 }
 
 /* A point is where contact c is. */

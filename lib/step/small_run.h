@@ -41,6 +41,10 @@ struct small_loads {
     double work;      /* J: of the loads in the interval */
     int64_t room;
     struct small_loaded *touch; /* of the freedom in hand */
+    int64_t meeting_room;
+    struct small_meeting **meeting; /* of the freedom in hand */
+    bool tries; /* the speed of the freedom in hand is `trial` more; pushes of points leave it */
+    double trial;
 };
 
 /* What a thread looks for points with */
@@ -111,6 +115,12 @@ struct small_run {
 static inline bool small_is_loaded(const struct small_run *r, const struct small_touch *t)
 {
     return r->loads.of && r->loads.of[t->wall] >= 0;
+}
+
+/* Does a load move the wall of a meeting? */
+static inline bool small_meeting_loaded(const struct small_run *r, const struct small_meeting *m)
+{
+    return m->key.a < 0 && r->loads.of && r->loads.of[-1 - m->key.a] >= 0;
 }
 
 /* m/s: at most, of a point of body i, which has a shape */

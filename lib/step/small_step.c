@@ -45,8 +45,6 @@ const char *small_lacks(const struct packing *p)
 {
     if (cell_yields(&p->cell)) return "a cell under a stress";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (freedoms_in(p) && (p->shape || p->mesh.elements))
-        return "loads, and grains with a shape or surfaces as walls";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
@@ -83,7 +81,7 @@ static struct small_sizes small_sizes(const struct packing *p)
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
-    const double fall = packing_most_fall(p) * (double)r->n;
+    const double fall = (packing_most_fall(p) + p->dt * small_pull_load(p)) * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
         heaviest = fmax(heaviest, p->mass[i]);
@@ -287,10 +285,32 @@ static double small_steady(const struct packing *p)
     return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
 }
 
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
+static double small_carries(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        const struct recall *c = &p->memory.recall[i];
+        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
+        most = fmax(most, w * v3_norm(c->r));
+    }
+    return most / p->dt;
+}
+
+/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W. */
+static const double CARRIED[2] = { 1.4, 0.4 };
+/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
+enum { CARRIED_MOST = 4 };
+
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double n = fmax(way / (overlap * small_sizes(p).least), p->dt / small_steady(p));
+    const double least = small_sizes(p).least,
+                 permits = CARRIED[p->shape != NULL] * overlap * least;
+    double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
+    n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
