@@ -63,7 +63,7 @@ static inline vec3 small_turned_by(const struct small_run *r, int32_t i, vec3 m)
 /* Has it pushed in this interval, or a reaction that its bodies have? */
 static inline bool small_point_lasts(const struct small_point *t)
 {
-    return !small_is_zero(t->f) || !small_is_zero(t->sum);
+    return !small_is_zero(t->f) || !small_is_zero(t->sum) || v3_dot(t->pull, t->pull) > 0;
 }
 
 /* What a point has pushed goes into its sums. */

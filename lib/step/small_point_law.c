@@ -108,7 +108,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
-    t->kept = dot3(l.n, l.f), t->starts = false;
+    t->kept = dot3(l.n, l.f), t->starts = false, l.calm += 2 * l.wn * t->pulls;
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
     if (small_meeting_loaded(r, m)) { // an impact of the pair alone moves the wall, too
@@ -341,6 +341,18 @@ double small_meeting_try(struct small_run *r, struct small_meeting *m, double *s
     return sum;
 }
 
+/* Bodies have SMALL_WARM of the attraction of the last step, at the arms of `had`, and get all of this one. */
+static void pull_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
+                       const struct small_point *had)
+{
+    const vec3 none = v3(0, 0, 0), pull = v3_scale(-t->pulls, t->n);
+    if (!(t->pulls > 0) && v3_dot(t->pull, t->pull) == 0) return;
+    if (!r->begins) push_point(r, r->l->s.body, m, had, v3_scale(-SMALL_WARM, t->pull), none);
+    push_point(r, r->l->s.body, m, t, pull, none);
+    t->pull = pull;
+    t->sum[0] += pull.x, t->sum[1] += pull.y, t->sum[2] += pull.z;
+}
+
 /* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
    that have gone they are to have nothing. */
 void small_meeting_start(struct small_run *r, struct small_meeting *m)
@@ -354,6 +366,7 @@ void small_meeting_start(struct small_run *r, struct small_meeting *m)
         if (has > 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));
         if (t.near && !small_is_zero(t.f)) push_point(r, r->l->s.body, m, &t, f, moment);
+        pull_point(r, m, &t, &had);
         t.was[0] = t.a, t.was[1] = t.b, t.had_D = t.D;
         for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
             t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
@@ -388,23 +401,24 @@ void small_meeting_end(struct small_run *r, struct small_meeting *m)
     struct small *s = &r->l->s;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *t = &m->point[i];
-        const vec3 f = small_vec(t->f), moment = small_vec(t->m);
+        const vec3 f = v3_add(small_vec(t->f), t->pull), moment = small_vec(t->m);
         const int32_t a = m->key.a, b = m->key.b;
-        if (!t->near || small_is_zero(t->f)) continue;
+        if (!t->near && !(t->pulls > 0)) continue;
         if (a < 0 || !(s->body[a].im > 0))
             m->work -=
                 v3_dot(f, velocity_at_a(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, a));
         if (!(s->body[b].im > 0))
             m->work +=
                 v3_dot(f, velocity_at_b(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, b));
-        const double rn = v3_dot(f, t->n), most = small_persists(&s->rate, t->kept, t->W[0], rn);
-        if (rn <= most) continue;
+        const double rn = v3_dot(small_vec(t->f), t->n), held = t->kept + 2 * t->pulls;
+        const double most = small_persists(&s->rate, held, t->W[0], rn);
+        if (!t->near || !(rn > most)) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
             t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
             t->f[k] *= most / rn, t->m[k] *= most / rn;
         }
-        push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));
+        push_point(r, s->before, m, t, v3_scale(back, v3_sub(f, t->pull)), v3_scale(back, moment));
     }
 }
 

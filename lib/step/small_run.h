@@ -54,6 +54,14 @@ struct small_scratch {
     int64_t room;
 };
 
+/* The places where bodies are held [step/small_attract.h] */
+struct small_shares {
+    struct contacts places;
+    struct small_point **point; /* [places.n] */
+    struct attraction *of;      /* [places.n] */
+    int64_t point_room, of_room;
+};
+
 /* Bodies as meetings have them, where there are any [step/small_point.h] */
 struct small_shapes {
     quat *q;              /* [n] */
@@ -64,7 +72,8 @@ struct small_shapes {
     struct situation at;
     int threads;
     struct small_scratch *scratch; /* [threads] */
-    _Atomic bool failed;           /* memory was short */
+    struct small_shares shares;
+    _Atomic bool failed; /* memory was short */
 };
 
 /* Forces on a body in the small step in hand [step/small_pull.h] */

@@ -48,8 +48,6 @@ const char *small_lacks(const struct packing *p)
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
-    if ((p->shape || p->mesh.elements) && small_tie_holds(p))
-        return "attraction of grains with a shape, or on surfaces";
     return NULL;
 }
 

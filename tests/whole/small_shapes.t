@@ -129,6 +129,31 @@ cp "$tmp/out.h5" "$tmp/in.h5"
 small_alone 20 --sums
 ok "a room around pentagons comes to rest at the mean pressure" near "$(sums '.normal | add') / $(load .face) / 4" 500 1e-3
 
+# ---- attraction ----
+
+ceiling='gravity: [0, 0, -9.81], dt: 1e-3, density: 1000, e_n: 0, mu: 0.5'
+plane='{ point: [0, 0, 0], normal: [0, 0, -1] }'
+four='[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5] | { rectangle: { center: (. + [0]), normal: [0, 0, -1], along: [1, 0, 0], sides: [1, 1] } }'
+for wall in "$plane" "$four"; do
+    for part in 1.1 0.9; do
+        scene "$ceiling, walls: [$wall], cohesion: { force: ($part * 9.81) }, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0.02, 0.03, -0.05] }]"
+        small_alone 100
+        ok "cohesion of $part times the weight $([ $part = 1.1 ] && echo holds || echo "does not hold") a cube at a ceiling" \
+            near "$(body '.v[2]')" "if $part > 1 then 0 else -0.981 end" 0.03
+    done
+done
+scene "$ceiling, walls: [$plane], cohesion: { force: (0.9 * 9.81), range: 1e-3 }, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, -0.05] }]"
+rm -f "$tmp/log"
+small_alone 100 --log "$tmp/log" # 1 mm at 0.1 g, then g
+ok "a cube falls out of the range of cohesion" near "$(body '.v[2]')" "-((2e-3 * 0.981 | sqrt) + 9.81 * (0.1 - (2e-3 / 0.981 | sqrt)))" 0.01
+ok "and nothing is dissipated" near "$(jq -s 'map(.balance.dissipation) | add' "$tmp/log")" 0 1e-4
+scene "gravity: [0, 0, 0], dt: 1e-3, density: 1000, mu: 0.5, e_n: 0, $cube, capillary: { volume: 1e-9, tension: 0.07 },
+    bodies: [{ shape: \"it\", size: 0.01, x: [0, 0, 0], v: [0, 0, 0.1] }, { shape: \"it\", size: 0.01, x: [0, 0, 0.0101] }]"
+small_alone 30
+ok "two cubes that meet stay together by their bridge" near "$(body '.v[2]') - $(body '.v[2]' 1)" 0 1e-4
+ok "which is one" near "$(nsd-info --last -l "$tmp/out.h5" | jq -s 'map(select(.balance)) | last.balance.bond_energy')" "-9.1e-7" 2e-8
+ok "the same bytes" same_bytes 30
+
 # ---- surfaces ----
 
 {
