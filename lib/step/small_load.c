@@ -36,6 +36,8 @@ static int find_freedoms(struct small_run *r, struct failure *failure)
     }
     freedoms_free(&r->loads.list);
     r->loads.list = now;
+    while (now.n && freedom_of_cell(&now.f[now.n - 1])) now.n--; // those of walls come first
+    r->loads.list.n = now.n;
     return 0;
 }
 

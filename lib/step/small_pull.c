@@ -3,6 +3,7 @@
 
 #include "state/rotation.h"
 #include "step/small_cell.h"
+#include "step/small_stress.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -98,10 +99,10 @@ struct small_pull small_pull_sum(const struct small_run *r)
     return sum;
 }
 
-/* N: of loads that walls put on the bodies between them */
+/* N: of loads that walls and the edges of a cell put on the bodies between them */
 static double load_forces(const struct packing *p)
 {
-    double force = 0;
+    double force = small_stress_forces(p);
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way && p->wall[w].load.way != LOAD_TURNS)
             force += fabs(wall_force(p, &p->wall[w], p->t + p->dt / 2));

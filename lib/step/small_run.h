@@ -28,6 +28,10 @@ struct small_cell {
     struct cell_flow peculiar; /* and their flow where it begins */
     double strain;             /* 1/s */
     double work;               /* J: of the edges in the interval, by images */
+    bool yields;               /* to a stress [step/small_stress.h]: */
+    struct freedoms list;
+    double push[3][3]; /* N m s: of reactions, in what sweeps see of the rates; */
+    double loads;      /* J: of the stress in the interval */
 };
 
 /* What loads move in a small step [step/small_load.h] */

@@ -18,6 +18,7 @@
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
 
@@ -43,7 +44,8 @@ static const double ALLOWED[2] = { 0.67, 0.1 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (cell_yields(&p->cell)) return "a cell under a stress";
+    if (small_stress_light(p))
+        return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
@@ -193,7 +195,7 @@ static struct small_energy small_energy_of(const struct packing *p)
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
-    e.kinetic += small_loads_energy(p);
+    e.kinetic += small_loads_energy(p) + small_stress_energy(p);
     return e;
 }
 
@@ -208,7 +210,7 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
     const struct small_pull pulls = small_pull_sum(r);
-    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work;
+    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work + r->cell.loads;
     impulse = v3_add(impulse, small_vec(pulls.impulse));
     b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
@@ -362,7 +364,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    small_loads_free(&r, !*made);
+    small_loads_free(&r, !*made), small_stress_free(&r);
     small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
