@@ -159,14 +159,16 @@ static int mpi_processes_step(struct frame *f, struct changes changes, const str
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
                    const struct step_opt *o, struct failure *failure)
 {
-    bool made = false, impulsive = false;
+    bool made = false;
+    double longest = 0;
     if (!f->distributed &&
-        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &impulsive, failure))
+        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &longest, failure))
         return failure->status;
     self.moved = self.moved || made; // others have not heard of it
     if (made) return 0;
+    self.step.longest = longest;
     const int status = mpi_processes_step(f, changes, o, failure);
-    if (impulsive) step_forget_impulses(&f->packing, o);
+    if (longest > 0) step_forget_impulses(&f->packing, o);
     return status;
 }
 

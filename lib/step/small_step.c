@@ -27,7 +27,8 @@
 #include <string.h>
 
 enum {
-    COUNT_MOST = 100000 /* small steps of a step; one that needs more is made at once */
+    COUNT_MOST = 100000, /* small steps of a step; one that needs more is made at once */
+    PARTS_MOST = 100     /* of a step that is made at once after all: solves */
 };
 
 /* C over W of a pair */
@@ -44,8 +45,7 @@ static const double ALLOWED[2] = { 0.67, 0.1 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (small_stress_light(p))
-        return "edges of a cell that are lighter than a row of grains";
+    if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
@@ -314,6 +314,13 @@ int64_t small_count(const struct packing *p, double overlap)
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
+int64_t small_parts(const struct packing *p, double overlap)
+{
+    const double way = p->dt * (small_fastest(p) + packing_most_fall(p));
+    const double n = way / (4 * overlap * small_sizes(p).least);
+    return (int64_t)ceil(fmin(fmax(1, n), PARTS_MOST));
+}
+
 int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
                   const struct small_opt *o, struct report *rep, bool *made,
                   struct failure *failure)
@@ -346,7 +353,9 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.failed = r.failed || (!failure->status && !small_is_finite(&r));
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
-    if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
+    if (*made && !small_give_contacts(&r, s, o->bare, failure))
+        *made = !r.uneven || !small_error_crushes(&r, s, o->overlap);
+    if (*made && !failure->status && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
