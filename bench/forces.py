@@ -86,7 +86,7 @@ def draw(folder, bodies, paths):
         pairs = sorted(set(found) | set(forces[0]))
         np.savetxt(f"{folder}/.pairs-{k}", [[forces[0].get(p, NONE)[0] / mean, found.get(p, NONE)[0] / mean] for p in pairs])
         tables.append(f"{folder}/.pairs-{k}")
-        panels += f"set title '{title(paths[k])}'; plot '{tables[-1]}' with dots lc rgb '{colours[k]}' lw 3 notitle, x with lines lc rgb '#888888' notitle; "
+        panels += f"set title '{title(paths[k])}'; plot '{tables[-1]}' with points pt 7 ps 0.35 lc rgb '{colours[k]}' notitle, x with lines lc rgb '#888888' notitle; "
     plot(folder, "pairs", "1080,420", "set multiplot layout 1,3; set size square; set xrange [0:6]; set yrange [0:6]; "
          f"set xlabel 'F_n / mean, {title(paths[0])}'; " + panels)
     panels = ""
@@ -98,7 +98,10 @@ def draw(folder, bodies, paths):
                     print(*x[i, [0, 2]], *(x[j] - x[i])[[0, 2]], min(4, n / mean), file=file)
         widths = [f"'{tables[-1]}' using 1:($5 >= {low} && $5 < {low + 1} ? $2 : NaN):3:4 with vectors nohead lw {1.4 * low} lc rgb '{colours[k]}' notitle" for low in (1, 2, 3, 4)]
         panels += f"set title '{title(paths[k])}'; plot " + ", ".join(widths) + "; "
-    plot(folder, "chains", "1440,460", "set multiplot layout 1,4; set size ratio -1; unset border; unset tics; " + panels)
+    ends = np.array([x[b] for found in forces for pair, (n, _) in found.items() for b in pair if min(pair) >= 0 and n > mean])
+    low, high = ends.min(axis=0) - 0.2, ends.max(axis=0) + 0.2
+    plot(folder, "chains", "1440,420", f"set multiplot layout 1,4; set size ratio -1; unset border; unset tics; set xrange [{low[0]}:{high[0]}]; "
+         f"set yrange [{low[2]}:{high[2]}]; " + panels)
     for path in tables:
         os.remove(path)
 

@@ -17,6 +17,7 @@ jq -n --argjson n "$n" --argjson a "$half" --argjson mu $mu '{ dt: 1e-4, density
     walls: [{ box: { x: [-$a, $a], y: [-$a, $a], z: [0, null] } }] }' | nsd-gen - |
     nsd-step -n 3000 --every 3000 2> /dev/null | nsd-cat --last > "$work/settled.h5"
 larger=$(nsd-detect "$work/settled.h5" | nsd-info -c | jq -s '1 + 1.05 * ([.[] | -.gap] | max) / 4.4e-4')
+echo "larger by $(jq -n "($larger - 1) * 100 * 1e4 | round / 1e4") %" >&2
 half=$(jq -n "$half * $larger")
 nsd-info -p "$work/settled.h5" | jq -c --argjson s "$larger" '{ x: (.x | map(. * $s)), radius }' | jq -s . > "$work/bodies.json"
 

@@ -23,20 +23,22 @@ def hours($all): [$all[].runs[]?.cpu // empty] | add // 0 | . / 3600 | digits(2)
 "- A range from a source whose text was not read is a *remark*: it judges nothing. Nor do identities of momentum and rows with one bound.",
 "- *Not yet run*: the set-up has changed since the last run; the value in brackets is that of the set-up before.", "",
 "\(length) rows. \(count(judged)) are judged: \(count(judged and .verdict != "differs")) agree with what is published, \(count(judged and .verdict == "differs")) differ." +
-" \(count(.kind == "not read")) have a range whose source was not read, \(count(.kind == "identity")) are identities, \(count(.kind == "one bound")) have one bound, \(count(.kind == "no range")) none; \(count(.kind == "judged" and .verdict == "not yet run")) are not yet run." +
+" \(count(.kind == "not read")) have a range whose source was not read, \(count(.kind == "identity")) are identities, \(count(.kind == "one bound")) have one bound, \(count(.kind == "no range")) none; \(count(.kind == "judged" and .verdict == "not yet run")) would be judged and are not yet run (\(count(.verdict == "not yet run")) of all rows)." +
 " The independent code has a value in \(count(.independent)) rows: in \(count(.codes == "same")) both codes agree, in \(count(.codes == "differ")) they differ" +
 (if any(.[]; .codes == "unknown") then ", in \(count(.codes == "unknown")) a run has one seed only and no error" else "" end) + (count(.independent and .codes == null) as $n | if $n > 0 then "; in \($n) nsd\u0027s own value is not yet run" else "" end) + "." +
 (count(judged and .verdict == "differs" and .codes == "same") as $n | if $n > 0 then " Of the rows that differ the independent code has nsd\u0027s value in \($n)." else "" end), "",
 "`make gallery` makes all experiments again by nsd, `make gallery-reference` by the independent code, both at full size (`QUICK=1`: small, in minutes);" +
 " `make gallery-keep` puts the results here, and `make gallery-page` writes this page from them. The runs below whose cost was recorded took \(hours($results)) (nsd) and \(hours($references)) (independent code) CPU hours.", "",
+"Single forces of a pile by both codes, their distribution and their chains side by side: [docs/forces](../forces/README.md). Impacts of several balls at once by both codes: nsd-methods(7), Impact.", "",
 "| experiment | quantity | nsd | independent code | published | verdict | cause |", "|---|---|---|---|---|---|---|",
 (.[] | "| [\(.title)](#\(.title | ascii_downcase | gsub("[^a-z0-9 -]"; "") | gsub(" "; "-"))) | \(.what) | \(if .previous then "(\(value))" else value end) | \(if .independent then .independent | value else "–" end)\(codes) | \(published) | \(say) | \(.cause // "") |"), "",
 "Where the independent code has no value:", "",
-($table | map(select(.why)) | group_by(.why)[] | (map(.title) | unique) as $titles | "- \(.[0].why): \($titles | join(", "))" + (if .[0].why == "not yet run" or (.[0].why | startswith("dem.c") | not) then " (\(length) rows)" else "" end)), "",
+($table | map(select(.why)) | group_by(.why)[] | (map(.title) | unique) as $titles | "- \(.[0].why): \($titles | join(", "))" + " (\(length) row\(if length > 1 then "s" else "" end))"), "",
 ($about | to_entries | sort_by(.value.order)[] | .key as $e | .value as $a | $results[$e] as $r | $references[$e] as $i |
     "## \($a.title)", "", $a.text, "",
     "    " + $a.pipeline, "",
     (if $r.quick then "*A small run, as with `QUICK=1`.*", "" else empty end),
+    (if ($r.runs | length) > 1 or any($r.rows[]; .previous) then "*The pictures are those of an earlier run, before the set-up changed.*", "" else empty end),
     "![\($a.title)](\($e)/picture.png)", "", "![its curve](\($e)/curve.png)", "",
     ([($r.runs[]? | (if .part then "Part *\(.part)*: " else "" end) + (if .options == "--small-steps 0" then "One solve per step" elif .options == "" then "Small steps, the default" else .options end) +
         (if .account then ". Deepest overlap \(.account.overlap) radii; \(.account.unconverged) of \(.account.steps) steps did not converge" else "" end) + (if .cpu then "; \(.cpu / 3600 | digits(2)) CPU hours." else "." end)),
