@@ -22,7 +22,7 @@ stops=$(pick '3:26:24 7:22:15' '4:27:30 6:25:24 9:23:18 13:21:18 18:20:18 35:18:
 hold=$(pick 40 60) less=$(pick 1 0.5)
 echo "height angle seed" >"$out/stop.tsv"
 # two heights only: those that are compared with the independent code, and with what is published
-[ "${PART:-}" != thick ] && by nsd || stops="18:20:18 35:18:18"
+[ "${PART:-}" != thick ] && by nsd || stops=$(pick "$stops" '18:20:18 35:18:18')
 if by reference || [ "${PART:-}" = thick ]; then PART=stop; fi
 ! part stop || for s in "${seeds[@]}"; do
     for h in $stops; do
@@ -57,7 +57,7 @@ done
 if [ "${PART:-}" = stop ]; then
     with '($stop | numbers) as $s | ($s | map(.[0]) | max) as $thick |
         row("stop angle"; $s | map(select(.[0] == $thick) | .[1])),
-        row("stop angle 18"; $s | map(select(.[0] == 18) | .[1]))' -n --rawfile stop "$out/stop.tsv" | results
+        (if any($s[]; .[0] == 18) then row("stop angle 18"; $s | map(select(.[0] == 18) | .[1])) else empty end)' -n --rawfile stop "$out/stop.tsv" | results
     exit
 fi
 

@@ -65,7 +65,7 @@ if [ -z "${PART:-}" ]; then
 fi
 with "$slopes"'
     def curve: map(select(.[1] != null)) | spread;
-    def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1])] | length;
+    def falls: [range(1; length) as $i | select(.[$i][1] < .[$i - 1][1] - 2 * (pow(.[$i][2] // 0; 2) + pow(.[$i - 1][2] // 0; 2) | sqrt))] | length;
     def at($x): map(select(.[0] == $x) | .[1]);
     ($rolling | slopes) as $r | ($cohesion | slopes) as $c | ($r | curve) as $rc |
     # a Bond number counts where no heap is a lump

@@ -12,7 +12,7 @@ ok "results are put beside those of other runs" make -f scripts/gallery.mk OUT="
 # of each experiment: its table, its pictures, and the values of a small run within what other seeds gave
 for file in scripts/gallery/*.json; do
     e=$(basename "$file" .json)
-    like "$e: values were found" "$(jq '(.rows | length > 2) and all(.rows[]; .found != null)' "$out/$e/result.json")" true
+    like "$e: values were found" "$(jq '(.rows | length > 0) and all(.rows[]; .found != null)' "$out/$e/result.json")" true
     if jq -e '.reference | type == "object"' "$file" >/dev/null; then
         like "$e: by the independent code too" "$(jq '(.rows | length > 0) and all(.rows[]; .found != null)' "$out/reference/$e/result.json")" true
     fi
