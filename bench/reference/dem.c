@@ -79,6 +79,59 @@ static void addn(int i, int j, int *s, C *old, int no)
 static C *oldnb;
 static int *oldnn;
 static int (*img)[3];
+// pairs of a large cell with right angles that is periodic in all directions, by cells of the width of the largest ball
+static int cells_fit(int *n)
+{
+    double rm = 0;
+    if (dim != 3 || !per[0] || !per[1] || !per[2]) return 0;
+    for (int i = 0; i < N; i++)
+        if (b[i].r > rm) rm = b[i].r;
+    for (int k = 0; k < 3; k++) {
+        for (int q = 0; q < 3; q++)
+            if (q != k && H[q][k] != 0) return 0;
+        n[k] = (int)(H[k][k] / (2 * rm + skin));
+        if (n[k] < 3) return 0;
+        if (n[k] > 200) n[k] = 200;
+    }
+    return 1;
+}
+static void pairs_by_cells(const int *n)
+{
+    size_t all = (size_t)n[0] * n[1] * n[2];
+    int *head = malloc(all * sizeof(int)), *next = malloc(N * sizeof(int));
+    int(*at)[3] = malloc(N * sizeof *at);
+    for (size_t k = 0; k < all; k++) head[k] = -1;
+    for (int i = N - 1; i >= 0; i--) {
+        for (int k = 0; k < 3; k++) {
+            at[i][k] = (int)(b[i].x[k] / H[k][k] * n[k]);
+            if (at[i][k] >= n[k]) at[i][k] = n[k] - 1;
+        }
+        size_t c = ((size_t)at[i][2] * n[1] + at[i][1]) * n[0] + at[i][0];
+        next[i] = head[c];
+        head[c] = i;
+    }
+    for (int i = 0; i < N; i++)
+        for (int m = 0; m < 27; m++) {
+            int c[3], shift[3], step[3] = { m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1 };
+            for (int k = 0; k < 3; k++) {
+                c[k] = at[i][k] + step[k];
+                shift[k] = c[k] < 0 ? -1 : c[k] >= n[k] ? 1 : 0;
+                c[k] -= shift[k] * n[k];
+            }
+            for (int j = head[((size_t)c[2] * n[1] + c[1]) * n[0] + c[0]]; j >= 0; j = next[j]) {
+                double R = b[i].r + b[j].r + skin, d2 = 0;
+                if (j <= i) continue;
+                for (int d = 0; d < 3; d++) {
+                    double y = b[j].x[d] - b[i].x[d] + H[d][d] * shift[d];
+                    d2 += y * y;
+                }
+                if (d2 < R * R) addn(i, j, shift, oldnb + (size_t)i * NC, oldnn[i]);
+            }
+        }
+    free(head);
+    free(next);
+    free(at);
+}
 static void rebuild(void)
 {
     memcpy(oldnb, nb, sizeof(C) * (size_t)N * NC);
@@ -111,7 +164,10 @@ static void rebuild(void)
     }
     for (int i = 0; i < N; i++) nn[i] = 0;
     int z[3] = { 0, 0, 0 };
-    if (anyper) {
+    int cells[3];
+    if (anyper && cells_fit(cells))
+        pairs_by_cells(cells);
+    else if (anyper) {
         int lo[3], hi[3];
         for (int k = 0; k < 3; k++) {
             lo[k] = per[k] ? -1 : 0;

@@ -54,7 +54,7 @@ def walls_of(scene, dim, time, arguments):
 
 def cell_of(scene, dim, edges, rates, arguments):
     cell = scene.get("cell")
-    if not cell:
+    if cell is None:
         return
     periodic = cell.get("repeats", [True] * dim)
     arguments.append("per=" + "".join("1" if p else "0" for p in vector(periodic)))
@@ -195,7 +195,7 @@ def main():
         arguments = arguments_of(scene, dim, time)
         if edges is not None:
             cell_of(scene, dim, edges, rates, arguments)
-        if np.any(origin) and scene.get("cell"):
+        if np.any(origin) and "cell" in scene:
             refuse("cell whose corner is not the origin")
         with open(os.path.join(work, "start.txt"), "w", encoding="ascii") as file:
             for body in bodies:
