@@ -38,7 +38,7 @@ line "soft spheres, dashpots" 0 by_dem
 line "nsd, small steps, gaps" 1e-6 by_nsd
 line "nsd, one solve per step, gaps" 1e-6 by_nsd --small-steps 0
 # a stiffness that resolves the wave more or less
-for dt in 3.2e-6 1e-6 3.2e-7 1e-7 1e-8; do
+for dt in 3.2e-6 1e-6 3.2e-7 2.3e-7 1e-7 1e-8; do
     printf 'nsd, 1e6 N/m, k h^2/m = %.2g\t\t%s\n' "$(jq -n "1e6 * $dt * $dt / 1.0472e-5")" \
         "$(row 1 0 '[0, 1, 2, 3, 4]' >"$work/row.h5" && nsd-info --scene "$work/row.h5" | jq ".dt = $dt" | nsd-gen - | nsd-step --stiffness 1e6 --until 1e-3 --every 1e-3s 2> /dev/null | last 0)"
 done
