@@ -42,5 +42,5 @@ def hours($all): [$all[].runs[]?.cpu // empty] | add // 0 | . / 3600 | digits(2)
     "![\($a.title)](\($e)/picture.png)", "", "![its curve](\($e)/curve.png)", "",
     ([($r.runs[]? | (if .part then "Part *\(.part)*: " else "" end) + (if .options == "--small-steps 0" then "One solve per step" elif .options == "" then "Small steps, the default" else .options end) +
         (if .account then ". Deepest overlap \(.account.overlap) radii; \(.account.unconverged) of \(.account.steps) steps did not converge" else "" end) + (if .cpu then "; \(.cpu / 3600 | digits(2)) CPU hours." else "." end)),
-      ($i.runs[]? | "Independent code\(if .part then ", part *\(.part)*" else "" end): springs of \(.options | sub("kn="; "")) N/m" + (if .account then ", deepest overlap \(.account.overlap) radii" else "" end) + (if .cpu then "; \(.cpu / 3600 | digits(2)) CPU hours." else "." end))] | join(" ")),
+      ($i.runs[]? | "Independent code\(if .part then ", part *\(.part)*" else "" end): `\(.options)`" + (if .account then ", deepest overlap \(.account.overlap) radii" else "" end) + (if .cpu then "; \(.cpu / 3600 | digits(2)) CPU hours." else "." end))] | join(" ")),
     (if $a.remark then "", $a.remark else empty end), "")
