@@ -11,5 +11,5 @@ include "rows";
       independent: (if $other.found == null then null else $other | {found, error, seeds} end),
       why: (if $other.found != null or ($row | kind) == "identity" then null elif $a.reference | type == "string" then $a.reference
         elif $row.alone then $row.alone else "not yet run" end),
-      codes: compared($found; $other), low, high, published, source, read, kind: kind,
+      codes: (if ($row | kind) == "identity" then null else compared($found; $other) end), low, high, published, source, read, kind: kind,
       verdict: verdict($found; .low; .high), cause: (.cause // null) }]
