@@ -5,7 +5,7 @@ include "rows";
 def value: if . == null or .found == null then "–" else "\(.found)" + (if .error then " ± \(.error)" else "" end) end;
 def range_of: if .kind == "no range" then "" elif .low == .high then "\(.low)" elif .high == null then "at least \(.low)" elif .low == null then "at most \(.high)" else "\(.low) to \(.high)" end;
 def published: if .kind == "no range" then "none" elif .kind == "identity" then "\(range_of): momentum"
-  else range_of + (if .published == range_of then "" else " (\(.published))" end) + ": \(.source)" + (if .read then "" else ", not read" end) end;
+  else range_of as $range | (if .published | startswith($range) then .published else $range + " (\(.published))" end) + ": \(.source)" + (if .read then "" else ", not read" end) end;
 def say: if .kind == "identity" then "identity" elif .verdict == "not yet run" then "not yet run"
   elif .kind == "not read" or .kind == "no range" then "remark" elif .kind == "one bound" then "\(.verdict), one bound"
   elif .verdict == "differs" then "**differs**" else .verdict end;
