@@ -44,6 +44,7 @@ for f in docs/peers/*.json; do
         "peers_deep\t\($deep | map(select(. > 0.1)) | length)", "peers_deepest\t\($deep | max * 10 | round / 10)",
         "peers_auto_least\t\($auto | min * 100 | round / 100)", "peers_auto_most\t\($auto | max * 10 | round / 10)"' "$f"
 done | sort -u
+printf 'peers_blind\t%s\n' "$(grep -c '^Until then both codes have the same value' docs/peers/README.md)"
 
 jq -rs 'map(.rows[]) | "gallery_rows\t\(length)", "gallery_within\t\(map(select(.holds)) | length)",
     "gallery_differ\t\(map(select(.holds | not)) | length)",
