@@ -21,9 +21,10 @@ DESTDIR ?=
 CC      ?= cc
 CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
-# The manuals that are made: of cookbook/, and of man/nsd-scene.5 and the keys of scenes
+# The manuals that are made: of cookbook/, and of pages in man and the keys of scenes
 COOKBOOK := build/man/nsd-cookbook.7
-SCENE    := build/man/nsd-scene.5
+KEYED    := $(shell grep -l '^\.\\" keys ' man/*)
+SCENE    := $(KEYED:%=build/%)
 
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
@@ -364,17 +365,17 @@ $(TIDY): lint-tidy-%:
 # ---- what is made for others ----
 
 # The manuals as HTML, in build/man
-MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
+MANUALS := $(filter-out $(KEYED),$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
-# nsd-scene(5) has the tables of keys that nsd-gen knows
-$(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
+# Keys of scenes are those that nsd-gen knows
+$(SCENE): build/man/%: man/% $(KEYED) scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
-	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
+	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh $< > $@
 
 # Links to manuals that are not ours become plain text.
 BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
@@ -382,7 +383,7 @@ LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" 
 
 docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
 
-build/man/nsd-cookbook.7.html build/man/nsd-scene.5.html: build/man/%.html: build/man/%
+$(patsubst %,%.html,$(COOKBOOK) $(SCENE)): build/man/%.html: build/man/%
 	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
 
 build/man/%.html: man/%
