@@ -428,7 +428,7 @@ install-tools: all completions
 	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
 	    install -m 644 $$d/* $(TO)/share/nsd/$$d && chmod 755 $(TO)/share/nsd/$$d/*.sh || exit 1; done
 	install -d $(TO)/share/nsd/campaign
-	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
+	install -m 755 scripts/campaign/*.sh scripts/campaign/*.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions

@@ -76,6 +76,21 @@ strangers() # references to pages of ours that do not exist
     done
 }
 is "every manual that is referred to exists" "$(strangers)" ""
+quoted() # sections of other pages that a page names, as \(lqTITLE\(rq or .Em TITLE beside .Xr PAGE, and in lines of help, which do not exist
+{
+    {
+        awk '{ sub(/\r$/, "") }
+            /^\.Xr nsd[a-z-]* [0-9] ,$/ { page = $2 "." $3; next }
+            page != "" && match($0, /^\\\(lq[^\\]*\\\(rq/) { print FILENAME "\t" page "\t" substr($0, 5, RLENGTH - 8) }
+            { page = "" }' man/*.[1357]
+        awk '/^\.Em / { title = substr($0, 5); next } title != "" && $0 == "in" { next }
+            title != "" && /^\.Xr nsd[a-z-]* [0-9]/ { print FILENAME "\t" $2 "." $3 "\t" title } { title = "" }' man/*.[1357]
+        nsd-gen --keys | grep -oE 'nsd-[a-z]+\([0-9]\), "[^"]*"' | sed 's/\(.*\)(\(.\)), "\(.*\)"/nsd-gen --keys\t\1.\2\t\3/'
+    } | sort -u | while IFS=$'\t' read -r from page title; do
+        grep -qxF -e ".Ss $title" -e ".Sh $title" -e ".Em $title ." "man/$page" || echo "$from: $title in $page"
+    done
+}
+is "every section that a page names in another one exists" "$(quoted)" ""
 
 # ---- nsd(7) and the pages of scenes are complete ----
 
