@@ -8,7 +8,7 @@ test() # NAME FROM CHANGE: what the room then does; z becomes shorter at 30 per 
     nsd-step --overlap-rule gap -n "$4" --every 25 --sums -o "$1.h5" "$1-start.h5"
     # a row for each frame: axial and volumetric strain, pressures of the lid and the sides, mean of all by their distances
     paste <(nsd-stat -m strain "$1-start.h5" "$1.h5" | jq -r 'select(.step > '"$(nsd-info "$1-start.h5" | jq 'select(.step != null) | .step')"') | [.strain.tensor[2][2], .strain.volumetric] | @tsv') \
-        <(nsd-stat -m sums "$1.h5" 2>/dev/null | jq -c '.sums.normal') \
+        <(nsd-stat -m wall_loads "$1.h5" 2>/dev/null | jq -c '.wall_loads.normal') \
         <(nsd-info -w "$1.h5" | jq -s -c '[_nwise(6)][] | [map(.load.face), map(.load.lever)]') |
         jq -R -r 'split("\t") | (.[2] | fromjson) as $f | (.[3] | fromjson) as [$a, $l] | [range(6) | $f[.] / $a[.]] as $p |
             [.[0], .[1], ($p[4] + $p[5]) / 2, ($p[0] + $p[1] + $p[2] + $p[3]) / 4, ([range(6) | $f[.] * $l[.]] | add) / ([range(6) | $a[.] * $l[.]] | add)] | @tsv' >"$1.tsv"

@@ -120,7 +120,7 @@ quantities_of_manual()
         awk '/^\.Ss/ { measure = $2 } /^\.It Va/ { unit = $5 $6; name = $3; getline; sub(/;$/, ""); print measure, name, unit ":", $0 }'
 }
 is "nsd-stat(1) has every quantity of --list, with unit and text" \
-    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^sums_by_name |^sums_by_face ' | LC_ALL=C sort)"
+    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^wall_loads_by_name |^wall_loads_by_face ' | LC_ALL=C sort)"
 # a circle has the keys of a sphere
 is "nsd-scene(5), nsd-walls(5) and nsd-import(5) have the keys of every object, each once" \
     "$(sed -n 's/^\.\\" keys //p' "${keyed[@]}" | tr ' ' '\n' | sort)" "$(nsd-gen --keys | sed 1d | cut -f 1 | sort -u | grep -vx circle)"
