@@ -45,7 +45,7 @@ def lattice(document, phi, z, anisotropy):
 
 def column(document):
     """n balls one above the other at rest: contact k carries what lies above it."""
-    d, s = last(document), stat("--last", "-m", "boundaries,stress,profile", "--layers", "z:5", document)[-1]
+    d, s = last(document), stat("--last", "-m", "walls,stress,profile", "--layers", "z:5", document)[-1]
     n, m, g, r = len(d["mass"]), d["mass"][0], -d["g"][2], d["radius"][0]
     floor = s["walls"]["wall"].index(0)
     close(s["walls"]["force"][floor], [0, 0, -n * m * g], 1e-6)
