@@ -146,7 +146,7 @@ examples() # PAGE: each scene into a file of its own
         on && block { gsub(/\\e/, "\\"); gsub(/\\\(dq/, "\""); print >file }' "$1"
 }
 for page in "${keyed[@]}"; do examples "$page"; done
-is "nsd-scene(5), nsd-walls(5) and nsd-import(5) have at least ten scenes as examples" "$(($(ls "$tmp/scenes" | wc -l) >= 10))" 1
+is "nsd-scene(5), nsd-walls(5) and nsd-import(5) have at least ten scenes as examples" "$(($(find "$tmp/scenes" -name "*.json" | wc -l) >= 10))" 1
 (
     cd "$tmp/scenes"
     nsd-gen 100 | nsd-step -n 5 2>/dev/null >run.h5

@@ -25,7 +25,10 @@ printed() # MESSAGE: whether standard error or output has it
 count=0
 while IFS=$'\t' read -r message command <&3; do
     count=$((count + 1))
-    case $command in mpirun*) command -v mpirun >/dev/null && [ -x "$(command -v nsd-step-mpi)" ] || { skip "$message" "no MPI"; continue; } ;; esac
+    if [[ $command = mpirun* ]] && ! { command -v mpirun && command -v nsd-step-mpi; } >/dev/null; then
+        skip "$message" "no MPI"
+        continue
+    fi
     (cd "$tmp" && timeout 60 bash -c "$command" >stdout 2>stderr </dev/null) || true
     ok "$command: $message" printed "$message"
 done 3< <(entries)
