@@ -265,7 +265,7 @@ static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool aga
     mark_meeting(r, m, first, again);
 }
 
-/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
+/* Bodies have what persists of the reactions of the last step, and get all; of points that start they have nothing, and of those
    that have gone they are to have nothing. */
 static void start_meeting(struct small_run *r, struct small_meeting *m)
 {
@@ -273,7 +273,7 @@ static void start_meeting(struct small_run *r, struct small_meeting *m)
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        const double has = t.starts ? 0 : SMALL_WARM;
+        const double has = t.starts ? 0 : r->l->s.rate.warm;
         had.a = t.was[0], had.b = t.was[1];
         if (has > 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));

@@ -34,7 +34,7 @@ enum {
 /* Times the lightest body */
 #define UNEVEN 30
 /* Of h: tau, in which overlaps are left */
-#define RELAXES 8
+#define RELAXES 11
 /* Of the fastest speed, or of what moves a body by UNSEEN of the smallest radius in h: a change of a velocity that is not
    followed up, in the first sweep of a step, without restitution, and in others. Less would carry impacts farther into a
    packing, and cost a flowing drum a tenth of its time and more. */
@@ -85,7 +85,9 @@ static void small_set_rates(struct small_run *r)
     const struct packing *p = r->p;
     const double fall = packing_most_fall(p) * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
+    r->fall = packing_most_fall(p), r->free = 0, r->weight = 0;
     for (int64_t i = 0; i < p->n; i++) {
+        r->free += p->mass[i] > 0, r->weight += p->mass[i] * r->fall;
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
