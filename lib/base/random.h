@@ -26,6 +26,9 @@ enum counter_use {
     COUNTER_STRENGTH
 };
 
+/* [0, 1): the first number of the stream of these numbers, without a generator */
+double counter_uniform(uint64_t seed, enum counter_use use, uint64_t a, uint64_t b, uint64_t c);
+
 /* A generator, NULL when memory is short; to be freed by gsl_rng_free. */
 gsl_rng *counter_alloc(void);
 /* On to the beginning of the stream that belongs to this use and these numbers. */

@@ -11,6 +11,7 @@
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/balance.h"
+#include "step/breaking_load.h"
 #include "step/hit_bound.h"
 #include "step/move.h"
 #include "step/project.h"
@@ -408,8 +409,8 @@ struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s
     return part;
 }
 
-int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
-                 const struct step_opt *o, struct report *rep, struct failure *failure)
+static int advance_alone(struct packing *p, struct contacts *s, struct step_memory *kept,
+                         const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct substeps steps;
     struct alone a = { { .detect = detect_alone,
@@ -452,4 +453,12 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
     substeps_free(&steps);
     if (impulsive) memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
     return failure->status;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
+                 const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    if (advance_alone(p, s, kept, o, rep, failure) || !p->breakage || !report_made(rep))
+        return failure->status;
+    return breaking_load(p, s, failure);
 }
