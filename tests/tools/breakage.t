@@ -222,6 +222,46 @@ if have_ranks; then
     like "with what to do instead" "$(cat "$tmp/err")" 'grains that break need one process: use threads, nsd-step -j 2'
 fi
 
+# ---- instruments ----
+
+py - >"$tmp/fractal.txt" <<'END'
+for i in range(1, 2001): # N grains are larger than d: d^-2.5
+    r = 1e-3 * i ** -0.4
+    print(repr(3e-3 * (i % 50)), repr(3e-3 * (i // 50)), 1e-2, repr(r))
+END
+echo '{ "dt": 1e-4, "gravity": [0, 0, -9.81], "density": 2600, "bodies": [{ "file": "fractal.txt" }],
+        "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }] }' >"$tmp/fractal.json"
+nsd-gen "$tmp/fractal.json" >"$tmp/fractal.h5"
+nsd-stat -m breakage,grading "$tmp/fractal.h5" >"$tmp/fits"
+ok "2000 grains of sizes i^-0.4 have the fractal dimension 2.5" \
+    holds '.breakage.dimension - 2.5 | fabs < 0.05' "$tmp/fits"
+cat >"$tmp/fits.py" <<'END'
+import sys, json, numpy as np
+b = json.load(open(sys.argv[1]))
+d = 2e-3 * np.arange(2000, 0, -1.0) ** -0.4
+e = d[0] * (d[-1] / d[0]) ** (np.arange(51) / 50)
+P = np.array([(d[d < x * (1 - 1e-12)] ** 3).sum() for x in e]) / (d ** 3).sum()
+k = (P >= 0.01) & (P <= 0.9)
+a, c = np.polyfit(np.log(e[k]), np.log(P[k]), 1)
+k = (P >= 0.01) & (P <= 0.99)
+n, f = np.polyfit(np.log(e[k]), np.log(-np.log(1 - P[k])), 1)
+want = dict(ggs_exponent=a, ggs_size=np.exp(-c / a), rr_exponent=n, rr_size=np.exp(-f / n),
+            d50=d[np.searchsorted(np.cumsum(d ** 3), 0.5 * (d ** 3).sum())])
+off = [abs(b['breakage'][q] / want[q] - 1) for q in want]
+print(off, max(abs(np.array(b['grading']['passing']) - P)))
+sys.exit(not (max(off) < 1e-9 and max(abs(np.array(b['grading']['passing']) - P)) < 1e-12))
+END
+ok "the fits of Gates, Gaudin, Schuhmann and of Rosin, Rammler are those of numpy" py "$tmp/fits.py" "$tmp/fits"
+nsd-stat -m breakage "$tmp/out.h5" | tail -n 1 >"$tmp/stat"
+ok "the fractions that have broken are those of the document" holds --slurpfile b "$tmp/stat" -s '
+    [.[] | select(.mass != null)] as $g | ([$g[] | select(.generation > 0).mass] | add) as $m |
+    $b[0].breakage | (.fragments - ($m + .dust) / (([$g[].mass] | add) + .dust) | fabs < 1e-12) and .generation >= 1' \
+    < <(nsd-info --last -p "$tmp/out.h5")
+ok "nsd-view draws generations and damage" \
+    eval 'nsd-view -c generation -o "$tmp/g.png" "$tmp/out.h5" && nsd-view -c damage -o "$tmp/d.png" "$tmp/out.h5"'
+nsd-export --to csv -o "$tmp/x.csv" "$tmp/out.h5"
+like "exports have the family and the damage" "$(head -n 3 "$tmp"/x*.csv | tr '\n' ' ')" 'parent.*generation.*born.*damage'
+
 # ---- the bound of a step ----
 
 scene '{ "by": "force", "strength": 1e3, "smallest": 1e-3, "into": "balls", "dust": 1 }' \
