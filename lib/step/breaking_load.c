@@ -1,10 +1,12 @@
 #include "step/breaking_load.h"
 
 #include "state/breakable.h"
+#include "state/placement.h"
 #include "step/balance.h"
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* What a step does to a body */
 struct breaking_body {
@@ -41,18 +43,33 @@ static void breaking_hit(struct packing *p, struct breaking_body *b, int64_t i, 
     *damage = fmin(*damage, 1);
 }
 
-/* J: of the impact of a and b, of the sum r (N s) of its reactions */
-static double impact_energy(const struct packing *p, const struct contact *c, double r)
+/* m/s: of b against a at a contact, at the beginning of the step */
+static vec3 breaking_approach(const struct packing *p, const struct breaking_start *was,
+                              const struct contact *c)
 {
-    double inverse = 0;
-    if (c->a >= 0 && p->mass[c->a] > 0) inverse += 1 / p->mass[c->a];
-    if (p->mass[c->b] > 0) inverse += 1 / p->mass[c->b];
-    return r * r * inverse / (2 * (1 + c->en) * (1 + c->en));
+    const vec3 shift = cell_shift(p->cell.edge, c->shift);
+    const vec3 xb = v3_add(p->x[c->b], shift);
+    vec3 u = v3_add(was->v[c->b], v3_cross(was->w[c->b], v3_sub(c->x, xb)));
+    u = v3_add(u, cell_shift(p->cell.rate, c->shift));
+    if (c->a < 0) return v3_sub(u, wall_velocity(p, &p->wall[-1 - c->a], c->x));
+    const vec3 arm = v3_sub(c->x, p->x[c->a]);
+    return v3_sub(u, v3_add(was->v[c->a], v3_cross(was->w[c->a], arm)));
 }
 
-/* Body i of the contacts from..to of a pair, whose reactions sum to r; side: -1 of a, 1 of b; share: of the energy */
+/* J: of the impact of a pair with the contacts from..to */
+static double impact_energy(const struct packing *p, const struct contacts *s,
+                            const struct breaking_start *was, int64_t from, int64_t to)
+{
+    double work = 0;
+    for (int64_t k = from; was->v && k < to; k++)
+        work -=
+            v3_dot(contact_in_space(&s->c[k], s->found[k].r), breaking_approach(p, was, &s->c[k]));
+    return work / (2 * (1 + s->c[from].en));
+}
+
+/* Body i of the contacts from..to of a pair, whose reactions sum to r; side: -1 of a, 1 of b; energy: J, its part */
 static void add_pair(struct packing *p, struct breaking_body *b, const struct contacts *s,
-                     int64_t from, int64_t to, int64_t i, int side, double share)
+                     int64_t from, int64_t to, int64_t i, int side, double energy)
 {
     vec3 sum = v3(0, 0, 0);
     if (!b->how) return;
@@ -64,10 +81,8 @@ static void add_pair(struct packing *p, struct breaking_body *b, const struct co
         if (b->how->by == BREAKAGE_STRESS || b->how->by == BREAKAGE_SHEAR)
             add_stress(b, v3_sub(at, p->x[i]), f);
     }
-    const double force = v3_norm(sum);
-    b->force = fmax(b->force, force);
-    if (b->how->by != BREAKAGE_ENERGY || !(force > 0)) return;
-    breaking_hit(p, b, i, share * impact_energy(p, &s->c[from], force * p->dt) / p->mass[i]);
+    b->force = fmax(b->force, v3_norm(sum));
+    if (b->how->by == BREAKAGE_ENERGY && energy > 0) breaking_hit(p, b, i, energy / p->mass[i]);
 }
 
 /* Pa: the mean of the stress, or its octahedral shear stress */
@@ -96,7 +111,32 @@ static void breaking_end(struct packing *p, struct breaking_body *b, int64_t i)
     p->damage[i] = fmin(fmax(p->damage[i], load / b->strength), 1);
 }
 
-int breaking_load(struct packing *p, const struct contacts *s, struct failure *failure)
+int breaking_start(struct breaking_start *start, struct packing *p, struct failure *failure)
+{
+    bool asks = false;
+    *start = (struct breaking_start){ 0 };
+    for (int32_t k = 0; p->breakage && k < p->materials; k++)
+        asks = asks || (p->breakage[k].strength > 0 && p->breakage[k].by == BREAKAGE_ENERGY);
+    if (!asks) return 0;
+    const size_t bytes = (size_t)p->n * sizeof *start->v;
+    packing_wrap(p, NULL);
+    start->v = malloc(bytes + 1), start->w = malloc(bytes + 1);
+    if (!start->v || !start->w) {
+        breaking_start_free(start);
+        return failure_set(failure, EX_SOFTWARE, "no memory for the loads of grains");
+    }
+    if (p->n) memcpy(start->v, p->v, bytes), memcpy(start->w, p->w, bytes);
+    return 0;
+}
+
+void breaking_start_free(struct breaking_start *start)
+{
+    free(start->v), free(start->w);
+    *start = (struct breaking_start){ 0 };
+}
+
+int breaking_load(struct packing *p, const struct contacts *s, const struct breaking_start *start,
+                  struct failure *failure)
 {
     if (!s->found || !s->n) return 0;
     struct breaking_body *body = calloc((size_t)p->n + 1, sizeof *body);
@@ -109,8 +149,9 @@ int breaking_load(struct packing *p, const struct contacts *s, struct failure *f
         const int32_t a = s->c[k].a, b = s->c[k].b;
         end = balance_next_pair(s, k);
         const double share = a >= 0 && p->mass[a] > 0 && p->mass[b] > 0 ? 0.5 : 1;
-        if (a >= 0) add_pair(p, &body[a], s, k, end, a, -1, share);
-        add_pair(p, &body[b], s, k, end, b, 1, share);
+        const double energy = share * impact_energy(p, s, start, k, end);
+        if (a >= 0) add_pair(p, &body[a], s, k, end, a, -1, energy);
+        add_pair(p, &body[b], s, k, end, b, 1, energy);
     }
     for (int64_t i = 0; i < p->n; i++) breaking_end(p, &body[i], i);
     free(body);

@@ -458,7 +458,11 @@ static int advance_alone(struct packing *p, struct contacts *s, struct step_memo
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
                  const struct step_opt *o, struct report *rep, struct failure *failure)
 {
-    if (advance_alone(p, s, kept, o, rep, failure) || !p->breakage || !report_made(rep))
-        return failure->status;
-    return breaking_load(p, s, failure);
+    struct breaking_start start;
+    if (!p->breakage) return advance_alone(p, s, kept, o, rep, failure);
+    if (breaking_start(&start, p, failure)) return failure->status;
+    if (!advance_alone(p, s, kept, o, rep, failure) && report_made(rep))
+        breaking_load(p, s, &start, failure);
+    breaking_start_free(&start);
+    return failure->status;
 }

@@ -28,7 +28,7 @@ damage() { nsd-info --last -p "$1" | jq -c 'select(.damage != null).damage'; }
 
 floor='"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }]'
 ball='[{ "x": [0, 0, 1e-3], "radius": 1e-3, "kind": "g" }]'
-near() { holds -n "($1) / ($2) - 1 | fabs < ${3-1e-9}"; }
+near() { holds -n "if ($2) == 0 then ($1) == 0 else ($1) / ($2) - 1 | fabs < ${3-1e-9} end"; }
 mass=$(jq -n '2600 * 4 / 3 * 3.14159265358979312 * 1e-9')
 
 # load NAME BREAKS WANTED MORE: the damage of a ball after one step
@@ -46,6 +46,9 @@ load "with restitution, too, and less what does no damage" \
 load "each of two equal balls that meet at 2 v has that of v^2 / 2" '{ "by": "energy", "strength": 10, "smallest": 1e-3 }' \
     '9 / 2 / 10' '"walls": []' '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "kind": "g" },
                   { "x": [0, 0, -1e-3], "v": [0, 0, 3], "radius": 1e-3, "kind": "g" }]'
+load "a ball at rest under a heavy lid has none" '{ "by": "energy", "strength": 1e-9, "smallest": 1e-3 }' 0 \
+    "\"walls\": [{ \"point\": [0, 0, 0], \"normal\": [0, 0, 1] }, { \"point\": [0, 0, 2e-3], \"normal\": [0, 0, -1],
+        \"load\": { \"along\": [0, 0, -1], \"force\": 500, \"mass\": 1e-6 } }]"
 # between two plates of which one is pressed by F, the stress is F 2 R / V along z
 plates="\"walls\": [{ \"point\": [0, 0, 0], \"normal\": [0, 0, 1] }, { \"point\": [0, 0, 2e-3], \"normal\": [0, 0, -1],
         \"load\": { \"along\": [0, 0, -1], \"force\": 0.5, \"mass\": 1e-6 } }]"
