@@ -8,8 +8,10 @@
 #include "run/options.h"
 #include "run/processes.h"
 #include "run/tool_filter.h"
+#include "scene/breaking.h"
 #include "scene/inlet.h"
 #include "scene/stiffness.h"
+#include "state/breakable.h"
 #include "step/adapt.h"
 #include "step/small_step.h"
 
@@ -105,6 +107,7 @@ static struct {
     double distance; /* of reactions of kept frames from converged ones, the largest */
     int64_t distance_step;
     int64_t limited; /* of those the ones that ended at the limit of their sweeps */
+    int64_t waited;  /* steps in which more grains were due than may break in one */
     double radii;    /* of small steps; 0: there are none */
     bool lacks;      /* small steps do not have all of the packing */
     double seconds;
@@ -438,6 +441,29 @@ static void say_lacks(const struct run *r, const struct packing *p)
     total.lacks = true;
 }
 
+/* Grains that were to break, and have not */
+static void count_waiting(const struct packing *p)
+{
+    const int64_t n = breakage_total(p).waiting;
+    if (n && !total.waited++)
+        warn("step %lld: %lld grains that are due to break wait: %d break in a step, and the table "
+             "of "
+             "shapes has %d rows",
+             (long long)p->step + 1, (long long)n, BREAKING_MOST, SHAPES_MOST);
+}
+
+/* What has broken in the document */
+static void say_broken(const struct packing *p)
+{
+    const struct broken b = breakage_total(p);
+    if (!p->breakage) return;
+    warn("%lld grains have broken into %lld fragments and %.3g kg of dust", (long long)b.grains,
+         (long long)b.fragments, b.dust);
+    if (total.waited)
+        warn("in %lld steps grains waited that were due to break, %lld at the end",
+             (long long)total.waited, (long long)b.waiting);
+}
+
 /* The step to come begins, with the dt that it has. */
 static void begin_step(struct run *r)
 {
@@ -446,6 +472,7 @@ static void begin_step(struct run *r)
     const double had = p->dt;
     say_lacks(r, p);
     if (driver_begin(&r->driver, p, tol, &r->f.contacts, &failure)) die_why(&failure);
+    count_waiting(p);
     if (p->dt != had && p->halved == ADAPT_MOST && !total.shortest++)
         warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
              "fast "
@@ -563,6 +590,9 @@ static void begin(struct run *r)
     if (!f->distributed) r->driver.o.small = total.radii;
     warn_processes(f, &r->driver.o);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
+    if (steps && f->packing.breakage && processes_size() > 1)
+        die(EX_UNAVAILABLE, "grains that break need one process: use threads, nsd-step -j %d",
+            processes_size());
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
     if (f->packing.outside.length && !loop_asks())
@@ -788,6 +818,7 @@ int tool_main(int argc, char **argv)
     if (loop_asks()) loop_close(&r.ended);
     const char *told = processes_leave();
     summary(made);
+    say_broken(&r.f.packing);
     say_stiffness(&r.f.packing);
     options_leave_device();
     if (told) warn("%s", told);

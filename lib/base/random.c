@@ -59,11 +59,22 @@ gsl_rng *counter_alloc(void)
     return random_alloc(&type);
 }
 
-void counter_start(gsl_rng *rng, uint64_t seed, enum counter_use use, uint64_t a, uint64_t b,
-                   uint64_t c)
+static uint64_t counter_key(uint64_t seed, enum counter_use use, uint64_t a, uint64_t b, uint64_t c)
 {
     const uint64_t word[] = { seed, (uint64_t)use, a, b, c };
     uint64_t key = 0;
     for (int k = 0; k < 5; k++) key = random_mix((key ^ random_mix(word[k] + golden)) + golden);
-    ((struct state *)rng->state)->at = key;
+    return key;
+}
+
+double counter_uniform(uint64_t seed, enum counter_use use, uint64_t a, uint64_t b, uint64_t c)
+{
+    struct state s = { counter_key(seed, use, a, b, c) };
+    return get_double(&s);
+}
+
+void counter_start(gsl_rng *rng, uint64_t seed, enum counter_use use, uint64_t a, uint64_t b,
+                   uint64_t c)
+{
+    ((struct state *)rng->state)->at = counter_key(seed, use, a, b, c);
 }

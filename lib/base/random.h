@@ -17,7 +17,17 @@ gsl_rng *random_alloc(const gsl_rng_type *type);
  */
 
 /* What a stream is for: each use of the seed has its own numbers. */
-enum counter_use { COUNTER_GROUP, COUNTER_GRAIN, COUNTER_PLACE, COUNTER_TURN };
+enum counter_use {
+    COUNTER_GROUP,
+    COUNTER_GRAIN,
+    COUNTER_PLACE,
+    COUNTER_TURN,
+    COUNTER_FRACTURE,
+    COUNTER_STRENGTH
+};
+
+/* [0, 1): the first number of the stream of these numbers, without a generator */
+double counter_uniform(uint64_t seed, enum counter_use use, uint64_t a, uint64_t b, uint64_t c);
 
 /* A generator, NULL when memory is short; to be freed by gsl_rng_free. */
 gsl_rng *counter_alloc(void);

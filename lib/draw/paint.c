@@ -23,6 +23,8 @@ const struct colour_meaning colour_meaning[COLOUR_COUNT] = {
     [COLOUR_FORCE] = { .name = "force", .unit = "N", .from_zero = true, .given = true },
     [COLOUR_VALUE] = { .name = "value", .unit = "", .given = true },
     [COLOUR_GROUP] = { .name = "group", .unit = "", .classes = true },
+    [COLOUR_GENERATION] = { .name = "generation", .unit = "", .from_zero = true },
+    [COLOUR_DAMAGE] = { .name = "damage", .unit = "", .from_zero = true },
 };
 
 /* Ten colours that are easy to tell apart [Tableau 10] */
@@ -103,6 +105,10 @@ static double palette_value(const struct paint *p, const struct packing *k, int6
         return k->dim == 2 ? k->x[i].y : k->x[i].z;
     case COLOUR_MASS:
         return k->mass[i];
+    case COLOUR_GENERATION:
+        return k->generation ? k->generation[i] : 0;
+    case COLOUR_DAMAGE:
+        return k->damage ? k->damage[i] : 0;
     case COLOUR_CONTACTS:
     case COLOUR_FORCE:
     case COLOUR_VALUE:

@@ -14,10 +14,12 @@ enum colour {
     COLOUR_SPIN,
     COLOUR_HEIGHT,
     COLOUR_MASS,
-    COLOUR_CONTACTS, /* that push it */
-    COLOUR_FORCE,    /* the sum of its normal forces */
-    COLOUR_VALUE,    /* a number for each body, from elsewhere */
-    COLOUR_GROUP,    /* the name of its group */
+    COLOUR_CONTACTS,   /* that push it */
+    COLOUR_FORCE,      /* the sum of its normal forces */
+    COLOUR_VALUE,      /* a number for each body, from elsewhere */
+    COLOUR_GROUP,      /* the name of its group */
+    COLOUR_GENERATION, /* how many of its ancestors have broken */
+    COLOUR_DAMAGE,     /* 0 to 1, with which it breaks */
     COLOUR_COUNT
 };
 

@@ -1,5 +1,6 @@
 #include "file/frame_read.h"
 
+#include "file/breakage_tables.h"
 #include "file/cell_tables.h"
 #include "file/distributed.h"
 #include "file/external_force_tables.h"
@@ -261,7 +262,8 @@ static int read_settings(struct frame_read *r, int64_t k, int64_t n, struct pack
     if (source_attribute(r->source, "/nsd", "dim", (struct numbers){ COLUMN_I32, -1, &dim },
                          failure) ||
         packing_init(p, dim, n, failure) || read_parameters(r->source, p, failure) ||
-        frame_read_material(r->source, p, failure) || shape_tables_read(r->source, p, failure) ||
+        frame_read_material(r->source, p, failure) || shape_tables_read(r->source, k, p, failure) ||
+        breakage_tables_read(r->source, k, p, failure) ||
         wall_tables_read(r->source, k, p, failure) || flow_tables_read(r->source, k, p, failure) ||
         pull_tables_read(r->source, p, failure) || pair_law_tables_read(r->source, k, p, failure) ||
         frame_read_clock(r, k, p, failure) ||

@@ -1,5 +1,6 @@
 #include "file/frame_write.h"
 
+#include "file/breakage_tables.h"
 #include "file/cell_tables.h"
 #include "file/contact_rows.h"
 #include "file/external_force_tables.h"
@@ -117,7 +118,8 @@ int frame_write_static(struct table_write *s, const struct frame *f, struct fail
 {
     if (write_parameters(s->file, f, failure)) return failure->status;
     if (f->packed && (write_material(s->file, &f->packing, failure) ||
-                      shape_tables_write(s->file, &f->packing, failure) ||
+                      shape_tables_write_static(s, &f->packing, failure) ||
+                      breakage_tables_write_static(s, &f->packing, failure) ||
                       name_tables_write(s, &f->packing, failure) ||
                       pair_law_tables_write_static(s->file, &f->packing, failure) ||
                       cell_tables_write_box(s->file, &f->packing.cell, failure) ||
@@ -171,7 +173,9 @@ int frame_write_moment(struct table_write *s, const struct frame *f, struct fail
     if (f->packed &&
         (write_motion(s, &f->packing, failure) || cell_tables_write(s, &f->packing, failure) ||
          write_particles_clock(s, false, &f->packing, failure) ||
-         write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure)))
+         write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure) ||
+         shape_tables_write(s, &f->packing, failure) ||
+         breakage_tables_write(s, &f->packing, failure)))
         return failure->status;
     if (f->packed &&
         (wall_tables_write(s, &f->packing, failure) ||
@@ -190,7 +194,8 @@ int frame_write_step(struct table_write *s, const struct frame *f, struct failur
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (write_particles_clock(s, true, &f->packing, failure)) return failure->status;
     if (!first) return 0;
-    return link_time_step(s, &f->packing, failure) || flow_link(s, &f->packing, failure)
+    return link_time_step(s, &f->packing, failure) || flow_link(s, &f->packing, failure) ||
+                   breakage_tables_link(s, &f->packing, failure)
                ? failure->status
                : 0;
 }

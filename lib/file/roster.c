@@ -30,7 +30,7 @@ void roster_bounds(const struct packing *p, int64_t *most, int64_t *chunk, struc
     if (flow_read(&flow, p, failure)) return;
     for (int32_t k = 0; k < flow.scene.pours; k++) bound += roster_most_of(&flow.scene.pour[k]);
     flow_free(&flow);
-    if (isinf(bound)) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
+    if (isinf(bound) || p->breakage) bound = fmax(UNBOUNDED_LEAST, UNBOUNDED_TIMES * (double)p->n);
     bound = fmin(fmax(bound, 1), INT32_MAX);
     double rows = fmin(fmax(bound / CHUNKS, LEAST_CHUNK), CHUNK_BODIES);
     *chunk = (int64_t)ceil(rows);
@@ -138,9 +138,11 @@ int roster_enter(struct roster *r, struct table_write *s, const struct packing *
     if (r->rows > (int64_t)s->most_bodies)
         return failure_set(
             failure, EX_DATAERR,
-            "the trajectory has rows for %lld bodies, and more were poured: give the "
-            "pour a count, or "
-            "begin a new trajectory",
+            p->breakage ? "the trajectory has rows for %lld bodies, and more were broken or "
+                          "poured: begin a new trajectory"
+                        : "the trajectory has rows for %lld bodies, and more were poured: give the "
+                          "pour a count, or "
+                          "begin a new trajectory",
             (long long)s->most_bodies);
     int64_t chunk = (int64_t)s->chunk_bodies;
     while (r->width < r->rows || !r->width) r->width += chunk;

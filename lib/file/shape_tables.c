@@ -2,7 +2,9 @@
 
 #include "file/h5.h"
 #include "file/tables.h"
+#include "state/breakage.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,6 +28,12 @@ static const struct field shape_fields[] = {
     FIELD(struct shape_tables_row, moment, F64, 3, "moment", "1", 0),
     { 0 },
 };
+
+/* Where grains break: the id in the name of a fragment's shape, -1 of others; and how many shapes a frame has */
+static const struct field fragment_field[] = {
+    { .name = "fragment", .units = "1", .type = COLUMN_I32, .width = 1 }, { 0 }
+};
+#define COUNT SHAPE "/count/value"
 
 /* ---- from a document ---- */
 
@@ -104,8 +112,30 @@ struct shape_tables_table {
     int32_t n;
     const struct shape_tables_row *row; /* [n] */
     const char *names;                  /* a line each */
+    const int32_t *fragment; /* [n] whose those are that have no line; NULL: all have one */
     struct listing lists;
 };
+
+/* The name of row k, to be freed, from *names on; NULL: it has none, or there is no memory */
+static char *shape_tables_name(const struct shape_tables_table *t, int32_t k, const char **names,
+                               struct failure *failure)
+{
+    char text[32];
+    const char *end = strchr(*names, '\n');
+    char *name = NULL;
+    if (end && end > *names) {
+        name = strndup(*names, (size_t)(end - *names));
+        *names = end + 1;
+    } else if (!end && t->fragment && t->fragment[k] >= 0) {
+        snprintf(text, sizeof text, BREAKAGE_FRAGMENT, t->fragment[k]);
+        name = strdup(text);
+    } else {
+        failure_set(failure, EX_DATAERR, SHAPE "@names: fewer names than shapes");
+        return NULL;
+    }
+    if (!name) failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
+    return name;
+}
 
 /* Rows 1, 2 ... of the table; row 0 is the ball, which stands in no list. */
 static int make_shapes(struct source *r, struct packing *p, const struct shape_tables_table *t,
@@ -116,76 +146,112 @@ static int make_shapes(struct source *r, struct packing *p, const struct shape_t
     for (int32_t k = 0; k < t->n && !failure->status; k++) {
         struct shape s = { 0 };
         struct failure trouble = { 0 };
-        const char *end = strchr(names, '\n');
-        if (!end || end == names)
-            return failure_set(failure, EX_DATAERR, SHAPE "@names: fewer names than shapes");
-        char *name = strndup(names, (size_t)(end - names));
-        names = end + 1;
+        char *name = shape_tables_name(t, k, &names, failure);
+        if (!name) return failure->status;
         shape_tables_make_shape(r, &s, &t->row[k], &at, p->dim, &trouble);
         if (trouble.status)
-            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name ? name : "",
-                        trouble.text);
+            failure_set(failure, trouble.status, SHAPE ": \"%s\": %s", name, trouble.text);
         if (trouble.status) free(name);
         s.name = trouble.status ? NULL : name;
-        bool twice = !failure->status && name && shapes_find(&p->shapes, name) >= 0;
+        bool twice = !failure->status && shapes_find(&p->shapes, name) >= 0;
         if (!failure->status && shapes_add(&p->shapes, p->dim, &s, failure)) return failure->status;
         if (twice) failure_set(failure, EX_DATAERR, SHAPE "@names: two shapes have one name");
     }
     return failure->status;
 }
 
-int shape_tables_read(struct source *r, struct packing *p, struct failure *failure)
+/* How many of `rows` shapes frame k has, where more come with time */
+static int read_count(struct source *r, int64_t k, uint64_t *rows, struct failure *failure)
+{
+    int32_t count = 0;
+    if (!source_has(r, COUNT)) return 0;
+    if (source_rows(r, COUNT, (struct slab){ COLUMN_I32, k, 1, 1 }, &count, failure))
+        return failure->status;
+    if (count < 1 || (uint64_t)count > *rows)
+        return failure_set(failure, EX_DATAERR, COUNT ": more shapes than there are, or none");
+    *rows = (uint64_t)count;
+    return 0;
+}
+
+int shape_tables_read(struct source *r, int64_t k, struct packing *p, struct failure *failure)
 {
     uint64_t n[4];
     struct shape_tables_table t = { 0 };
     if (!source_has(r, SHAPE)) return 0;
     if (source_shape(r, SHAPE "/form", n) != 1 || n[0] < 1 || n[0] >= SHAPES_MOST)
         return failure_set(failure, EX_DATAERR, SHAPE "/form: not a list of shapes");
+    if (read_count(r, k, &n[0], failure)) return failure->status;
     struct shape_tables_row *row = calloc((size_t)n[0], sizeof *row);
-    char *names = row ? source_text(r, SHAPE, "names", failure) : NULL;
-    if (!row || (!names && !failure->status))
+    int32_t *fragment = calloc((size_t)n[0], sizeof *fragment);
+    char *names = row && fragment ? source_text(r, SHAPE, "names", failure) : NULL;
+    if (!row || !fragment || (!names && !failure->status))
         failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     t.n = (int32_t)n[0], t.row = row, t.names = names;
+    if (!failure->status && source_has(r, SHAPE "/fragment") &&
+        !source_rows(r, SHAPE "/fragment", (struct slab){ COLUMN_I32, 0, t.n, 1 }, fragment,
+                     failure))
+        t.fragment = fragment;
     if (!failure->status &&
         !table_read_columns(r, SHAPE, "", 0, RECORDS(shape_fields, t.n, row), failure) &&
         !read_lists(r, &t.lists, failure))
         make_shapes(r, p, &t, failure);
     listing_drop(&t.lists);
-    free(row), free(names);
+    free(row), free(fragment), free(names);
     return failure->status ? failure->status : packing_alloc_shapes(p, failure);
 }
 
 /* ---- to a document ---- */
 
-static int shape_tables_write_rows(hid_t file, const struct shapes *t, struct failure *failure)
+enum { CHUNK_SHAPES = 64 }; /* rows a chunk of tables that grow */
+
+/* Shapes `first` and those after it, into the tables */
+static int shape_tables_write_rows(struct table_write *w, const struct shapes *t, int32_t first,
+                                   struct failure *failure)
 {
-    struct table_write w = { .file = file };
-    struct shape_tables_row *row = calloc((size_t)t->n, sizeof *row);
-    if (!row) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
-    for (int32_t k = 1; k < t->n; k++) {
-        const struct shape *s = &t->s[k];
-        row[k - 1] = (struct shape_tables_row){ s->form,
-                                                s->vertices,
-                                                s->faces,
-                                                s->corners,
-                                                s->round,
-                                                s->volume,
-                                                { s->moment[0], s->moment[1], s->moment[2] } };
+    const int64_t n = t->n - first;
+    struct shape_tables_row *row = calloc((size_t)n + 1, sizeof *row);
+    int32_t *fragment = calloc((size_t)n + 1, sizeof *fragment);
+    if (!row || !fragment) {
+        free(row), free(fragment);
+        return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
     }
-    table_write_once(&w, SHAPE, RECORDS(shape_fields, t->n - 1, row), failure);
-    free(row);
+    for (int32_t k = first; k < t->n; k++) {
+        const struct shape *s = &t->s[k];
+        row[k - first] = (struct shape_tables_row){ s->form,
+                                                    s->vertices,
+                                                    s->faces,
+                                                    s->corners,
+                                                    s->round,
+                                                    s->volume,
+                                                    { s->moment[0], s->moment[1], s->moment[2] } };
+        fragment[k - first] = breakage_fragment(s->name);
+    }
+    if (!table_write_columns(w, SHAPE, "", RECORDS(shape_fields, n, row), CHUNK_SHAPES, failure) &&
+        w->shapes)
+        table_write_columns(w, SHAPE, "", RECORDS(fragment_field, n, fragment), CHUNK_SHAPES,
+                            failure);
+    free(row), free(fragment);
     return failure->status;
 }
 
-static int write_lists(hid_t file, const struct shapes *t, struct failure *failure)
+static int write_list(struct table_write *w, const char *path, enum column_type type, uint64_t rows,
+                      uint64_t width, const void *data, const char *units, struct failure *failure)
+{
+    const hsize_t shape[2] = { rows, width };
+    return table_write_rows(
+        w, (struct dataset){ path, type, width > 1 ? 2 : 1, shape, 8 * CHUNK_SHAPES, data, units },
+        failure);
+}
+
+static int write_lists(struct table_write *w, const struct shapes *t, int32_t first,
+                       struct failure *failure)
 {
     struct listing l = { 0 };
-    for (int32_t k = 1; k < t->n; k++) {
+    for (int32_t k = first; k < t->n; k++) {
         const struct shape *s = &t->s[k];
         l.vertices += (uint64_t)s->vertices, l.faces += (uint64_t)s->faces;
         l.corners += (uint64_t)s->corners;
     }
-    const hsize_t vertices[2] = { l.vertices, 3 }, faces = l.faces, corners = l.corners;
     l.vertex = calloc(l.vertices + 1, sizeof *l.vertex);
     l.ball = calloc(l.vertices + 1, sizeof *l.ball);
     l.face = calloc(l.faces + 1, sizeof *l.face);
@@ -193,38 +259,57 @@ static int write_lists(hid_t file, const struct shapes *t, struct failure *failu
     uint64_t v = 0, f = 0, c = 0;
     if (!l.vertex || !l.ball || !l.face || !l.corner)
         failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
-    for (int32_t k = 1; k < t->n && !failure->status; k++) {
+    for (int32_t k = first; k < t->n && !failure->status; k++) {
         const struct shape *s = &t->s[k];
         for (int32_t i = 0; i < s->vertices; i++, v++)
             l.vertex[v] = s->vertex[i], l.ball[v] = s->ball[i];
         for (int32_t i = 0; i < s->faces; i++) l.face[f++] = s->first[i + 1] - s->first[i];
         for (int32_t i = 0; i < s->corners; i++) l.corner[c++] = s->corner[i];
     }
-    bool bad =
-        failure->status ||
-        h5_write(file, SHAPE "/vertex", h5_array(H5T_NATIVE_DOUBLE, 2, vertices, l.vertex), "1",
-                 failure) ||
-        h5_write(file, SHAPE "/ball", h5_vector(H5T_NATIVE_DOUBLE, vertices[0], l.ball), "1",
-                 failure) ||
-        h5_write(file, SHAPE "/face", h5_vector(H5T_NATIVE_INT32, faces, l.face), "1", failure) ||
-        h5_write(file, SHAPE "/corner", h5_vector(H5T_NATIVE_INT32, corners, l.corner), "1",
-                 failure);
+    bool bad = failure->status ||
+               write_list(w, SHAPE "/vertex", COLUMN_F64, l.vertices, 3, l.vertex, "1", failure) ||
+               write_list(w, SHAPE "/ball", COLUMN_F64, l.vertices, 1, l.ball, "1", failure) ||
+               write_list(w, SHAPE "/face", COLUMN_I32, l.faces, 1, l.face, "1", failure) ||
+               write_list(w, SHAPE "/corner", COLUMN_I32, l.corners, 1, l.corner, "1", failure);
     listing_drop(&l);
     return bad ? failure->status : 0;
 }
 
-int shape_tables_write(hid_t file, const struct packing *p, struct failure *failure)
+static int write_names(hid_t file, const struct shapes *t, struct failure *failure)
 {
     size_t length = 1;
-    if (p->shapes.n < 2) return 0;
-    if (shape_tables_write_rows(file, &p->shapes, failure) ||
-        write_lists(file, &p->shapes, failure))
-        return failure->status;
-    for (int32_t k = 1; k < p->shapes.n; k++) length += strlen(p->shapes.s[k].name) + 1;
+    for (int32_t k = 1; k < t->n; k++) length += strlen(t->s[k].name) + 1;
     char *names = calloc(length, 1), *at = names;
     if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the shapes");
-    for (int32_t k = 1; k < p->shapes.n; k++) at += sprintf(at, "%s\n", p->shapes.s[k].name);
+    for (int32_t k = 1; k < t->n; k++) at += sprintf(at, "%s\n", t->s[k].name);
     int e = h5_attr_text(file, SHAPE, "names", names, failure);
     free(names);
     return e;
+}
+
+int shape_tables_write_static(struct table_write *s, const struct packing *p,
+                              struct failure *failure)
+{
+    const bool growing = s->growing;
+    if (p->shapes.n < 2 || p->breakage) return 0;
+    s->growing = false;
+    if (!shape_tables_write_rows(s, &p->shapes, 1, failure) &&
+        !write_lists(s, &p->shapes, 1, failure))
+        write_names(s->file, &p->shapes, failure);
+    s->growing = growing;
+    return failure->status;
+}
+
+int shape_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)
+{
+    const int32_t first = s->shapes ? s->shapes : 1, count = p->shapes.n - 1;
+    const bool begins = !s->shapes;
+    if (p->shapes.n < 2 || !p->breakage) return 0;
+    s->shapes = p->shapes.n;
+    if ((begins || p->shapes.n > first) &&
+        (shape_tables_write_rows(s, &p->shapes, first, failure) ||
+         write_lists(s, &p->shapes, first, failure)))
+        return failure->status;
+    if (begins && write_names(s->file, &p->shapes, failure)) return failure->status;
+    return table_write_number(s, COUNT, COLUMN_I32, &count, NULL, failure);
 }

@@ -7,6 +7,10 @@
 #include "file/source.h"
 #include "file/tables.h"
 
-/* The table, checked; the bodies' rows are among the tables of bodies. */
-int shape_tables_read(struct source *source, struct packing *p, struct failure *failure);
-int shape_tables_write(hid_t file, const struct packing *p, struct failure *failure);
+/* The table of frame k, checked; the bodies' rows are among the tables of bodies. */
+int shape_tables_read(struct source *source, int64_t k, struct packing *p, struct failure *failure);
+/* All of it; or, where grains break, whose fragments have new shapes, with each frame the rows that are new */
+int shape_tables_write_static(struct table_write *tables, const struct packing *p,
+                              struct failure *failure);
+int shape_tables_write(struct table_write *tables, const struct packing *p,
+                       struct failure *failure);

@@ -57,7 +57,7 @@ int64_t table_read_row_at(struct source *source, const char *path, int64_t step,
  */
 
 enum {
-    GROWING_DATASETS = 128, /* at once; the tables of file/layout.h have fewer columns than that */
+    GROWING_DATASETS = 192, /* at once; the tables of file/layout.h have fewer columns than that */
     CHUNK_FRAMES = 64,      /* rows a chunk of one number a frame: half a KiB of reals */
     CHUNK_CONTACTS = 256,   /* rows a chunk of contacts: 2 KiB of reals; few are left empty */
     CHUNK_BODIES = 8192     /* at most, a chunk of one frame of bodies: 192 KiB of positions */
@@ -83,6 +83,7 @@ struct table_write {
     int64_t events;           /* rows of /nsd/flow/events so far */
     int64_t bonds;            /* rows of /nsd/bonds so far */
     int64_t memory;           /* rows of /nsd/memory so far */
+    int32_t shapes;           /* of grains so far, the ball too, where more may come */
     int32_t first_id;         /* of the first frame, as /nsd/flow has it */
     bool at_rest;             /* no wall could move in the first frame */
     double sums_since;        /* s: of its sums of walls [file/wall_load_tables.h] */

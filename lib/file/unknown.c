@@ -34,7 +34,7 @@ static const struct {
     { "", { "h5md", "nsd", "particles", "walls", "contacts", "observables", "solution" } },
     { "/nsd",
       { "history", "scene", "material", "solver", "account", "flow", "cell", "shape", "law",
-        "bonds", "memory", "time_step", "outside", "names" } },
+        "bonds", "breakage", "memory", "time_step", "outside", "names" } },
     { "/particles", { "all", "boundary" } },
     { "/particles/boundary",
       { "body", "load", "drive", "push", "mesh", "position", "orientation", "velocity",

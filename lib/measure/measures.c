@@ -45,6 +45,8 @@ static const struct measure *const measures[] = {
     &measure_lifetimes,
     &measure_separations,
     &measure_silhouette,
+    &measure_breakage,
+    &measure_grading,
     NULL,
 };
 

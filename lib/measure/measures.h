@@ -47,7 +47,8 @@ extern const struct measure measure_fraction, measure_coordination, measure_cont
     measure_mobilised, measure_pairs, measure_sizes, measure_segregation, measure_displacement,
     measure_surface, measure_flux, measure_grains, measure_strain, measure_names, measure_sums,
     measure_sums_by_name, measure_sums_by_face, measure_mixing, measure_residence,
-    measure_departures, measure_lifetimes, measure_separations, measure_silhouette;
+    measure_departures, measure_lifetimes, measure_separations, measure_silhouette,
+    measure_breakage, measure_grading;
 
 /* The k-th; NULL past the last. */
 const struct measure *measure_at(int k);

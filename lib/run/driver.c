@@ -1,6 +1,7 @@
 #include "run/driver.h"
 
 #include "base/text.h"
+#include "scene/breaking.h"
 #include "step/adapt.h"
 
 #include <float.h>
@@ -33,7 +34,9 @@ static int driver_adapt(struct driver *d, struct packing *p, double tol, struct 
 int driver_begin(struct driver *d, struct packing *p, double tol, struct contacts *last,
                  struct failure *failure)
 {
-    if (driver_adapt(d, p, tol, failure) || flow_step(&d->flow, p, last, &d->other_bodies, failure))
+    if (driver_adapt(d, p, tol, failure) ||
+        flow_step(&d->flow, p, last, &d->other_bodies, failure) ||
+        breaking_step(p, last, &d->other_bodies, failure))
         return failure->status;
     if (d->other_bodies) driver_forget(d);
     return control_begin(&d->acts, p, failure);

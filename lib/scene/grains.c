@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 
 /* A quaternion on the unit sphere by rejection: without sines, whose last bits differ between machines */
-static quat draw(int dim, gsl_rng *rng)
+quat quat_draw(int dim, gsl_rng *rng)
 {
     double x[4], sum;
     do {
@@ -27,7 +27,7 @@ static quat draw(int dim, gsl_rng *rng)
 
 quat orientation_draw(const struct scene *s, const struct scene_form *form, gsl_rng *rng)
 {
-    quat q = form->tumbled ? draw(s->dim, rng) : form->turned;
+    quat q = form->tumbled ? quat_draw(s->dim, rng) : form->turned;
     return quat_unit(quat_mul(q, s->solid[form->shape].turn));
 }
 

@@ -11,6 +11,8 @@
 
 /* How grains that have a shape are turned: as it is described, or at random. */
 
+/* Each orientation as likely */
+quat quat_draw(int dim, gsl_rng *rng);
 /* From the shape's own axes to space; rng is used where orientations are random, each as likely. */
 quat orientation_draw(const struct scene *s, const struct scene_form *form, gsl_rng *rng);
 

@@ -43,7 +43,7 @@ static int find_groups(struct scene *s, const struct packing *p)
 int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
 {
     *f = (struct flow){ 0 };
-    if (!packing_varies(p)) return 0;
+    if (!packing_flows(p)) return 0;
     if (!p->scene)
         return failure_set(failure, EX_DATAERR,
                            "inlets or outlets, but no scene that describes them");
@@ -379,7 +379,7 @@ int flow_step(const struct flow *f, struct packing *p, struct contacts *last, bo
               struct failure *failure)
 {
     *changed = false;
-    if (!packing_varies(p)) return 0;
+    if (!packing_flows(p)) return 0;
     int64_t before = p->events.n;
     int32_t *row = malloc(((size_t)p->n + 1) * sizeof *row);
     gsl_rng *rng = counter_alloc();

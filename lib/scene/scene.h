@@ -17,6 +17,7 @@
 #include "base/failure.h"
 #include "scene/scene_size.h"
 #include "shape/solid.h"
+#include "state/breakage.h"
 #include "state/packing.h"
 
 #include <stddef.h>
@@ -24,6 +25,7 @@
 struct scene_material {
     char *name;
     double density; /* kg/m^3, in the plane kg/m^2 */
+    struct breakage breaks;
 };
 
 struct scene_law {

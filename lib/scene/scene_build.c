@@ -6,6 +6,7 @@
 #include "contact/detect.h"
 #include "scene/grains.h"
 #include "scene/random_start.h"
+#include "scene/scene_breaks.h"
 #include "scene/scene_carry.h"
 #include "scene/stiffness.h"
 #include "scene/time_step.h"
@@ -153,6 +154,7 @@ static int set_parameters(struct packing *p, const struct scene *s, struct failu
     if (goes_beyond(s) && packing_alloc_laws(p, failure)) return failure->status;
     for (int32_t k = 0; p->law && k < s->materials * s->materials; k++)
         p->law[k] = s->law[k].pair_law;
+    if (scene_breaks_set(p, s, failure)) return failure->status;
     stiffness_expect(p, s); // what a document remembers of springs is carried over before
     if ((p->scene = strdup(s->text))) return 0;
 fail:
@@ -296,7 +298,7 @@ static int check_packing(const struct packing *p, const struct scene *s, const s
 {
     if (check_forces(p, failure)) return failure->status;
     if (packing_check(p, failure)) return name_wall(s, failure);
-    if (check_names(p, s, failure)) return failure->status;
+    if (check_names(p, s, failure) || scene_breaks_check(p, s, failure)) return failure->status;
     if (packing_check_clock(p, failure)) return failure->status;
     if (s->allow_overlap) return 0;
     bool *settled = from_documents(p, s, list);

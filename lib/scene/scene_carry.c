@@ -137,6 +137,17 @@ static int carry_run(const struct carried *y, struct failure *failure)
     return carry_forces(y, failure);
 }
 
+/* The damage and the family of its bodies, where they may break further */
+static void carry_breakage(const struct carried *y)
+{
+    struct packing *p = y->p;
+    const struct packing *from = y->from;
+    for (int64_t i = 0; p->breakage && from->breakage && i < from->n; i++) {
+        p->damage[y->row + i] = from->damage[i], p->parent[y->row + i] = from->parent[i];
+        p->generation[y->row + i] = from->generation[i], p->born[y->row + i] = from->born[i];
+    }
+}
+
 /* Grains of pours are numbered from the first number that the document has for them. */
 static void carry_account(struct packing *p, const struct scene *s, const struct packing *from)
 {
@@ -160,6 +171,7 @@ int scene_carry(struct packing *p, const struct scene *s, const int64_t *row,
         const struct carried y = { p, s, s->bodies[g].document, row[g] };
         if (!y.from || s->bodies[g].foreign) continue;
         if (!first) first = y.from;
+        carry_breakage(&y);
         if (!carry_bonds(&y, failure) && !carry_memory(&y, failure)) carry_run(&y, failure);
     }
     bonds_sort(&p->bonds), memory_sort(&p->memory);

@@ -27,18 +27,23 @@ const struct key_type key_material = { "string", "{'type': 'string'}", scene_mat
 
 /* "kinds" */
 
+#define AT(member) offsetof(struct scene_material, member)
+
 static const struct key scene_material_key[] = {
-    { "density", &key_positive, 0, "kg/m^3", "of the scene", "7800",
+    { "density", &key_positive, AT(density), "kg/m^3", "of the scene", "7800",
       "Density of the kind; in 2D in kg/m^2." },
+    { "breaks", &key_object, AT(breaks), "-", "none", "see below",
+      "How grains of the kind break.", .object = &scene_breaks_keys },
     { 0 },
 };
+#undef AT
 const struct keys scene_material_keys = { "kind", scene_material_key };
 
 static int add_material(jnode n, struct scene *s, const char *name, double density)
 {
     const char *trouble = name_trouble_of_material(name, strlen(name));
     if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
-    s->material[s->materials] = (struct scene_material){ strdup(name), density };
+    s->material[s->materials] = (struct scene_material){ strdup(name), density, { 0 } };
     if (!s->material[s->materials].name)
         return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
     s->materials++;
@@ -60,7 +65,7 @@ int scene_read_materials(jnode o, struct scene *s, void *out)
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
         if (find_material(s, name) < 0 && add_material(n, s, name, s->density)) return 1;
-        if (keys_read(n, &scene_material_keys, s, &s->material[find_material(s, name)].density))
+        if (keys_read(n, &scene_material_keys, s, &s->material[find_material(s, name)]))
             return 1;
     }
     return 0;

@@ -17,7 +17,8 @@ extern const struct keys scene_keys;
 
 /* scene/scene_material.c: mu, e_n, e_t and the laws beyond; materials and pairs of them; names of walls, of parts of their
    surfaces and of groups of bodies */
-extern const struct keys scene_law_keys, scene_material_keys, scene_pair_keys, scene_part_keys;
+extern const struct keys scene_law_keys, scene_material_keys, scene_pair_keys, scene_part_keys,
+    scene_breaks_keys;
 extern const struct key_type key_material; /* int32_t, a row of the materials */
 extern const struct key_type key_name;     /* const char *, borrowed */
 extern const struct key_type key_group;    /* int32_t: 1 + the row of the scene's names */

@@ -23,6 +23,10 @@ typedef int32_t edge_count[3];
  *   shape    row of the packing's shapes; NULL: all are balls
  *   group    1 + row of the packing's names; 0: of no group; NULL: all are
  *   q        orientation
+ *   damage   from 0 to 1, with which the grain breaks before the next step [state/breakage.h]
+ *   parent   the id of the grain that it is a fragment of; -1: none
+ *   generation  how many of its ancestors have broken
+ *   born     s: the time at which it became a body; 0 of those that are no fragments
  *   image    edges to add to x for the way that the body has gone; NULL: the cell is not periodic
  */
 #define EACH_BODY_COLUMN(X)                                                                        \
@@ -33,12 +37,16 @@ typedef int32_t edge_count[3];
     X(int32_t, material, I32, 1, "species", "1", ANY, FIELD_SAME)                                  \
     X(int32_t, shape, I32, 1, "shape", "1", ANY, FIELD_SAME | FIELD_BY_SETTINGS)                   \
     X(int32_t, group, I32, 1, "group", "1", ANY, FIELD_SAME | FIELD_OPTIONAL)                      \
+    X(int32_t, parent, I32, 1, "parent", "1", ANY, FIELD_SAME | FIELD_OPTIONAL)                    \
+    X(int32_t, generation, I32, 1, "generation", "1", NOT_NEGATIVE, FIELD_SAME | FIELD_OPTIONAL)   \
+    X(double, born, F64, 1, "born", "s", FINITE, FIELD_SAME | FIELD_OPTIONAL)                      \
     X(vec3, x, F64, 3, "position", "m", FINITE, FIELD_MOVES)                                       \
     X(vec3, v, F64, 3, "velocity", "m s-1", FINITE, FIELD_MOVES)                                   \
     X(vec3, w, F64, 3, "angular_velocity", "rad s-1", FINITE, FIELD_MOVES)                         \
     X(quat, q, F64, 4, "orientation", "1", FINITE, FIELD_MOVES)                                    \
     X(edge_count, image, I32, 3, "image", "1", ANY,                                                \
-      FIELD_MOVES | FIELD_BY_SETTINGS | FIELD_OPTIONAL)
+      FIELD_MOVES | FIELD_BY_SETTINGS | FIELD_OPTIONAL)                                            \
+    X(double, damage, F64, 1, "damage", "1", FRACTION, FIELD_MOVES | FIELD_OPTIONAL)
 
 #define BODY_POINTER(ctype, member, ...) ctype *member;
 

@@ -1,5 +1,6 @@
 #include "state/fields.h"
 
+#include "state/breakage.h"
 #include "state/packing.h"
 #include "state/report.h"
 
@@ -195,6 +196,47 @@ const struct field law_fields[] = {
     LAW(soft, "compliance", "1", FRACTION, "stiffness.compliance", | FIELD_OPTIONAL),
     { 0 },
 };
+
+/* ---- breakage: /nsd/breakage/NAME [materials], and NAME/value [frames][materials] ---- */
+
+#define BREAKS(member, unit, bounds)                                                               \
+    FIELD(struct breakage, member, F64, 1, #member, unit, FIELD_SAME, .range = FIELD_##bounds)
+#define WORD(member) FIELD(struct breakage, member, I32, 1, #member, "1", FIELD_SAME)
+const struct field breakage_fields[] = {
+    BREAKS(strength, "Pa, J kg-1", NOT_NEGATIVE),
+    BREAKS(size, "m", NOT_NEGATIVE),
+    BREAKS(modulus, "1", NOT_NEGATIVE),
+    BREAKS(exponent, "1", FINITE),
+    BREAKS(least, "J kg-1", NOT_NEGATIVE),
+    BREAKS(gamma, "1", NOT_NEGATIVE),
+    BREAKS(smallest, "m", NOT_NEGATIVE),
+    BREAKS(dust, "m", NOT_NEGATIVE),
+    WORD(by),
+    WORD(damage),
+    WORD(into),
+    WORD(pieces),
+    { 0 },
+};
+#undef BREAKS
+#undef WORD
+
+#define COUNTS(member, name)                                                                       \
+    FIELD(struct broken, member, I64, 1, name, "1", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE)
+const struct field broken_fields[] = {
+    COUNTS(grains, "broken"),
+    COUNTS(originals, "originals"),
+    COUNTS(fragments, "fragments"),
+    COUNTS(waiting, "waiting"),
+    FIELD(struct broken, mass, F64, 1, "mass", "kg", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct broken, dust, F64, 1, "dust_mass", "kg", FIELD_MOVES, .range = FIELD_NOT_NEGATIVE),
+    FIELD(struct broken, momentum, F64, 3, "dust_momentum", "N s", FIELD_MOVES,
+          .range = FIELD_FINITE),
+    FIELD(struct broken, kinetic, F64, 1, "dust_kinetic", "J", FIELD_MOVES, .range = FIELD_FINITE),
+    FIELD(struct broken, potential, F64, 1, "dust_potential", "J", FIELD_MOVES,
+          .range = FIELD_FINITE),
+    { 0 },
+};
+#undef COUNTS
 
 /* ---- what lasts of pairs ---- */
 

@@ -14,6 +14,7 @@ extern const struct field wall_fields[], load_fields[], load_motion_fields[]; /*
 extern const struct field drive_fields[], pull_fields[]; /* of struct drive: of walls, of bodies */
 extern const struct field drive_row_fields[], gradient_fields[], factor_fields[];
 extern const struct field vertex_fields[], element_fields[], named_fields[], law_fields[];
+extern const struct field breakage_fields[], broken_fields[];
 extern const struct field
     material_fields[]; /* of struct packing: pointers to [materials][materials] */
 

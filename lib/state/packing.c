@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "shape/wall_in_cell.h"
+#include "state/breakage.h"
 #include "state/fields.h"
 
 #include <stdio.h>
@@ -74,6 +75,7 @@ int packing_alloc_optional(struct packing *p, uint32_t set, struct failure *fail
 static void set_default(struct packing *p, int64_t first)
 {
     for (int64_t i = first; i < p->n; i++) p->id[i] = -1, p->q[i].w = 1;
+    for (int64_t i = first; p->parent && i < p->n; i++) p->parent[i] = -1;
 }
 
 int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
@@ -94,8 +96,8 @@ int packing_init(struct packing *p, int dim, int64_t n, struct failure *failure)
 static void materials_free(struct packing *p)
 {
     for (int32_t k = 0; p->material_name && k < p->materials; k++) free(p->material_name[k]);
-    free(p->material_name), free(p->law);
-    p->material_name = NULL, p->law = NULL, p->materials = 0;
+    free(p->material_name), free(p->law), free(p->breakage), free(p->broken);
+    p->material_name = NULL, p->law = NULL, p->breakage = NULL, p->broken = NULL, p->materials = 0;
 #define FREE(member, ...) free(p->member), p->member = NULL;
     EVERY_PAIR_COLUMN(FREE)
 #undef FREE
@@ -487,6 +489,30 @@ static int check_pair(const struct packing *p, int32_t i, struct failure *failur
                        bad ? bad->name : "", bad ? " " : "", trouble);
 }
 
+/* Do its kinds break in a way that there is? */
+static int check_breakage(const struct packing *p, struct failure *failure)
+{
+    if (!p->breakage) return 0;
+    if (records_check(RECORDS(breakage_fields, p->materials, p->breakage), "breakage of kind",
+                      failure))
+        return failure->status;
+    if (!p->broken || !p->damage || !p->parent || !p->generation || !p->born)
+        return failure_set(failure, EX_DATAERR,
+                           "grains break, and have no damage, parent, generation or time of birth");
+    for (int32_t k = 0; k < p->materials; k++) {
+        const struct breakage *b = &p->breakage[k];
+        const char *trouble = breakage_trouble(b);
+        if (trouble)
+            return failure_set(failure, EX_DATAERR, "breakage of kind %s: %s", p->material_name[k],
+                               trouble);
+        if (b->strength > 0 && b->into == INTO_PIECES && !p->shape)
+            return failure_set(failure, EX_DATAERR,
+                               "breakage of kind %s: into pieces, and there is no table of shapes",
+                               p->material_name[k]);
+    }
+    return 0;
+}
+
 int packing_check(const struct packing *p, struct failure *failure)
 {
     if (p->dim != 2 && p->dim != 3)
@@ -502,7 +528,8 @@ int packing_check(const struct packing *p, struct failure *failure)
         return failure_set(failure, EX_DATAERR, "gravity leaves the plane, and dim is 2");
     for (int32_t i = 0; i < p->materials * p->materials; i++)
         if (check_pair(p, i, failure)) return failure->status;
-    if (packing_check_each_body(p, 0, failure)) return failure->status;
+    if (packing_check_each_body(p, 0, failure) || check_breakage(p, failure))
+        return failure->status;
     if (p->walls > WALLS_BODY && (p->walls - WALLS_BODY) * p->n > WALLS_LEAST)
         return failure_set(
             failure, EX_DATAERR,

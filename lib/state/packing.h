@@ -113,6 +113,8 @@ struct events {
 int events_add(struct events *events, const struct event *event, struct failure *failure);
 
 struct whole;
+struct breakage;
+struct broken;
 
 struct packing {
     int dim;      /* 2 or 3 */
@@ -162,6 +164,9 @@ struct packing {
     int32_t first_id;                    /* of the first body that is poured */
     struct events events;                /* since the last frame */
 
+    struct breakage *breakage; /* [materials]; NULL: nothing breaks [state/breakage.h] */
+    struct broken *broken;     /* [materials], where there is breakage */
+
     char *scene; /* the JSON it was built from, or NULL */
 
     const struct whole
@@ -199,9 +204,14 @@ int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
                            struct failure *failure);
 
 /* Are there inlets or outlets? */
-static inline bool packing_varies(const struct packing *p)
+static inline bool packing_flows(const struct packing *p)
 {
     return p->pours > 0 || p->removals > 0;
+}
+/* Do bodies come and go by themselves? */
+static inline bool packing_varies(const struct packing *p)
+{
+    return packing_flows(p) || p->breakage;
 }
 
 /* Has any pair of materials static friction of its own? */

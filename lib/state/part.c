@@ -1,5 +1,6 @@
 #include "state/part.h"
 
+#include "state/breakage.h"
 #include "state/fields.h"
 #include "state/wall_faces.h"
 
@@ -52,6 +53,9 @@ const struct part packing_parts[] = {
     EVERY_PAIR_COLUMN(PAIR) // these, too
     ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE, materials, 0,
           law_fields),
+    ARRAY("breakage of kind", "kinds that break", PART_SETTING, breakage, PART_I32, materials, 0,
+          breakage_fields),
+    ARRAY("kind", "kinds", 0, broken, PART_I32, materials, 0, broken_fields),
     SETTING("wall", "walls", wall, walls, wall_fields),
     ARRAY("load", "walls", PART_SETTING | PART_AGAIN, wall, PART_I32, walls, 0, load_fields),
     SETTING("drive", "drives", drives.drive, drives.n, drive_fields),
@@ -223,8 +227,9 @@ static int part_same(const struct part *a, const struct packing *first, const st
     if (a->how == PART_ONE_TEXT) return 0;
     if (!then && !now) return 0;
     if (n && (!then || !now))
-        return failure_set(failure, EX_DATAERR,
-                           "%s have laws beyond friction and restitution in %s alone", a->many,
+        return failure_set(failure, EX_DATAERR, "%s have %s in %s alone", a->many,
+                           a->fields == law_fields ? "laws beyond friction and restitution"
+                                                   : "these properties",
                            now ? "the frame" : "the trajectory");
     if (n && !(a->traits & PART_TEXT) && !memcmp(then, now, (size_t)n * a->bytes)) return 0;
     for (int64_t i = 0; i < n; i++) {
@@ -250,11 +255,11 @@ int packing_same_settings(const struct packing *first, const struct packing *p,
         return failure->status;
     for (const struct part *a = packing_parts; a->name; a++)
         if (a->traits & PART_SETTING && part_same(a, first, p, failure)) return failure->status;
-    if (first->shapes.n != p->shapes.n)
+    if (first->shapes.n != p->shapes.n && !(p->breakage && first->shapes.n < p->shapes.n))
         return failure_set(failure, EX_DATAERR,
                            "the number of shapes is %d, and the trajectory's is %d", p->shapes.n,
                            first->shapes.n);
-    for (int32_t k = 1; k < p->shapes.n; k++)
+    for (int32_t k = 1; k < first->shapes.n; k++)
         if (strcmp(p->shapes.s[k].name, first->shapes.s[k].name) != 0 ||
             !shape_same(&p->shapes.s[k], &first->shapes.s[k]))
             return failure_set(failure, EX_DATAERR, "shape %s differs from the trajectory's",

@@ -11,6 +11,7 @@
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/balance.h"
+#include "step/breaking_load.h"
 #include "step/hit_bound.h"
 #include "step/move.h"
 #include "step/project.h"
@@ -437,8 +438,8 @@ void step_forget_impulses(struct packing *p, const struct step_opt *o)
     memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
 }
 
-int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
-                 const struct step_opt *o, struct report *rep, struct failure *failure)
+static int advance_alone(struct packing *p, struct contacts *s, struct step_memory *kept,
+                         const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct substeps steps;
     struct alone a = { { .detect = detect_alone,
@@ -466,5 +467,17 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
     }
     substeps_free(&steps);
     if (longest > 0) step_forget_impulses(p, o);
+    return failure->status;
+}
+
+int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept,
+                 const struct step_opt *o, struct report *rep, struct failure *failure)
+{
+    struct breaking_start start;
+    if (!p->breakage) return advance_alone(p, s, kept, o, rep, failure);
+    if (breaking_start(&start, p, failure)) return failure->status;
+    if (!advance_alone(p, s, kept, o, rep, failure) && report_made(rep))
+        breaking_load(p, s, &start, failure);
+    breaking_start_free(&start);
     return failure->status;
 }

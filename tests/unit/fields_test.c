@@ -20,7 +20,11 @@ static const char *const scenes[] = { "press",  "bonded",    "pour",  "bricks", 
 enum { SCENES = sizeof scenes / sizeof *scenes, WITHOUT_WALLS = 6, ALL = 8, TRIES = 12 };
 /* What none of them has: signals of walls and loads, forces on bodies, a mesh, names, bonds of shapes, rolling */
 static const char rest[] =
-    "{ \"dt\": 1e-3, \"mu\": 0.3, \"e_n\": 0.1, \"overlap\": true, \"shapes\": { \"pill\": { "
+    "{ \"kinds\": { \"glass\": { \"breaks\": { \"by\": \"energy\", \"strength\": 10, \"smallest\": "
+    "1e-3, "
+    "\"size\": 2e-3, \"modulus\": 3, \"least\": 0.1, \"damage\": \"tavares\", \"into\": \"balls\", "
+    "\"dust\": 1e-4 } } }, \"dt\": 1e-3, \"mu\": 0.3, \"e_n\": 0.1, \"overlap\": true, \"shapes\": "
+    "{ \"pill\": { "
     "\"capsule\": { \"length\": 1, \"radius\": 0.5 } } },"
     "\"pairs\": [{ \"pair\": [\"ball\", \"ball\"], \"adhesion\": { \"c_n\": 1e4, \"c_t\": "
     "1e4, \"w\": 0.2, \"eta\": 1e-4 }, \"rolling\": { \"mu_r\": 1e-3 }, \"stiffness\": \"auto\" },"
