@@ -44,8 +44,8 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
         double v2 = 0;
         for (int k = 0; k < 3; k++) {
             const double v = b->v[k], w = b->w[k], free = b->im > 0 ? fall[k] : 0;
-            b->v[k] = v + free + (r->begins ? 0 : v - was->v[k] - free);
-            b->w[k] = w + (r->begins ? 0 : w - was->w[k]);
+            b->v[k] = v + free + (r->begins ? 0 : SMALL_WARM * (v - was->v[k] - free));
+            b->w[k] = w + (r->begins ? 0 : SMALL_WARM * (w - was->w[k]));
             was->v[k] = v, was->w[k] = w;
             v2 += v * v;
         }

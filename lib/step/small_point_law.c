@@ -7,6 +7,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Of h: tau, in which overlaps are left */
+#define RELAXES 30
+
 /* Rounds of the points of a meeting in one sweep: where some point is new, and in an impact, at most */
 enum { ROUNDS = 2, ROUNDS_NEW = 6, ROUNDS_MOST = 20 };
 static const double ENOUGH = 1e-3; /* of the first round: less needs no other */
@@ -95,7 +98,9 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
                         struct small_point *t)
 {
     const struct small *s = &r->l->s;
-    const struct small_rates *o = &s->rate;
+    struct small_rates rate = s->rate;
+    const struct small_rates *o = &rate;
+    rate.relax = rate.per_h / (1 + RELAXES);
     struct small_law l = {
         .gap = t->gap, .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu, .calm = o->calm
     };
@@ -336,19 +341,19 @@ double small_meeting_try(struct small_run *r, struct small_meeting *m, double *s
     return sum;
 }
 
-/* Bodies have the attraction of the last step, at the arms of `had`, and get that of this one. */
+/* Bodies have SMALL_WARM of the attraction of the last step, at the arms of `had`, and get all of this one. */
 static void pull_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
                        const struct small_point *had)
 {
     const vec3 none = v3(0, 0, 0), pull = v3_scale(-t->pulls, t->n);
     if (!(t->pulls > 0) && v3_dot(t->pull, t->pull) == 0) return;
-    if (!r->begins) push_point(r, r->l->s.body, m, had, v3_scale(-1, t->pull), none);
+    if (!r->begins) push_point(r, r->l->s.body, m, had, v3_scale(-SMALL_WARM, t->pull), none);
     push_point(r, r->l->s.body, m, t, pull, none);
     t->pull = pull;
     t->sum[0] += pull.x, t->sum[1] += pull.y, t->sum[2] += pull.z;
 }
 
-/* Bodies have the reactions of the last step where points were, and get them where these are; of points that start they have nothing, and of those
+/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
    that have gone they are to have nothing. */
 void small_meeting_start(struct small_run *r, struct small_meeting *m)
 {
@@ -356,9 +361,10 @@ void small_meeting_start(struct small_run *r, struct small_meeting *m)
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
+        const double has = t.starts ? 0 : SMALL_WARM;
         had.a = t.was[0], had.b = t.was[1], had.D = t.had_D;
-        if (!t.starts && !small_is_zero(t.f))
-            push_point(r, r->l->s.body, m, &had, v3_scale(-1, f), v3_scale(-1, moment));
+        if (has > 0 && !small_is_zero(t.f))
+            push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));
         if (t.near && !small_is_zero(t.f)) push_point(r, r->l->s.body, m, &t, f, moment);
         pull_point(r, m, &t, &had);
         t.was[0] = t.a, t.was[1] = t.b, t.had_D = t.D;

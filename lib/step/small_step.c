@@ -35,8 +35,8 @@ enum {
 #define COMPLIANCE 0.04
 /* Times the lightest body */
 #define UNEVEN 30
-/* Of h: tau, in which overlaps are left: a slow mode grows where a sweep takes less than 1/RELAXES of its error [nsd-methods(7)] */
-#define RELAXES 30
+/* Of h: tau, in which overlaps are left */
+#define RELAXES 8
 /* Of the fastest speed, or of what moves a body by UNSEEN of the smallest radius in h: a change of a velocity that is not
    followed up, in the first sweep of a step, without restitution, and in others. Less would carry impacts farther into a
    packing, and cost a flowing drum a tenth of its time and more. */
@@ -77,35 +77,18 @@ static struct small_sizes small_sizes(const struct packing *p)
     return s;
 }
 
-/* kg: of bodies that move */
-struct small_masses {
-    double least, most;
-};
-static struct small_masses small_masses(const struct packing *p)
-{
-    struct small_masses m = { INFINITY, 0 };
-    for (int64_t i = 0; i < p->n; i++) {
-        m.most = fmax(m.most, p->mass[i]);
-        if (p->mass[i] > 0) m.least = fmin(m.least, p->mass[i]);
-    }
-    return m;
-}
-
-static bool small_bodies_uneven(const struct packing *p)
-{
-    const struct small_masses m = small_masses(p);
-    return m.most > UNEVEN * m.least;
-}
-
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
     const double fall = (packing_most_fall(p) + p->dt * small_pull_load(p)) * (double)r->n;
-    const struct small_masses m = small_masses(p);
-    double heaviest = m.most;
+    double heaviest = 0, lightest = INFINITY;
+    for (int64_t i = 0; i < p->n; i++) {
+        heaviest = fmax(heaviest, p->mass[i]);
+        if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
+    }
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
-    r->uneven = heaviest > UNEVEN * m.least;
+    r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
     const double change = fmax(fastest, UNSEEN * r->thin / r->h);
     r->l->s.rate = (struct small_rates){ .h = r->h,
@@ -301,12 +284,10 @@ static double small_steady(const struct packing *p)
     return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
 }
 
-/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair; 0 where bodies have masses so different that
-   small_steady() counts the heaviest */
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
 static double small_carries(const struct packing *p)
 {
     double most = 0;
-    if (small_bodies_uneven(p)) return 0;
     for (int64_t i = 0; i < p->memory.n; i++) {
         const struct recall *c = &p->memory.recall[i];
         double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
@@ -316,15 +297,17 @@ static double small_carries(const struct packing *p)
     return most / p->dt;
 }
 
-/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r */
-static const double CARRIED = 0.4;
+/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W. */
+static const double CARRIED[2] = { 1.4, 0.4 };
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
 
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double least = small_sizes(p).least, permits = CARRIED * overlap * least;
+    const double least = small_sizes(p).least,
+                 permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
     n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
