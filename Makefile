@@ -8,7 +8,8 @@
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
-# make docs       the manuals as HTML, in build/man       make deb       Debian packages, in build/deb
+# make site       all pages and manuals as HTML, build/site  make drawings  docs/drawings, from scripts/drawings
+# make deb        Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
@@ -171,7 +172,7 @@ tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) 
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-wall setup-check setup-all:
+setup-run setup-wall setup-site setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
@@ -184,7 +185,7 @@ REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -220,7 +221,7 @@ demo: setup-run
 	@PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
 
 # scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
-paper paper-keep: setup-paper
+paper paper-keep: setup-run
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
 	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove tests/whole/paper_page.t)
@@ -323,7 +324,7 @@ coverage:
 # ---- style ----
 
 SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh scripts/site/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -363,7 +364,6 @@ $(TIDY): lint-tidy-%:
 
 # ---- what is made for others ----
 
-# The manuals as HTML, in build/man
 MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
@@ -376,26 +376,17 @@ $(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
 
-# Links to manuals that are not ours become plain text.
-BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
-LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
+# All pages, manuals and recipes as static HTML, by scripts/site/site.py; docs: its former name
+docs site: setup-site $(MANUALS)
+	scripts/site/site.py $B/site $(MANUALS)
+	@echo "site: $B/site/index.html" >&2
 
-docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
+# The drawings of the manuals, SVG in docs/drawings
+drawings:
+	scripts/drawings/make.py docs/drawings
 
-build/man/nsd-cookbook.7.html build/man/nsd-scene.5.html: build/man/%.html: build/man/%
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/%.html: man/%
-	@mkdir -p $(@D)
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/index.html: scripts/man/index.sh $(MANUALS)
-	@mkdir -p $(@D)
-	scripts/man/index.sh $(MANUALS) > $@
-
-build/man/style.css: scripts/man/style.css
-	@mkdir -p $(@D)
-	cp $< $@
+manuals-list: $(MANUALS)
+	@echo $^
 
 # Completion in bash and zsh, out of each tool's table of options
 COMPLETIONS := $(foreach t,$(notdir $(TOOLS)) nsd-fit,$B/completion/bash/$t $B/completion/zsh/_$t)
@@ -479,5 +470,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -2,6 +2,7 @@
 """page.py RESULTS.json ... [--plots DIR]: the page of make peers, from kept results, one file a machine (peers.py --mode
 keep); with --plots the curves as well, DIR/JOB.svg of the first file, by gnuplot. It runs nothing and measures nothing."""
 import json
+import math
 import os
 import subprocess
 import sys
@@ -194,36 +195,51 @@ def page(results):
     return "\n".join(out)
 
 
+def step_of(end):
+    """A round step of some five labels of an axis from 0"""
+    unit = 10 ** math.floor(math.log10(end / 5))
+    return next(unit * k for k in (1, 2, 5, 10) if unit * k >= end / 5 * 0.99)
+
+
 def plot(name, job, folder):
     path = os.path.join(folder, name)
     if len(seen(job)) == 1:
         if os.path.exists(path + ".svg"):
             os.remove(path + ".svg")
         return
-    drawn, data = [], ""
-    for key, (title, style) in ROWS.items():
-        curve = job["variants"].get(key, {}).get("series")
-        if not style or not curve:
-            continue
-        names = [k for k in curve if k != "t"]
-        data += "".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in names))) + "\n\n"
-        drawn.append((title, style, len(names)))
+    runs = {title: (style, job["variants"][key]["series"]) for key, (title, style) in ROWS.items() if style and job["variants"].get(key, {}).get("series")}
+    end = max(curve["t"][-1] for _, curve in runs.values())
+    # of a run that was stopped at once no curve is seen: it stands in a note instead of the legend
+    drawn = {title: run for title, run in runs.items() if run[1]["t"][-1] >= 0.03 * end}
+    note = "; ".join(f"{title}: {text(runs[title][1]['t'][-1])} s" for title in runs if title not in drawn)
+    data = "".join("".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in curve if k != "t"))) + "\n\n"
+                   for _, curve in drawn.values())
     with open(path + ".dat", "w") as f:
         f.write(data)
     two = name == "settling"  # the second observable below the first
-    script = f"set terminal svg size 720,{860 if two else 460} background 'white' font 'sans,17'; set output '{path}.svg'; "
-    script += "set grid lc rgb '#dddddd'; set key outside top center horizontal maxcols 2 width 2; set xlabel 'time, s'; "
+    script = f"set terminal svg size 720,{900 if two else 480} background 'white' font 'sans,17'; set output '{path}.svg'; set border 3; set tics nomirror; "
+    script += f"set grid lc rgb '#dddddd'; set key outside top center horizontal maxcols 2 width 2; set xlabel 'time, s'; set xrange [0:{end}]; set xtics {text(step_of(end))}; "
+    if note:
+        script += f"set label 'stopped at once: {note}' at graph 0.98, graph 0.06 right font 'sans,13' tc rgb '#555555'; "
+    # nsd: solid, blue; LIGGGHTS: dashed, red; Yade: green; paler: the second variant. A dot where a run was stopped
     colour = {1: "#1b6ca8", 2: "#7fb2d8", 3: "#c8402c", 4: "#e8a090", 5: "#4a7d3a", 6: "#0b3c5d"}
 
-    def curves(column, low=""):
-        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2.5 if style in (1, 3) else 1.5} dt {2 if style in (3, 4) else 1} lc rgb '{colour[style]}' title '{title}'"
-                                   for k, (title, style, _) in enumerate(drawn)) + "; "
+    def curves(column):
+        parts = []
+        for k, (title, (style, curve)) in enumerate(drawn.items()):
+            last = curve["t"][-1]
+            named = title if last > 0.98 * end else f"{title}, to {text(last)} s"
+            looks = f"lc rgb '{colour[style]}'"
+            parts.append(f"'{path}.dat' index {k} using 1:{column} with lines lw {4 if style == 1 else 2.5} {'dt (6, 5) ' if style in (3, 4) else ''}{looks} title '{named}'")
+            if last <= 0.98 * end:
+                parts.append(f"'{path}.dat' index {k} using 1:{column} every ::{len(curve['t']) - 1} with points pt 7 ps 1 {looks} notitle")
+        return "plot " + ", ".join(parts) + "; "
 
     if two:
         script += "set multiplot layout 2,1; "
     script += f"set ylabel '{job['label']}'; " + curves(2)
     if two:
-        script += "set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy, m g d a ball'; " + curves(3)
+        script += "unset key; set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy per ball, m g d'; " + curves(3)
     subprocess.run(["gnuplot", "-e", script], check=True)
     os.remove(path + ".dat")
 

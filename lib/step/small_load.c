@@ -90,7 +90,7 @@ void small_loads_begin(struct small_run *r)
     if (find_freedoms(r, &failure)) r->lost = r->stop = true;
     for (int32_t k = 0; k < o->list.n; k++) {
         o->free[k] = r->h * o->list.f[k].force / o->list.f[k].mass;
-        o->change[k] = o->free[k] + (r->begins ? 0 : SMALL_WARM * o->kept[k]);
+        o->change[k] = o->free[k] + (r->begins ? 0 : r->l->s.rate.warm * o->kept[k]);
     }
 }
 

@@ -6,7 +6,7 @@
  *     m (s - s^-) = h F - sum of D_i . f_i(s),
  *
  * whose right side falls with s: one Newton step after the other within a bracket ends at its root, whatever the mass. So a
- * lid that is light pushes as exactly as a heavy one, and sweeps have no part in it. Of the reactions in s 0.98 persists,
+ * lid that is light pushes as exactly as a heavy one, and sweeps have no part in it. Of the reactions in s rate.warm persists,
  * as in bodies. Loads in the packing move with each small step.
  */
 #pragma once

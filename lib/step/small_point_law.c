@@ -341,19 +341,20 @@ double small_meeting_try(struct small_run *r, struct small_meeting *m, double *s
     return sum;
 }
 
-/* Bodies have SMALL_WARM of the attraction of the last step, at the arms of `had`, and get all of this one. */
+/* Bodies have what persists of the attraction of the last step, at the arms of `had`, and get all of this one. */
 static void pull_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
                        const struct small_point *had)
 {
     const vec3 none = v3(0, 0, 0), pull = v3_scale(-t->pulls, t->n);
     if (!(t->pulls > 0) && v3_dot(t->pull, t->pull) == 0) return;
-    if (!r->begins) push_point(r, r->l->s.body, m, had, v3_scale(-SMALL_WARM, t->pull), none);
+    if (!r->begins)
+        push_point(r, r->l->s.body, m, had, v3_scale(-r->l->s.rate.warm, t->pull), none);
     push_point(r, r->l->s.body, m, t, pull, none);
     t->pull = pull;
     t->sum[0] += pull.x, t->sum[1] += pull.y, t->sum[2] += pull.z;
 }
 
-/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
+/* Bodies have what persists of the reactions of the last step, and get all; of points that start they have nothing, and of those
    that have gone they are to have nothing. */
 void small_meeting_start(struct small_run *r, struct small_meeting *m)
 {
@@ -361,7 +362,7 @@ void small_meeting_start(struct small_run *r, struct small_meeting *m)
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        const double has = t.starts ? 0 : SMALL_WARM;
+        const double has = t.starts ? 0 : r->l->s.rate.warm;
         had.a = t.was[0], had.b = t.was[1], had.D = t.had_D;
         if (has > 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));

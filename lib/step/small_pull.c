@@ -66,9 +66,8 @@ static void next_forces(struct small_run *r, int64_t i)
     add_half_work(r, i, y);
 }
 
-double small_pull_bodies(struct small_run *r, int64_t first, int64_t end)
+double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
 {
-    const double warm = r->begins ? 0 : SMALL_WARM;
     double most = 0;
     for (int64_t i = first; i < end; i++) {
         struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];

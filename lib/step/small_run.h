@@ -105,6 +105,9 @@ struct small_run {
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */
+    double fall;             /* m/s: in a small step, by all forces that are not reactions */
+    double weight, load;     /* N s: of all bodies, in it; of the mean body, over its weight */
+    int64_t free;            /* bodies that move */
     int64_t n, made, sweeps; /* small steps, and those made; sweeps of all */
     int64_t unsolved;        /* small steps that have ended with the limit of sweeps */
     int32_t swept;           /* of the step in hand */
@@ -122,6 +125,7 @@ struct small_run {
     _Atomic bool far;     /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock; /* of what follows */
     double fastest;       /* m^2/s^2: of bodies */
+    int64_t shaken;       /* by how much the last step has changed velocities [step/small_loop.c] */
 };
 
 /* Does a load move the wall of a touch? */

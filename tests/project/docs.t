@@ -119,26 +119,6 @@ unfit()
 is "and tables that fit 78 characters" "$(unfit)" ""
 is "nsd-tutorial(7)'s scene is the recipe's" "$(sed -n '/^{ "title"/,/^\.Ed/p' man/nsd-tutorial.7 | grep -v '^\.Ed')" "$(cat cookbook/drum/scene.json)"
 
-if command -v mandoc >/dev/null; then
-    ok "make docs" make -s docs
-    dead() # links to pages or places that are not there
-    {
-        local f page
-        for f in build/man/*.html; do
-            grep -o 'href="[^"]*"' "$f" | sed 's/href="\(.*\)"/\1/' | sort -u | while read -r page; do
-                case $page in
-                http*) ;;
-                \#*) grep -qF "id=\"${page#\#}\"" "$f" || echo "$f: $page" ;;
-                *) [ -e "build/man/${page%%#*}" ] || echo "$f: $page" ;;
-                esac
-            done
-        done
-    }
-    is "no link of the HTML leads nowhere" "$(dead)" ""
-else
-    skip "the manuals as HTML" "no mandoc"
-fi
-
 # ---- links of the texts, versions ----
 
 missing() # files that a text links to
@@ -153,7 +133,7 @@ missing() # files that a text links to
 is "every file that a text links to exists" "$(missing)" ""
 named() # tests that texts name
 {
-    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
+    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)\b' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
         while read -r f; do [ -e "$f" ] || echo "$f"; done
 }
 is "every test that a text names exists" "$(named)" ""
