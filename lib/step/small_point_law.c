@@ -341,7 +341,7 @@ double small_meeting_try(struct small_run *r, struct small_meeting *m, double *s
     return sum;
 }
 
-/* Bodies have rate.warm of the attraction of the last step, at the arms of `had`, and get all of this one. */
+/* Bodies have what persists of the attraction of the last step, at the arms of `had`, and get all of this one. */
 static void pull_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
                        const struct small_point *had)
 {

@@ -80,9 +80,10 @@ static struct small_sizes small_sizes(const struct packing *p)
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
-    const double fall = (packing_most_fall(p) + p->dt * small_pull_load(p)) * (double)r->n;
+    r->fall = packing_most_fall(p) + p->dt * small_pull_load(p);
+    const double fall = r->fall * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
-    r->fall = packing_most_fall(p), r->free = 0, r->weight = 0;
+    r->free = 0, r->weight = 0;
     for (int64_t i = 0; i < p->n; i++) {
         r->free += p->mass[i] > 0, r->weight += p->mass[i] * r->fall;
         heaviest = fmax(heaviest, p->mass[i]);
@@ -301,7 +302,7 @@ static double small_carries(const struct packing *p)
 
 /* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
    and where points with their levers have more W. */
-static const double CARRIED[2] = { 1.4, 0.4 };
+static const double CARRIED[2] = { 1, 0.4 };
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
 

@@ -7,7 +7,7 @@
 steps=600
 [ -z "$thin" ] || steps=150
 
-step() { nsd-step "$@" 2>/dev/null; }
+step() { nsd-step --small-steps 0 "$@" 2>/dev/null; } # the solver's freedoms; tests/whole/small_laws.t has those of small steps
 solve() { nsd-solve "$@" 2>/dev/null; }
 # The energy that is missing from the balance of a log's worst step, in parts of what there is
 misfit()
