@@ -23,9 +23,10 @@ DESTDIR ?=
 CC      ?= cc
 CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
-# The manuals that are made: of cookbook/, and of man/nsd-scene.5 and the keys of scenes
+# The manuals that are made: of cookbook/, and of pages in man and the keys of scenes
 COOKBOOK := build/man/nsd-cookbook.7
-SCENE    := build/man/nsd-scene.5
+KEYED    := $(shell grep -l '^\.\\" keys ' man/*)
+SCENE    := $(KEYED:%=build/%)
 
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
@@ -369,17 +370,17 @@ $(TIDY): lint-tidy-%:
 
 # ---- what is made for others ----
 
-MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
+MANUALS := $(filter-out $(KEYED),$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
-# nsd-scene(5) has the tables of keys that nsd-gen knows
-$(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
+# Keys of scenes are those that nsd-gen knows
+$(SCENE): build/man/%: man/% $(KEYED) scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
-	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
+	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh $< > $@
 
 # All pages, manuals and recipes as static HTML, by scripts/site/site.py; docs: its former name
 docs site: setup-site $(MANUALS)
@@ -423,7 +424,7 @@ install-tools: all completions
 	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
 	    install -m 644 $$d/* $(TO)/share/nsd/$$d && chmod 755 $(TO)/share/nsd/$$d/*.sh || exit 1; done
 	install -d $(TO)/share/nsd/campaign
-	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
+	install -m 755 scripts/campaign/*.sh scripts/campaign/*.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions

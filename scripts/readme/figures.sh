@@ -44,6 +44,7 @@ for f in docs/peers/*.json; do
         "peers_deep\t\($deep | map(select(. > 0.1)) | length)", "peers_deepest\t\($deep | max * 10 | round / 10)",
         "peers_auto_least\t\($auto | min * 100 | round / 100)", "peers_auto_most\t\($auto | max * 10 | round / 10)"' "$f"
 done | sort -u
+printf 'peers_blind\t%s\n' "$(grep -c '^Until then both codes have the same value' docs/peers/README.md)"
 
 jq -r 'def count(f): map(select(f)) | length; def judged: .kind == "judged" and .verdict != "not yet run";
     "gallery_rows\t\(length)", "gallery_judged\t\(count(judged))", "gallery_within\t\(count(judged and .verdict != "differs"))",

@@ -30,6 +30,10 @@ ok "a job that takes three times as long" changed peers_most
 
 # ---- what the commands print ----
 
+ok "docs/peers/README.md is made of its kept results (else: bench/peers/page.py docs/peers/*.json)" \
+    cmp docs/peers/README.md <(python3 bench/peers/page.py docs/peers/*.json)
+ok "README.md's run ends with status 0 under -e" eval 'nsd-gen cookbook/drum/scene.json | nsd-step -e --until 1.2 --every 0.2s >"$tmp/drum.h5"'
+
 ok "the drum's angles are what it prints" cmp docs/readme/drum.txt <(scripts/readme/readme.sh drum)
 if command -v gnuplot >/dev/null; then
     ok "make demo ends as README.md shows" cmp docs/readme/demo.txt <(scripts/readme/readme.sh demo)
