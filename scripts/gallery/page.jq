@@ -38,7 +38,7 @@ def hours($all): [$all[].runs[]?.cpu // empty] | add // 0 | . / 3600 | digits(2)
     "## \($a.title)", "", $a.text, "",
     "    " + $a.pipeline, "",
     (if $r.quick then "*A small run, as with `QUICK=1`.*", "" else empty end),
-    (if ($r.runs | length) > 1 or any($r.rows[]; .previous) then "*The pictures are those of an earlier run, before the set-up changed.*", "" else empty end),
+    (if any($r.rows[]; .previous) or (($r.runs | length) > 1 and any($r.runs[]; .part == null)) then "*The pictures are those of an earlier run, before the set-up changed.*", "" else empty end),
     "![\($a.title)](\($e)/picture.png)", "", "![its curve](\($e)/curve.png)", "",
     ([($r.runs[]? | (if .part then "Part *\(.part)*: " else "" end) + (if .options == "--small-steps 0" then "One solve per step" elif .options == "" then "Small steps, the default" else .options end) +
         (if .account then ". Deepest overlap \(.account.overlap) radii; \(.account.unconverged) of \(.account.steps) steps did not converge" else "" end) + (if .cpu then "; \(.cpu / 3600 | digits(2)) CPU hours." else "." end)),
