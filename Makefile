@@ -7,6 +7,7 @@
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
+# make gallery-reference   the same by an independent code; gallery-keep, gallery-page put both on the page
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
 # make site       all pages and manuals as HTML, build/site  make drawings  docs/drawings, from scripts/drawings
 # make deb        Debian packages, in build/deb
@@ -232,10 +233,14 @@ wall wall-keep: setup-wall
 	$(MAKE) all
 	$(MAKE) -f scripts/wall.mk $(if $(filter wall-keep,$@),keep,all)
 
-# scripts/gallery.mk says what is run; gallery-keep puts the page into docs/gallery.
-gallery gallery-keep: setup-run
+# scripts/gallery.mk says what is run; gallery-reference runs it by the independent code, gallery-keep puts results into docs/gallery.
+gallery: setup-run
+gallery-reference: setup-wall
+gallery gallery-reference:
 	$(MAKE) -j2 all
-	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery-keep,$@),keep,all)
+	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery,$@),all,reference)
+gallery-keep gallery-page:
+	$(MAKE) -f scripts/gallery.mk $(@:gallery-%=%)
 
 # bench/peers/jobs.py says what is run; peers-keep puts the page into docs/peers. ARGS: options of bench/peers.py
 peers peers-keep: setup-wall
@@ -471,5 +476,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -64,6 +64,12 @@ def at(curve, t):
     return None
 
 
+NOTES = {"penetration": "A heavy ball that strikes light ones loses energy differently in the two codes. nsd's law of impact does not depend on the rate: "
+         "from light balls that rest on a floor a heavy one rebounds with e v. The dashpots of LIGGGHTS, which give a pair of light balls the restitution e, "
+         "hardly act on the heavy mass, and it keeps almost all its speed (0.800 against 1.980 m/s for e = 0.4 and 2 m/s, one light ball between; nsd-methods(7), "
+         "Simultaneous impacts). So the steel ball loses more in nsd, and rebounds with less."}
+
+
 def common_time(job):
     """The time that nsd and LIGGGHTS, soft, both have simulated."""
     return min([v["series"]["t"][-1] for k, v in job["variants"].items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
@@ -104,6 +110,8 @@ def job_section(name, job, quick):
         out.append(f"nsd needs {text(r, 2)} times the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
     out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap']) or 'unknown'} of a radius"
                + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
+    if name.split("-given", maxsplit=1)[0] in NOTES:
+        out += ["", NOTES[name.split("-given", maxsplit=1)[0]]]
     if job.get("profile"):
         out += ["", "Functions of nsd by CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
     if blind(job):

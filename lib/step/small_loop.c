@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_attract.h"
 #include "step/small_cell.h"
 #include "step/small_converge.h"
 #include "step/small_error.h"
@@ -374,7 +375,11 @@ void small_loop(void *arg, int me, int threads)
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
-        if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
+        if (r->meets) small_points_look(r, me, threads);
+        if (r->meets && r->l->s.hold && !me) small_attract(r);
+        if (r->meets && r->l->s.hold) team_meet();
+        if (r->meets) small_points_start(r, me, threads);
+        if (r->meets && r->loads.of && !me) small_loads_start(r);
         if (r->begins) fade_reactions(r, me, threads);
         small_sweeps(r, me, threads);
         if (r->sums && !me) small_sums_step(r);

@@ -16,3 +16,5 @@ struct small_pull small_pull_sum(const struct small_run *r);
 /* m/s^2: the acceleration of a body that its own force and those of all bodies behind it push, from any side; 0 without
    forces */
 double small_pull_presses(const struct packing *p);
+/* m/s^2: what the loads of walls would give to all bodies together */
+double small_pull_load(const struct packing *p);
