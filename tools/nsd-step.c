@@ -57,7 +57,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "forces", &forces,
       .help = "also keep their forces as vectors in N; implies --contacts" },
     { CLI_FLAG, 0, "sums", &sums,
-      .help = "keep sums over steps of forces and work on walls: nsd-stat -m wall_loads" },
+      .help = "sum forces and work on walls over steps: nsd-stat -m wall_loads" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,

@@ -138,7 +138,7 @@ def load():
     c.words(20, 418, "s' = s + (dt f + J* r)/m,  J = -a", MOTION, 13)
     c.words(20, 440, 's is one more unknown, solved with the contacts; m: "mass"', size=12.5)
     x = 320
-    c.words(x, 28, 'Servo: walls of a room', bold=True, size=15)
+    c.words(x, 28, 'Servo: a box of walls', bold=True, size=15)
     l, r, t, b = x + 40, x + 280, 70, 290
     for a in ((l, t, l, b), (l, b, r, b), (r, b, r, t), (r, t, l, t)):
         c.wall(*a)
@@ -152,7 +152,7 @@ def load():
     for (x1, y1), (x2, y2) in (((l - 26, cy), (l - 2, cy)), ((r + 28, cy), (r + 3, cy)), ((cx, t - 28), (cx, t - 3)), ((cx, b + 28), (cx, b + 3))):
         c.arrow(x1, y1, x2, y2, FORCE, 3)
     c.words(cx + 8, b + 26, 'mean pressure P', FORCE, 13)
-    c.lines(x, 358, ['"room": {"walls": "box", "pressure": P,', '         "strain_rate": [e, e, -2e]}'], 18, size=12.5, mono=True, colour=CHOICE)
+    c.lines(x, 358, ['"servo": {"walls": "box", "pressure": P,', '          "strain_rate": [e, e, -2e]}'], 18, size=12.5, mono=True, colour=CHOICE)
     c.words(x, 418, 'dl/dt = v_n + (s + e) l', MOTION, 13)
     c.words(x + 94, 440, 's: one growth of all walls, 1/s', size=12.5)
     return c
