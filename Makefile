@@ -7,8 +7,10 @@
 # make paper      every table and figure of the paper     QUICK=1        the same in minutes
 # make wall       what holds up the solvers on large piles QUICK=1      one pile, in a minute
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
+# make gallery-reference   the same by an independent code; gallery-keep, gallery-page put both on the page
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
-# make docs       the manuals as HTML, in build/man       make deb       Debian packages, in build/deb
+# make site       all pages and manuals as HTML, build/site  make drawings  docs/drawings, from scripts/drawings
+# make deb        Debian packages, in build/deb
 #
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
@@ -21,9 +23,10 @@ DESTDIR ?=
 CC      ?= cc
 CFLAGS  ?= $(if $(SAN),-O1 -g1,-O3 -g1)
 B       := build$(if $(SAN),/san)
-# The manuals that are made: of cookbook/, and of man/nsd-scene.5 and the keys of scenes
+# The manuals that are made: of cookbook/, and of pages in man and the keys of scenes
 COOKBOOK := build/man/nsd-cookbook.7
-SCENE    := build/man/nsd-scene.5
+KEYED    := $(shell grep -l '^\.\\" keys ' man/*)
+SCENE    := $(KEYED:%=build/%)
 
 , := ,
 # Debian's hdf5.pc is that of whichever flavour was installed last.
@@ -171,7 +174,7 @@ tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) 
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-paper setup-wall setup-check setup-all:
+setup-run setup-wall setup-site setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
@@ -184,7 +187,7 @@ REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -220,7 +223,7 @@ demo: setup-run
 	@PATH="$(CURDIR)/build:$$PATH" scripts/demo.sh
 
 # scripts/paper.mk says what is made; paper-keep puts it where readers find it, docs/paper.
-paper paper-keep: setup-paper
+paper paper-keep: setup-run
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/paper.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(@:paper%=all%)
 	$(if $(filter paper-keep,$@),PATH="$(CURDIR)/$B:$$PATH" prove tests/whole/paper_page.t)
@@ -230,10 +233,14 @@ wall wall-keep: setup-wall
 	$(MAKE) all
 	$(MAKE) -f scripts/wall.mk $(if $(filter wall-keep,$@),keep,all)
 
-# scripts/gallery.mk says what is run; gallery-keep puts the page into docs/gallery.
-gallery gallery-keep: setup-run
+# scripts/gallery.mk says what is run; gallery-reference runs it by the independent code, gallery-keep puts results into docs/gallery.
+gallery: setup-run
+gallery-reference: setup-wall
+gallery gallery-reference:
 	$(MAKE) -j2 all
-	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery-keep,$@),keep,all)
+	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery,$@),all,reference)
+gallery-keep gallery-page:
+	$(MAKE) -f scripts/gallery.mk $(@:gallery-%=%)
 
 # bench/peers/jobs.py says what is run; peers-keep puts the page into docs/peers. ARGS: options of bench/peers.py
 peers peers-keep: setup-wall
@@ -323,7 +330,7 @@ coverage:
 # ---- style ----
 
 SOURCES := $(wildcard lib/*/*.[ch] tools/*.c docs/*.c docs/examples/*.c bench/*.c tests/*/*.[ch])
-SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
+SCRIPTS := $(wildcard scripts/*.sh scripts/man/*.sh scripts/readme/*.sh scripts/site/*.sh bench/*.sh docs/examples/*.sh tests/*/*.sh tests/*/*.t) .ci/run
 
 format:
 	clang-format -i $(SOURCES)
@@ -363,39 +370,29 @@ $(TIDY): lint-tidy-%:
 
 # ---- what is made for others ----
 
-# The manuals as HTML, in build/man
-MANUALS := $(filter-out man/nsd-scene.5,$(wildcard man/*)) $(COOKBOOK) $(SCENE)
+MANUALS := $(filter-out $(KEYED),$(wildcard man/*)) $(COOKBOOK) $(SCENE)
 
 # nsd-cookbook(7) is made of cookbook/*/, whatever recipes there are
 $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)scripts/man/cookbook.sh $(wildcard cookbook/*/) > $@
 
-# nsd-scene(5) has the tables of keys that nsd-gen knows
-$(SCENE): man/nsd-scene.5 scripts/man/keys.sh $B/nsd-gen
+# Keys of scenes are those that nsd-gen knows
+$(SCENE): build/man/%: man/% $(KEYED) scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
-	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh < $< > $@
+	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh $< > $@
 
-# Links to manuals that are not ours become plain text.
-BAR   := $(subst $() ,|,$(notdir $(MANUALS)))
-LINKS := 's/(class="Xr") href="(($(BAR))[.]html)/\1 HREF="\2/g; s|<a class="Xr" href="[^"]*">([^<]*)</a>|\1|g; s| HREF=| href=|g'
+# All pages, manuals and recipes as static HTML, by scripts/site/site.py; docs: its former name
+docs site: setup-site $(MANUALS)
+	scripts/site/site.py $B/site $(MANUALS)
+	@echo "site: $B/site/index.html" >&2
 
-docs: $(patsubst %,build/man/%.html,$(notdir $(MANUALS))) build/man/index.html build/man/style.css
+# The drawings of the manuals, SVG in docs/drawings
+drawings:
+	scripts/drawings/make.py docs/drawings
 
-build/man/nsd-cookbook.7.html build/man/nsd-scene.5.html: build/man/%.html: build/man/%
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/%.html: man/%
-	@mkdir -p $(@D)
-	mandoc -T html -O style=style.css,man=%N.%S.html $< | sed -E $(LINKS) > $@
-
-build/man/index.html: scripts/man/index.sh $(MANUALS)
-	@mkdir -p $(@D)
-	scripts/man/index.sh $(MANUALS) > $@
-
-build/man/style.css: scripts/man/style.css
-	@mkdir -p $(@D)
-	cp $< $@
+manuals-list: $(MANUALS)
+	@echo $^
 
 # Completion in bash and zsh, out of each tool's table of options
 COMPLETIONS := $(foreach t,$(notdir $(TOOLS)) nsd-fit,$B/completion/bash/$t $B/completion/zsh/_$t)
@@ -427,7 +424,7 @@ install-tools: all completions
 	for d in $(patsubst %/about,%,$(wildcard cookbook/*/about)); do install -d $(TO)/share/nsd/$$d && \
 	    install -m 644 $$d/* $(TO)/share/nsd/$$d && chmod 755 $(TO)/share/nsd/$$d/*.sh || exit 1; done
 	install -d $(TO)/share/nsd/campaign
-	install -m 755 scripts/campaign/*.sh scripts/campaign/array.sbatch $(TO)/share/nsd/campaign
+	install -m 755 scripts/campaign/*.sh scripts/campaign/*.sbatch $(TO)/share/nsd/campaign
 	install -m 644 scripts/campaign/*.mk scripts/campaign/*.gp $(TO)/share/nsd/campaign
 	install -m 644 $B/completion/bash/* $(TO)/share/bash-completion/completions
 	install -m 644 $B/completion/zsh/* $(TO)/share/zsh/site-functions
@@ -479,5 +476,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-keep peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-paper setup-wall setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

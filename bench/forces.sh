@@ -1,11 +1,11 @@
 #!/bin/bash
-# forces.sh [BALLS]: the forces of a pile at rest, contact by contact, by nsd with a stiffness and by a code of soft
+# forces.sh [BALLS [FOLDER]]: the forces of a pile at rest, contact by contact, by nsd with a stiffness and by a code of soft
 # spheres with the same springs (reference/dem.c), from the same start, at two stiffnesses. Tables on standard output,
-# those of docs/forces. Two to four minutes for the default of 500 balls.
+# those of docs/forces, and pictures in FOLDER, those of the softer contacts. Two to four minutes for the default of 500 balls.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source bench/common.sh
-n=${1:-500}
+n=${1:-500} folder=${2:-}
 mu=0.3
 T=0.03 # s: to rest
 half=$(awk "BEGIN { printf \"%.17g\", 0.003564814875007254 * ($n / 500) ^ (1 / 3) }")
@@ -17,6 +17,7 @@ jq -n --argjson n "$n" --argjson a "$half" --argjson mu $mu '{ dt: 1e-4, density
     walls: [{ box: { x: [-$a, $a], y: [-$a, $a], z: [0, null] } }] }' | nsd-gen - |
     nsd-step -n 3000 --every 3000 2> /dev/null | nsd-cat --last > "$work/settled.h5"
 larger=$(nsd-detect "$work/settled.h5" | nsd-info -c | jq -s '1 + 1.05 * ([.[] | -.gap] | max) / 4.4e-4')
+echo "larger by $(jq -n "($larger - 1) * 100 * 1e4 | round / 1e4") %" >&2
 half=$(jq -n "$half * $larger")
 nsd-info -p "$work/settled.h5" | jq -c --argjson s "$larger" '{ x: (.x | map(. * $s)), radius }' | jq -s . > "$work/bodies.json"
 
@@ -51,4 +52,6 @@ for k in 2e3 2e4; do
     echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
     /usr/bin/python3 bench/forces.py "$work/soft_spheres,_e=0.1.txt" "$work"/soft_spheres,_e=0.5.txt \
         "$work"/nsd,_rigid,_dt_1e-4.json "$work"/nsd,_dt_1e-4.json "$work"/nsd,_dt_1e-5.json "$work"/nsd,_dt_2e-6.json
+    [ -z "$folder" ] || [ $k != 2e3 ] || /usr/bin/python3 bench/forces.py --draw "$folder" "$work/bodies.json" "$work/soft_spheres,_e=0.1.txt" \
+        "$work/soft_spheres,_e=0.5.txt" "$work/nsd,_rigid,_dt_1e-4.json" "$work/nsd,_dt_1e-5.json"
 done

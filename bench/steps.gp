@@ -4,7 +4,7 @@ set output out
 set datafile separator "\t"
 set logscale xy
 set xlabel "balls"
-set ylabel "s a step"
+set ylabel "time per step, s"
 set xrange [500:2e6]
 set format "10^{%T}"
 set grid lc rgb "#dddddd"

@@ -15,7 +15,7 @@
 #   runs.json          a line for each run: what the tables are made from
 #   same.json          the same contact problems given to every method
 #   times.tsv          CPU seconds, apart: nothing else here differs from one machine to the next
-#   tables/, figures/  what the page shows; README.md, index.html: the page
+#   tables/, figures/  what the page shows; README.md: the page
 #
 # What is there is not made again: to start afresh remove the folder.
 
@@ -30,8 +30,8 @@ SHELL := /bin/bash
 .DELETE_ON_ERROR:
 .SECONDARY:
 
-all: $(OUT)/index.html
-	@echo "paper: $(OUT)/index.html, $(OUT)/README.md" >&2
+all: $(OUT)/README.md
+	@echo "paper: $(OUT)/README.md" >&2
 
 # ---- what the paper has, and what is run ----
 
@@ -246,7 +246,7 @@ $(OUT)/tables/claims.tsv: $(OUT)/runs.json $(OUT)/same.json $(OUT)/times.tsv $(O
 # ---- figures ----
 
 PILED_UP := example3 example3-2d
-SVG  := signorini coulomb coulombcone strobe closed $(foreach m,$(METHODS) exact,$(foreach s,$(SCENES),conv-$s-$m))
+SVG  := signorini coulomb coulombcone strobe closed $(SCENES:%=conv-%)
 PNG  := $(foreach s,$(DIMS),$s-start $s-end) $(PILED_UP:%=%-rest)
 
 # The law: one-contact problems that nsd-solve solved, on the graphs.
@@ -273,12 +273,12 @@ $(OUT)/history/%.tsv: $(OUT)/runs/%.h5 $P/history.jq | $(OUT)/history
 
 # Balls with nsd's settings, discs with the paper's: where they converge. Of example 2 the scene's own seed.
 shown_seed = $(if $(filter example2,$1),_9)
+histories = $(foreach m,$(METHODS) exact,$(OUT)/history/$1_$(if $(filter exact,$m),nsd,$2)_$m$(call shown_seed,$(firstword $(subst -, ,$1))).tsv)
 define convergence
-$(OUT)/figures/conv-$1-$2.svg: $(OUT)/history/$1_nsd_$2$(call shown_seed,$1).tsv \
-    $(OUT)/history/$1-2d_$(if $(filter exact,$2),nsd,paper)_$2$(call shown_seed,$1).tsv $P/convergence.gp | $(OUT)/figures
-	@gnuplot -e "method='$2'; balls='$$(word 1,$$^)'; discs='$$(word 2,$$^)'; out='$$@'" $P/convergence.gp
+$(OUT)/figures/conv-$1.svg: $(call histories,$1,nsd) $(call histories,$1-2d,paper) $P/convergence.gp | $(OUT)/figures
+	@gnuplot -e "balls='$(call histories,$1,nsd)'; discs='$(call histories,$1-2d,paper)'; out='$$@'" $P/convergence.gp
 endef
-$(foreach s,$(SCENES),$(foreach m,$(METHODS) exact,$(eval $(call convergence,$s,$m))))
+$(foreach s,$(SCENES),$(eval $(call convergence,$s)))
 
 $(OUT)/figures/closed.svg: $(OUT)/tables/closed.tsv $P/closed.gp | $(OUT)/figures
 	@gnuplot -e "data='$<'; out='$@'" $P/closed.gp
@@ -328,10 +328,6 @@ $(OUT)/README.md: $P/page.md $P/page.awk $(PARTS:%=$(OUT)/tables/%.tsv) \
     $(SVG:%=$(OUT)/figures/%.svg) $(PNG:%=$(OUT)/figures/%.png)
 	@awk -f $P/page.awk -v tables=$(OUT)/tables -v quick='$(QUICK)' $< > $@
 
-$(OUT)/index.html: $(OUT)/README.md $P/page.css
-	@pandoc --self-contained --standalone --from gfm --css $P/page.css \
-	    --metadata title="nsd: the paper, every table and figure" --resource-path $(OUT) -o $@ $<
-
 $(addprefix $(OUT)/,adhesion adhesion-same adhesion-times runs same rest tables closed data history figures) \
 $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 	@mkdir -p $@
@@ -340,6 +336,6 @@ $(addprefix $(OUT)/times/,0 $(rounds_example1) $(rounds_sweeps:%=sweeps-%)):
 all-keep: all
 	mkdir -p docs/paper
 	rm -rf docs/paper/tables docs/paper/figures
-	cp -r $(OUT)/README.md $(OUT)/index.html $(OUT)/runs.json $(OUT)/same.json $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
+	cp -r $(OUT)/README.md $(OUT)/runs.json $(OUT)/same.json $(OUT)/adhesion.json $(OUT)/adhesion-same.json $(OUT)/times.tsv $(OUT)/tables $(OUT)/figures docs/paper/
 
 .PHONY: all all-keep

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh run|check|paper|wall|all: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|check|wall|site|all: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
@@ -7,22 +7,22 @@ set -euo pipefail
 # without; all: make check-all
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libdeflate-dev libpng-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
-paper=("${run[@]}" pandoc)
 wall=("${run[@]}" python3-h5py python3-scipy)
-check=("${wall[@]}" python3-numpy python3-jsonschema perl libfclib-dev opencl-c-headers mandoc parallel time)
-all=("${check[@]}" pandoc shellcheck cppcheck clang libomp-dev libclang-rt-dev
+site=("${run[@]}" mandoc cmark-gfm python3)
+check=("${wall[@]}" "${site[@]:${#run[@]}}" python3-numpy python3-jsonschema perl libfclib-dev opencl-c-headers parallel time)
+all=("${check[@]}" shellcheck cppcheck clang libomp-dev libclang-rt-dev
     clang-tidy clang-format gcovr mmdebstrap
     openmpi-bin libopenmpi-dev libhdf5-openmpi-dev libtrilinos-zoltan-dev
     debhelper lintian valgrind zsh python3-vtk9 python3-ase python3-mdanalysis python3-gsd python3-sklearn liggghts
-    pocl-opencl-icd ocl-icd-libopencl1 ffmpeg chromium chromium-driver python3-selenium)
+    pocl-opencl-icd ocl-icd-libopencl1 ffmpeg chromium chromium-driver python3-selenium pngquant)
 
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
-paper) packages=("${paper[@]}") ;;
 wall) packages=("${wall[@]}") ;;
+site) packages=("${site[@]}") ;;
 check) packages=("${check[@]}") ;;
 all) packages=("${all[@]}") ;;
-*) echo "usage: setup.sh run|check|paper|wall|all" >&2; exit 64 ;;
+*) echo "usage: setup.sh run|check|wall|site|all" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

@@ -102,11 +102,11 @@ $(OUT)/map.svg: $(P)/map.gp $(SIZES:%=$(OUT)/%/follow.jsonl) $(OUT)/$(LAST)/step
 
 $(OUT)/spectrum.svg: $(P)/spectrum.gp $(SIZES:%=$(OUT)/%/spectrum.jsonl)
 	for n in $(SIZES); do jq -r '.eigenvalues[] | @tsv' $(OUT)/$$n/spectrum.jsonl; echo; echo; done >$(OUT)/spectrum.tsv
-	gnuplot -e 'out = "$(OUT)"; sizes = "$(SIZES)"' $<
+	gnuplot -e 'data = "$(OUT)/spectrum.tsv"; out = "$@"; sizes = "$(SIZES)"' $<
 
 # where readers find it: without the runs
 keep: all
 	rm -rf $(KEEP)
-	install -D -m 644 -t $(KEEP) $(OUT)/README.md $(OUT)/map.svg $(OUT)/spectrum.svg
+	install -D -m 644 -t $(KEEP) $(OUT)/README.md $(OUT)/map.svg $(OUT)/spectrum.svg $(OUT)/spectrum.tsv
 
 .PHONY: all keep

@@ -537,7 +537,8 @@ static void show_scene(const struct packing *p, const char *path)
     json_object_set_new(j, "theta", json_real(p->theta));
     set_times(j, p);
     set_loads(json_object_get(j, "walls"), p);
-    set_room(json_object_get(j, "room"), p);
+    set_room(json_object_get(j, "room"), p); // its former name
+    set_room(json_object_get(j, "servo"), p);
     if (cell_repeats(&p->cell)) set_cell(json_object_get(j, "cell"));
     json_object_set_new(j, "bodies", json_pack("[{s:s}]", "document", path));
     json_line(j);

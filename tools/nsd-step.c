@@ -57,7 +57,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "forces", &forces,
       .help = "also keep their forces as vectors in N; implies --contacts" },
     { CLI_FLAG, 0, "sums", &sums,
-      .help = "keep sums over steps of forces and work on walls: nsd-stat -m sums" },
+      .help = "keep sums over steps of forces and work on walls: nsd-stat -m wall_loads" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the reactions of the last step" },
     { CLI_UNFLAG, 0, "cold", &options.warm,
@@ -432,9 +432,10 @@ static bool is_kept(const struct packing *p, int64_t step, int64_t k)
 }
 
 /* What small steps cannot do */
-static void say_lacks(const struct packing *p)
+static void say_lacks(const struct run *r, const struct packing *p)
 {
-    const char *lacks = processes_size() > 1 ? "several processes" : small_lacks(p);
+    const char *lacks =
+        r->f.distributed ? "bodies that no process has all of (--order block)" : small_lacks(p);
     if (!(total.radii > 0) || !lacks || total.lacks) return;
     warn("no small steps with %s yet: such steps are made at once", lacks);
     total.lacks = true;
@@ -469,7 +470,7 @@ static void begin_step(struct run *r)
     struct failure failure = { 0 };
     struct packing *p = &r->f.packing;
     const double had = p->dt;
-    say_lacks(p);
+    say_lacks(r, p);
     if (driver_begin(&r->driver, p, tol, &r->f.contacts, &failure)) die_why(&failure);
     count_waiting(p);
     if (p->dt != had && p->halved == ADAPT_MOST && !total.shortest++)
@@ -554,12 +555,19 @@ static void keep_stopped(struct run *r, int64_t k)
 }
 
 /* Where processes exchange velocities for longer than they sweep, fewer are faster. */
-static void warn_small(const struct frame *f, enum order order)
+static void warn_processes(const struct frame *f, const struct step_opt *o)
 {
+    const enum order order = o->order;
     // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
     const double least = order == ORDER_BLOCK ? 2000 : 20000;
     const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
     const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
+    if (size > 1 && steps && o->small > 0) {
+        warn("%d processes: the first makes all small steps, and the others wait: use threads, "
+             "nsd-step -j %d, or --small-steps 0",
+             size, size);
+        return;
+    }
     if (size <= most || !steps) return;
     if (most == 1)
         warn(
@@ -579,8 +587,8 @@ static void begin(struct run *r)
     struct frame *f = &r->f;
     r->driver.o = options_step(f->packing.dt, false);
     total.radii = options_small_of(&options, &f->packing);
-    if (processes_size() == 1) r->driver.o.small = total.radii;
-    warn_small(f, r->driver.o.order);
+    if (!f->distributed) r->driver.o.small = total.radii;
+    warn_processes(f, &r->driver.o);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
     if (steps && f->packing.breakage && processes_size() > 1)
         die(EX_UNAVAILABLE, "grains that break need one process: use threads, nsd-step -j %d",

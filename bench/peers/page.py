@@ -2,6 +2,7 @@
 """page.py RESULTS.json ... [--plots DIR]: the page of make peers, from kept results, one file a machine (peers.py --mode
 keep); with --plots the curves as well, DIR/JOB.svg of the first file, by gnuplot. It runs nothing and measures nothing."""
 import json
+import math
 import os
 import subprocess
 import sys
@@ -63,12 +64,29 @@ def at(curve, t):
     return None
 
 
+NOTES = {"penetration": "A heavy ball that strikes light ones loses energy differently in the two codes. nsd's law of impact does not depend on the rate: "
+         "from light balls that rest on a floor a heavy one rebounds with e v. The dashpots of LIGGGHTS, which give a pair of light balls the restitution e, "
+         "hardly act on the heavy mass, and it keeps almost all its speed (0.800 against 1.980 m/s for e = 0.4 and 2 m/s, one light ball between; nsd-methods(7), "
+         "Simultaneous impacts). So the steel ball loses more in nsd, and rebounds with less."}
+
+
+def common_time(job):
+    """The time that nsd and LIGGGHTS, soft, both have simulated."""
+    return min([v["series"]["t"][-1] for k, v in job["variants"].items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
+
+
+def blind(job):
+    """Whether nsd and LIGGGHTS have the same observable, to four digits, until the shorter run ends."""
+    last = {text(at(job["variants"].get(k, {}).get("series") or {"t": [], "": []}, common_time(job)), 4) for k in ("nsd", "liggghts-soft")}
+    return len(last) == 1 and last != {""}
+
+
 def job_section(name, job, quick):
     variants = job["variants"]
     out = [f"## {job['title'].replace(', a start by others', ', start published by others')}", ""]
     if job["balls"] != job["published"]:
         out += [f"Run here with {job['balls']} balls.", ""]
-    common = min([v["series"]["t"][-1] for k, v in variants.items() if v.get("series") and k in ("nsd", "liggghts-soft")], default=0)
+    common = common_time(job)
     out += [row("code", "dt, s", "simulated, s", "CPU s/s", "wall s/s", "MiB", f"{job['label'].split(',')[0]} at {text(common)} s"),
             row("---", "---", "---", "---", "---", "---", "---")]
     for key, (title, _) in ROWS.items():
@@ -92,8 +110,12 @@ def job_section(name, job, quick):
         out.append(f"nsd needs {text(r, 2)} times the CPU of LIGGGHTS, soft{'' if r <= GOAL else f', more than {GOAL}'}.")
     out.append(f"Its steps take {text(own['sweeps'])} sweeps; the largest overlap is {text(own['overlap']) or 'unknown'} of a radius"
                + (f"; {own['unconverged']} steps have not converged." if own.get("unconverged") else "."))
+    if name.split("-given", maxsplit=1)[0] in NOTES:
+        out += ["", NOTES[name.split("-given", maxsplit=1)[0]]]
     if job.get("profile"):
         out += ["", "Functions of nsd by CPU: " + ", ".join(f"{f} {share:.0f} %" for f, share in job["profile"]) + "."]
+    if blind(job):
+        out += ["", "Until then both codes have the same value to four digits: the run was stopped before the grains changed it."]
     values = seen(job)
     if len(values) == 1:  # a job that was cut before anything happened
         return out + ["", f"No picture: {job['label']} stays {text(values.pop())} over the time simulated.", ""]
@@ -162,10 +184,10 @@ def growth_section(growth):
 def page(results):
     small = any(job["variants"].get("nsd-small", {}).get("runs") for r in results for job in r["jobs"].values())
     out = ["# nsd compared with LIGGGHTS and Yade", "",
-           "`make peers` runs seven jobs with each code from the same start, with the same geometry, friction and restitution, and writes this page "
-           "(`QUICK=1`: small jobs, in minutes). LIGGGHTS and Yade are optional Debian packages. CPU is user and system time per simulated second. "
+           "`make peers` runs seven jobs with nsd and LIGGGHTS from the same start, with the same geometry, friction and restitution, and writes this page "
+           "(`QUICK=1`: small jobs, in minutes). Yade runs one of them, settling. LIGGGHTS and Yade are optional Debian packages. CPU is user and system time per simulated second. "
            "Wall is real time per simulated second, which is meaningful only if the machine has no other load. nsd makes one solve per step "
-           "(`--small-steps 0`) and has its defaults otherwise, except `-j`; " + ("\"small steps\" is its default. " if small else
+           "(`--small-steps 0`) with the time step of the job's scene, and has its defaults otherwise, except `-j`; " + ("\"small steps\" is its default. " if small else
            "small steps, its default, are not on this page yet. ") +
            "\"dt auto\" is the time step that nsd-gen(1) `--check` suggests. LIGGGHTS and Yade use Hertzian contacts with tangential history, "
            "Poisson's ratio 0.3, and 0.2 of the Rayleigh time as time step. \"cut\": the run was stopped at a limit of CPU seconds, and its cost is "
@@ -194,36 +216,51 @@ def page(results):
     return "\n".join(out)
 
 
+def step_of(end):
+    """A round step of some five labels of an axis from 0"""
+    unit = 10 ** math.floor(math.log10(end / 5))
+    return next(unit * k for k in (1, 2, 5, 10) if unit * k >= end / 5 * 0.99)
+
+
 def plot(name, job, folder):
     path = os.path.join(folder, name)
     if len(seen(job)) == 1:
         if os.path.exists(path + ".svg"):
             os.remove(path + ".svg")
         return
-    drawn, data = [], ""
-    for key, (title, style) in ROWS.items():
-        curve = job["variants"].get(key, {}).get("series")
-        if not style or not curve:
-            continue
-        names = [k for k in curve if k != "t"]
-        data += "".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in names))) + "\n\n"
-        drawn.append((title, style, len(names)))
+    runs = {title: (style, job["variants"][key]["series"]) for key, (title, style) in ROWS.items() if style and job["variants"].get(key, {}).get("series")}
+    end = max(curve["t"][-1] for _, curve in runs.values())
+    # of a run that was stopped at once no curve is seen: it stands in a note instead of the legend
+    drawn = {title: run for title, run in runs.items() if run[1]["t"][-1] >= 0.03 * end}
+    note = "; ".join(f"{title}: {text(runs[title][1]['t'][-1])} s" for title in runs if title not in drawn)
+    data = "".join("".join(" ".join(map(str, values)) + "\n" for values in zip(curve["t"], *(curve[k] for k in curve if k != "t"))) + "\n\n"
+                   for _, curve in drawn.values())
     with open(path + ".dat", "w") as f:
         f.write(data)
     two = name == "settling"  # the second observable below the first
-    script = f"set terminal svg size 720,{860 if two else 460} background 'white' font 'sans,17'; set output '{path}.svg'; "
-    script += "set grid lc rgb '#dddddd'; set key outside top center horizontal maxcols 2 width 2; set xlabel 'time, s'; "
+    script = f"set terminal svg size 720,{900 if two else 480} background 'white' font 'sans,17'; set output '{path}.svg'; set border 3; set tics nomirror; "
+    script += f"set grid lc rgb '#dddddd'; set key outside top center horizontal maxcols 2 width 2; set xlabel 'time, s'; set xrange [0:{end}]; set xtics {text(step_of(end))}; "
+    if note:
+        script += f"set label 'stopped at once: {note}' at graph 0.98, graph 0.06 right font 'sans,13' tc rgb '#555555'; "
+    # nsd: solid, blue; LIGGGHTS: dashed, red; Yade: green; paler: the second variant. A dot where a run was stopped
     colour = {1: "#1b6ca8", 2: "#7fb2d8", 3: "#c8402c", 4: "#e8a090", 5: "#4a7d3a", 6: "#0b3c5d"}
 
-    def curves(column, low=""):
-        return "plot " + ", ".join(f"'{path}.dat' index {k} using 1:{column} with lines lw {2.5 if style in (1, 3) else 1.5} dt {2 if style in (3, 4) else 1} lc rgb '{colour[style]}' title '{title}'"
-                                   for k, (title, style, _) in enumerate(drawn)) + "; "
+    def curves(column):
+        parts = []
+        for k, (title, (style, curve)) in enumerate(drawn.items()):
+            last = curve["t"][-1]
+            named = title if last > 0.98 * end else f"{title}, to {text(last)} s"
+            looks = f"lc rgb '{colour[style]}'"
+            parts.append(f"'{path}.dat' index {k} using 1:{column} with lines lw {4 if style == 1 else 2.5} {'dt (6, 5) ' if style in (3, 4) else ''}{looks} title '{named}'")
+            if last <= 0.98 * end:
+                parts.append(f"'{path}.dat' index {k} using 1:{column} every ::{len(curve['t']) - 1} with points pt 7 ps 1 {looks} notitle")
+        return "plot " + ", ".join(parts) + "; "
 
     if two:
         script += "set multiplot layout 2,1; "
     script += f"set ylabel '{job['label']}'; " + curves(2)
     if two:
-        script += "set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy, m g d a ball'; " + curves(3)
+        script += "unset key; set logscale y; set format y '10^{%T}'; set ylabel 'kinetic energy per ball, m g d'; " + curves(3)
     subprocess.run(["gnuplot", "-e", script], check=True)
     os.remove(path + ".dat")
 

@@ -24,16 +24,16 @@ static double kn = 1e4, kt = 0, e = 0.1, mu = 0.5, muw = -1, dt = 0, ew = -1, g[
               every = 1;
 static int nw;
 static double wp[32][3], wn[32][3], wuntil[32];
-static double H[3][3], Hd[3][3], L[3][3], Hi[3][3], tgt[3][3], Mc = 10, Mfix = 0, damp = 0;
-static int per[3], anyper, ctl[3][3], mean_on = 0;
-static double Pmean, srate;
+static double H[3][3], Hd[3][3], L[3][3], Hi[3][3], tgt[3][3], Mc = 10;
+static int per[3], anyper, ctl[3][3];
 static double skin;
 static double out0[2] = { -1e9, 1e9 };
 static int outside = 0;
-static double mur = 0, coh = 0;
+static double coh = 0;
 static double gamt = 0, bgd = 0;
 static double crad = 0, com = 0;
-static char *frames;
+static char *frames, *rows_file;
+static double range; // of the attraction, beyond touch
 static int hyst = 0;
 static int measure = 0;
 static double tm0 = 0;
@@ -59,10 +59,6 @@ static C *find(C *l, int n, int j, int *s)
             return l + k;
     return 0;
 }
-static double xl(int i, int d)
-{
-    return b[i].x[d];
-}
 static void addn(int i, int j, int *s, C *old, int no)
 {
     if (nn[i] >= NC) {
@@ -80,12 +76,62 @@ static void addn(int i, int j, int *s, C *old, int no)
         c->dm = f->dm;
     }
 }
-static void wrap(void)
-{ // keep in cell; shift neighbour images accordingly -> called before rebuild, with shifts recorded
-}
 static C *oldnb;
 static int *oldnn;
 static int (*img)[3];
+// pairs of a large cell with right angles that is periodic in all directions, by cells of the width of the largest ball
+static int cells_fit(int *n)
+{
+    double rm = 0;
+    if (dim != 3 || !per[0] || !per[1] || !per[2]) return 0;
+    for (int i = 0; i < N; i++)
+        if (b[i].r > rm) rm = b[i].r;
+    for (int k = 0; k < 3; k++) {
+        for (int q = 0; q < 3; q++)
+            if (q != k && H[q][k] != 0) return 0;
+        n[k] = (int)(H[k][k] / (2 * rm + skin));
+        if (n[k] < 3) return 0;
+        if (n[k] > 200) n[k] = 200;
+    }
+    return 1;
+}
+static void pairs_by_cells(const int *n)
+{
+    size_t all = (size_t)n[0] * n[1] * n[2];
+    int *head = malloc(all * sizeof(int)), *next = malloc(N * sizeof(int));
+    int(*at)[3] = malloc(N * sizeof *at);
+    for (size_t k = 0; k < all; k++) head[k] = -1;
+    for (int i = N - 1; i >= 0; i--) {
+        for (int k = 0; k < 3; k++) {
+            at[i][k] = (int)(b[i].x[k] / H[k][k] * n[k]);
+            if (at[i][k] >= n[k]) at[i][k] = n[k] - 1;
+        }
+        size_t c = ((size_t)at[i][2] * n[1] + at[i][1]) * n[0] + at[i][0];
+        next[i] = head[c];
+        head[c] = i;
+    }
+    for (int i = 0; i < N; i++)
+        for (int m = 0; m < 27; m++) {
+            int c[3], shift[3], step[3] = { m % 3 - 1, m / 3 % 3 - 1, m / 9 - 1 };
+            for (int k = 0; k < 3; k++) {
+                c[k] = at[i][k] + step[k];
+                shift[k] = c[k] < 0 ? -1 : c[k] >= n[k] ? 1 : 0;
+                c[k] -= shift[k] * n[k];
+            }
+            for (int j = head[((size_t)c[2] * n[1] + c[1]) * n[0] + c[0]]; j >= 0; j = next[j]) {
+                double R = b[i].r + b[j].r + skin, d2 = 0;
+                if (j <= i) continue;
+                for (int d = 0; d < 3; d++) {
+                    double y = b[j].x[d] - b[i].x[d] + H[d][d] * shift[d];
+                    d2 += y * y;
+                }
+                if (d2 < R * R) addn(i, j, shift, oldnb + (size_t)i * NC, oldnn[i]);
+            }
+        }
+    free(head);
+    free(next);
+    free(at);
+}
 static void rebuild(void)
 {
     memcpy(oldnb, nb, sizeof(C) * (size_t)N * NC);
@@ -118,7 +164,10 @@ static void rebuild(void)
     }
     for (int i = 0; i < N; i++) nn[i] = 0;
     int z[3] = { 0, 0, 0 };
-    if (anyper) {
+    int cells[3];
+    if (anyper && cells_fit(cells))
+        pairs_by_cells(cells);
+    else if (anyper) {
         int lo[3], hi[3];
         for (int k = 0; k < 3; k++) {
             lo[k] = per[k] ? -1 : 0;
@@ -207,7 +256,7 @@ static void rebuild(void)
             if (R + b[i].r + skin > crad) addn(i, -32, z, oldnb + (size_t)i * NC, oldnn[i]);
         }
     for (int i = 0; i < N; i++)
-        if (b[i].alive)
+        if (b[i].alive && !b[i].fixed)
             for (int k = 0; k < nw; k++) {
                 double gp = 0;
                 for (int d = 0; d < 3; d++) gp += wn[k][d] * (b[i].x[d] - wp[k][d]);
@@ -254,6 +303,12 @@ static void forces(void)
                     c->touch = 0;
                     c->dm = 0;
                     c->t[0] = c->t[1] = c->t[2] = 0;
+                    if (coh > 0 && d2 < (R + range) * (R + range))
+                        for (int d = 0; d < 3; d++) {
+                            double pull = coh * x[d] / sqrt(d2);
+                            F[i][d] += pull;
+                            F[j][d] -= pull;
+                        }
                     continue;
                 }
                 dist = sqrt(d2);
@@ -378,10 +433,6 @@ static void forces(void)
     // torque signs: on i at +la n, force -f: la n x (-f) = -la tq ; on j at -lb n force f: -lb n x f = -lb tq
 }
 static double V;
-static double arg(char *s, char *k)
-{
-    return atof(s + strlen(k));
-}
 int main(int ac, char **av)
 {
     char *in = av[1], *cfile = 0;
@@ -410,6 +461,7 @@ int main(int ac, char **av)
         A("measure", measure);
         A("from", tm0);
         A("coh", coh);
+        A("range", range);
         A("hyst", hyst);
         A("crad", crad);
         A("comega", com);
@@ -452,6 +504,7 @@ int main(int ac, char **av)
         else if (!strncmp(s, "dump=", 5)) dump = s + 5;
         else if (!strncmp(s, "contacts=", 9)) cfile = s + 9;
         else if (!strncmp(s, "frames=", 7)) frames = s + 7;
+        else if (!strncmp(s, "rows=", 5)) rows_file = s + 5, measure = 1;
         else
         {
             fprintf(stderr, "what is %s\n", s);
@@ -492,7 +545,6 @@ int main(int ac, char **av)
     if (!kt) kt = 0.8 * kn;
     if (!dt) dt = M_PI * sqrt(mmin / 2 / kn) / 25;
     skin = 0.3 * rm;
-    double acc = 1e300;
     double next = every;
     if (dim == 2 && anyper) {
         H[2][2] = 1;
@@ -500,7 +552,7 @@ int main(int ac, char **av)
     if (anyper)
         for (int k = 0; k < 3; k++)
             if (!per[k] && H[k][k] == 0) H[k][k] = 1;
-    double sm[3][3] = { { 0 } }, phis = 0, nav = 0;
+    double sm[3][3] = { { 0 } }, phis = 0, nav = 0, deepest = 0;
     double Vs = 0;
     for (int i = 0; i < N; i++)
         if (!b[i].fixed) Vs += dim == 2 ? M_PI * b[i].r * b[i].r : 4. / 3 * M_PI * pow(b[i].r, 3);
@@ -622,20 +674,31 @@ int main(int ac, char **av)
         }
         t += dt;
         steps++;
+        if (maxov > deepest) deepest = maxov;
         if (measure && t >= tm0) {
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 3; k++) sm[i][k] += sig[i][k] / V;
-            phis += Vs / V;
+            phis += anyper ? Vs / V : 0;
             nav++;
         }
         if (t >= next - 1e-9) {
             next += every;
             if (frames) {
                 static FILE *fo;
-                if (!fo) fo = fopen(frames, "w");
+                if (!fo && !(fo = fopen(frames, "w"))) {
+                    perror(frames);
+                    return 1;
+                }
+                fprintf(fo, "frame %.17g", t);
+                for (int k = 0; k < 9; k++) fprintf(fo, " %.17g", H[k % 3][k / 3]);
+                for (int k = 0; k < 9; k++) fprintf(fo, " %.17g", Hd[k % 3][k / 3]);
+                fprintf(fo, "\n");
                 for (int i = 0; i < N; i++)
-                    fprintf(fo, "%g %d %.8g %.8g %.8g %.8g %.8g\n", t, i, b[i].x[0], b[i].x[1],
-                            b[i].r, b[i].v[0], b[i].v[1]);
+                    if (b[i].alive)
+                        fprintf(fo, "%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g %.17g\n", i,
+                                b[i].x[0], b[i].x[1], b[i].x[2], b[i].v[0], b[i].v[1], b[i].v[2],
+                                b[i].w[0], b[i].w[1], b[i].w[2]);
+                fflush(fo);
             }
             double K = 0, com = 0, M = 0;
             for (int i = 0; i < N; i++)
@@ -644,17 +707,35 @@ int main(int ac, char **av)
                     com += b[i].m * b[i].x[dim - 1];
                     M += b[i].m;
                 }
-            if (anyper && measure) {
-                int k = dim - 1;
-                printf("%g sxx %.5f syy %.5f sxy %.5f szz %.5f phi %.5f nc %d slide %d K %.3g ov "
-                       "%.3g\n",
-                       t, sm[0][0] / nav, sm[1][1] / nav, sm[0][1] / nav, sm[2][2] / nav,
-                       phis / nav, ncont, nslide, K, maxov);
-                (void)k;
+            if (rows_file) {
+                static FILE *ro;
+                int n0 = 0, n1 = 0, n = 0;
+                if (!ro && !(ro = fopen(rows_file, "w"))) {
+                    perror(rows_file);
+                    return 1;
+                }
+                for (int i = 0; i < N; i++)
+                    if (b[i].alive && !b[i].fixed) n++, n0 += zc[i] == 0, n1 += zc[i] == 1;
+                fprintf(ro, "{\"time\":%.10g,\"stress\":{\"tensor\":[", t);
+                for (int i = 0; i < dim; i++)
+                    for (int k = 0; k < dim; k++)
+                        fprintf(ro, "%s%.10g%s", k ? "," : "[", sm[i][k] / nav,
+                                k < dim - 1    ? ""
+                                : i == dim - 1 ? "]"
+                                               : "],");
+                double p = 0;
+                for (int i = 0; i < dim; i++) p += sm[i][i] / nav / dim;
+                fprintf(ro,
+                        "],\"p\":%.10g},\"fraction\":{\"fraction\":%.10g},\"coordination\":{"
+                        "\"z_mechanical\":%.10g},\"overlap\":%.4g}\n",
+                        p, phis / nav, n - n0 - n1 > 0 ? (2. * ncont - n1) / (n - n0 - n1) : 0,
+                        deepest / rmin);
+                fflush(ro);
                 memset(sm, 0, sizeof sm);
                 phis = nav = 0;
-            } else
-                printf("%g K %.4g com %.6g nc %d ov/r %.3g\n", t, K, com / M, ncont, maxov / rmin);
+            }
+            printf("%g K %.4g com %.6g nc %d ov/r %.3g\n", t, K, com / M, ncont, deepest / rmin);
+            deepest = 0;
             fflush(stdout);
         }
     }

@@ -12,8 +12,8 @@ jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "
     nsd-gen - >filled.h5
 step "$load" --until "${UNTIL:-0.3}" -o preshear.h5 filled.h5
 # the stresses on the head, Pa
-stresses() { nsd-stat -m sums_by_name "$1" | jq -r --argjson s "$size" '(.sums_by_name.name | index("head")) as $k | (2300e-6 * $s * $s) as $a |
-    select(.sums_by_name.span[0]) | [.time, .sums_by_name.force[$k][2] / $a, (.sums_by_name.force[$k][0] | fabs) / $a] | @tsv'; }
+stresses() { nsd-stat -m wall_loads_by_name "$1" | jq -r --argjson s "$size" '(.wall_loads_by_name.name | index("head")) as $k | (2300e-6 * $s * $s) as $a |
+    select(.wall_loads_by_name.span[0]) | [.time, .wall_loads_by_name.force[$k][2] / $a, (.wall_loads_by_name.force[$k][0] | fabs) / $a] | @tsv'; }
 stresses preshear.h5 | tail -n 12 | awk '{ s += $2; t += $3 } END { printf "1\t%.0f\t%.0f\t%.0f\n", s / NR, t / NR, s / NR }' >locus.tsv
 for part in 0.3 0.5 0.75; do # of the load: the peak of the mean over three frames
     step "$(jq -n "$part * $load")" --until "$(jq -n "${UNTIL:-0.3} + ${SHEAR:-0.05}")" -o "shear-$part.h5" preshear.h5

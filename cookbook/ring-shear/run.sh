@@ -18,9 +18,9 @@ jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "
     nsd-gen - >filled.h5
 step "$load" --until "${UNTIL:-0.3}" -o preshear.h5 filled.h5
 # the stresses on the head, Pa, by its area and its lever
-stresses() { nsd-stat -m sums_by_name "$1" | jq -r --argjson s "$size" --argjson c "$cell" '(.sums_by_name.name | index("head")) as $k | ($c.from * $s / 1000) as $r | ($c.to * $s / 1000) as $q |
+stresses() { nsd-stat -m wall_loads_by_name "$1" | jq -r --argjson s "$size" --argjson c "$cell" '(.wall_loads_by_name.name | index("head")) as $k | ($c.from * $s / 1000) as $r | ($c.to * $s / 1000) as $q |
     (3.14159265 * ($q * $q - $r * $r)) as $a | (2 / 3 * ($q * $q * $q - $r * $r * $r) / ($q * $q - $r * $r)) as $lever |
-    select(.sums_by_name.span[0]) | [.time, .sums_by_name.force[$k][2] / $a, (.sums_by_name.torque[$k][2] | fabs) / ($lever * $a)] | @tsv'; }
+    select(.wall_loads_by_name.span[0]) | [.time, .wall_loads_by_name.force[$k][2] / $a, (.wall_loads_by_name.torque[$k][2] | fabs) / ($lever * $a)] | @tsv'; }
 stresses preshear.h5 | tail -n 12 | awk '{ s += $2; t += $3 } END { printf "1\t%.0f\t%.0f\n", s / NR, t / NR }' >locus.tsv
 for part in 0.3 0.5 0.75; do # of the load: the peak of the mean over three frames
     step "$(jq -n "$part * $load")" --until "$(jq -n "${UNTIL:-0.3} + ${SHEAR:-0.05}")" -o "shear-$part.h5" preshear.h5

@@ -16,6 +16,13 @@ static const struct renamed table[] = {
     { "document", "newton_eps", "newton_tolerance", false },
     { "nsd-solve nsd-step nsd_set", "paper", "protocol=paper", false },
     { "scene", "overlap", "allow_overlap", true },
+    { "scene", "room", "servo", true },
+    { "measure", "boundaries", "walls", true },
+    { "measure", "sums", "wall_loads", true },
+    { "measure", "sums_by_name", "wall_loads_by_name", true },
+    { "measure", "sums_by_face", "wall_loads_by_face", true },
+    { "quantity", "boundary", "wall", true },
+    { "quantity", "rub", "sliding_work", true },
 };
 enum { RENAMED = sizeof table / sizeof table[0] };
 

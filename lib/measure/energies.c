@@ -51,7 +51,7 @@ static const struct quantity quantities[] = {
     { "impact", "J", 1, "part of dissipated by normal velocities" },
     { "friction", "J", 1,
       "part of dissipated by tangential velocities and by rolling and pivoting" },
-    { "boundaries", "J", 1, "work of boundaries on bodies in that step" },
+    { "boundaries", "J", 1, "work of walls on bodies in that step" },
     { "peculiar", "J", 1, "kinetic energy of translation relative to the flow of the cell" },
     { 0 },
 };

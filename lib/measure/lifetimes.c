@@ -6,7 +6,7 @@
 
 static const struct quantity quantities[] = {
     { "since", "s", 1, "time since the previous frame" },
-    { "pairs", "1", 1, "number of pairs of bodies, or of a boundary and a body, in contact" },
+    { "pairs", "1", 1, "number of pairs of bodies, or of a wall and a body, in contact" },
     { "made", "1", 1, "number of those that formed since the previous frame" },
     { "ended", "1", 1, "number of pairs in contact then and not now" },
     { "age", "s", 1, "mean time in contact of these pairs, at most since the first frame" },
@@ -50,7 +50,7 @@ const struct measure measure_lifetimes = {
 /* ---- each of those that ended ---- */
 
 static const struct quantity each[] = {
-    { "a", "1", 1, "id of a body, or -1-w for boundary w" },
+    { "a", "1", 1, "id of a body, or -1-w for wall w" },
     { "b", "1", 1, "id of the other body" },
     { "began", "s", 1, "time of the first frame in contact" },
     { "ended", "s", 1, "time of the first frame not in contact" },

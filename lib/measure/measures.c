@@ -1,6 +1,7 @@
 #include "measure/measures.h"
 
 #include "base/nearest.h"
+#include "base/renamed.h"
 #include "base/text.h"
 #include "measure/follow.h"
 #include "measure/photo.h"
@@ -9,6 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { OLD_MEASURES = 8, MOST_QUANTITIES = 20 }; /* more than there are */
 
 static const struct measure *const measures[] = {
     &measure_fraction,
@@ -52,10 +55,34 @@ const struct measure *measure_at(int k)
     return measures[k];
 }
 
+/* A measure under its old name, with the old names of its quantities: scripts that ask for it read these. One more for each
+   old name [base/renamed.h]. */
+static const struct measure *measure_renamed(const struct renamed *r, const struct measure *is)
+{
+    static struct measure old[OLD_MEASURES];
+    static struct quantity quantity[OLD_MEASURES][MOST_QUANTITIES + 1];
+    int k = 0, q = 0;
+    while (k < OLD_MEASURES && old[k].name && strcmp(old[k].name, r->was) != 0) k++;
+    if (k == OLD_MEASURES) return is;
+    old[k] = *is, old[k].name = r->was;
+    for (; is->quantity[q].name && q < MOST_QUANTITIES; q++) {
+        quantity[k][q] = is->quantity[q];
+        for (int row = 0; (r = renamed_at(row)); row++)
+            if (!strcmp(r->in, "quantity") && !strcmp(r->is, is->quantity[q].name))
+                quantity[k][q].name = r->was;
+    }
+    old[k].quantity = quantity[k];
+    return &old[k];
+}
+
 const struct measure *measure_named(const char *name, size_t n)
 {
+    const struct renamed *r = renamed_find("measure", name, n);
+    const char *is = r ? r->is : name;
+    if (r) n = strlen(is);
     for (int k = 0; measures[k]; k++)
-        if (!strncmp(measures[k]->name, name, n) && !measures[k]->name[n]) return measures[k];
+        if (!strncmp(measures[k]->name, is, n) && !measures[k]->name[n])
+            return r ? measure_renamed(r, measures[k]) : measures[k];
     return NULL;
 }
 

@@ -19,11 +19,12 @@
         { "power", "W", 1, "mean power of the bodies on the moving wall" },                        \
         { "friction", "J", 1,                                                                      \
           "energy dissipated by friction in the span, rolling and pivoting friction included" },   \
-        { "rub", "J", 1, "sum of normal force times sliding distance in the span" },               \
-        { "wear", "m3", 1, "volume worn in the span by Archard's law, coefficient times rub" },
+        { "sliding_work", "J", 1, "sum of normal force times sliding distance in the span" },      \
+        { "wear", "m3", 1,                                                                         \
+          "volume worn in the span by Archard's law, coefficient times sliding_work" },
 
 static const struct quantity of_walls[] = {
-    { "boundary", "1", 1, "number of the wall" },
+    { "wall", "1", 1, "number of the wall" },
     { "name", "name", 1, "name of the wall" },
     NUMBERS{ 0 },
 };
@@ -32,7 +33,7 @@ static const struct quantity of_names[] = {
     NUMBERS{ 0 },
 };
 static const struct quantity of_faces[] = {
-    { "boundary", "1", 1, "number of the wall" },
+    { "wall", "1", 1, "number of the wall" },
     { "name", "name", 1, "name of the part, else of the wall" },
     { "face", "1", 1, "number of the triangle, from 0; other walls have one face" },
     NUMBERS{ 0 },
@@ -193,7 +194,7 @@ static int faces_rows(struct table *t, const struct snapshot *s, struct failure 
 }
 
 const struct measure measure_sums = {
-    .name = "sums",
+    .name = "wall_loads",
     .help = "force, pressure, work and wear of each wall over all steps",
     .quantity = of_walls,
     .keeps_to = KEEPS_TO_WALLS,
@@ -202,7 +203,7 @@ const struct measure measure_sums = {
     .rows = walls_rows,
 };
 const struct measure measure_sums_by_name = {
-    .name = "sums_by_name",
+    .name = "wall_loads_by_name",
     .help = "the same by name, for walls and parts of walls",
     .quantity = of_names,
     .keeps_to = KEEPS_TO_WALLS,
@@ -211,7 +212,7 @@ const struct measure measure_sums_by_name = {
     .rows = sums_names_rows,
 };
 const struct measure measure_sums_by_face = {
-    .name = "sums_by_face",
+    .name = "wall_loads_by_face",
     .help = "the same by face: triangles of meshes, and other walls",
     .quantity = of_faces,
     .keeps_to = KEEPS_TO_WALLS,

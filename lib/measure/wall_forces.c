@@ -15,14 +15,14 @@ struct wall_forces_sum {
 };
 
 static const struct quantity quantities[] = {
-    { "boundary", "1", 1, "number of the boundary; -1: all fixed bodies" },
+    { "wall", "1", 1, "number of the wall; -1: all fixed bodies" },
     { "contacts", "1", 1, "number of contacts with non-zero normal force" },
-    { "force", "N", 3, "force of the bodies on the boundary" },
+    { "force", "N", 3, "force of the bodies on the wall" },
     { "torque", "N m", 3,
       "torque of the same about --point, rolling and pivoting friction included" },
     { "normal", "N", 1, "sum of normal forces" },
     { "tangential", "N", 1, "sum of the magnitudes of tangential forces" },
-    { "name", "name", 1, "name of the boundary" },
+    { "name", "name", 1, "name of the wall" },
     { 0 },
 };
 
@@ -51,7 +51,7 @@ static int wall_forces_rows(struct table *t, const struct snapshot *s, struct fa
     for (int64_t i = 0; i < p->n; i++) fixed = fixed || p->mass[i] == 0;
     // wall w at [w], fixed bodies behind them
     struct wall_forces_sum *push = calloc((size_t)p->walls + 1, sizeof *push);
-    if (!push) return failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!push) return failure_set(failure, EX_SOFTWARE, "no memory for the forces on walls");
     for (int64_t i = 0; s->s->found && i < s->s->n; i++) {
         const struct contact *c = &s->s->c[i];
         if (c->a < 0)
@@ -74,8 +74,8 @@ static int wall_forces_rows(struct table *t, const struct snapshot *s, struct fa
 }
 
 const struct measure measure_wall_forces = {
-    .name = "boundaries",
-    .help = "forces and torques on boundaries",
+    .name = "walls",
+    .help = "forces and torques on walls",
     .quantity = quantities,
     .keeps_to = KEEPS_TO_WALLS,
     .list = true,
@@ -113,7 +113,7 @@ static int wall_forces_names_rows(struct table *t, const struct snapshot *s,
     struct wall_faces faces = { 0 };
     struct wall_forces_sum *push = calloc((size_t)p->names.n + 1, sizeof *push);
     bool *any = calloc((size_t)p->names.n + 1, sizeof *any);
-    if (!push || !any) failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!push || !any) failure_set(failure, EX_SOFTWARE, "no memory for the forces on walls");
     if (failure->status || face_of_init(&faces, p, true, failure)) goto end;
     if (!p->names.rows) table_null(t, "no wall and no part of one has a name");
     for (int32_t k = 0; k < p->names.rows; k++) any[p->names.row[k].name] = true;

@@ -738,6 +738,8 @@ int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *
     struct rank_step_turn turn = { &steps, false };
     int e = 0;
     substeps_begin(&steps, &y->part.p);
+    MPI_Bcast(&y->longest, 1, MPI_DOUBLE, 0, y->part.comm->mpi);
+    if (y->longest > 0) steps.longest = y->longest;
     for (int ends = 0; !ends && !e;) {
         e = rank_step_choose(y, &steps, &turn, whole, by_all, o, failure);
         if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, failure);

@@ -226,6 +226,7 @@ static void no_such_option(const char *text, const struct option *known)
     if (renamed) die_usage("--%.*s: now called --%s", (int)n, name, renamed->is);
     for (const struct option *o = known; o->name; o++) {
         const size_t at = strlen(begun);
+        if (renamed_find(tool.name, o->name, strlen(o->name))) continue;
         nearest_look(&near, name, n, o->name);
         if (!strncmp(o->name, name, n))
             snprintf(begun + at, sizeof begun - at, "%s--%s", at ? ", " : "", o->name);

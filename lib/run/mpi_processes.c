@@ -16,6 +16,7 @@ enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, OTHER_DT, ACT,
 static struct {
     struct comm comm;
     struct rank_step step;
+    bool moved; /* the first has made small steps since the others have heard of it */
     struct rows rows;
     struct distributed distributed;
     bool begun;
@@ -137,20 +138,38 @@ int processes_follow(void)
     return 0;
 }
 
-int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
-                   const struct step_opt *o, struct failure *failure)
+/* By all processes */
+static int mpi_processes_step(struct frame *f, struct changes changes, const struct step_opt *o,
+                              struct failure *failure)
 {
-    (void)m;
     if (!self.begun)
         mpi_processes_begin(mpi_processes_next(f->distributed ? BEGIN_ROWS : BEGIN), &f->packing);
-    else if (changes.bodies)
+    else if (changes.bodies || self.moved)
         mpi_processes_next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
+    const bool moved = self.moved;
+    self.moved = false;
     if (f->packing.dt != self.step.part.p.dt)
         mpi_processes_next(OTHER_DT), rank_step_set_dt(&self.step, &f->packing);
-    if (changes.acts) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
+    if (changes.acts || moved) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
     mpi_processes_next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, failure);
+}
+
+int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
+                   const struct step_opt *o, struct failure *failure)
+{
+    bool made = false;
+    double longest = 0;
+    if (!f->distributed &&
+        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &longest, failure))
+        return failure->status;
+    self.moved = self.moved || made; // others have not heard of it
+    if (made) return 0;
+    self.step.longest = longest;
+    const int status = mpi_processes_step(f, changes, o, failure);
+    if (longest > 0) step_forget_impulses(&f->packing, o);
+    return status;
 }
 
 const char *processes_leave(void)

@@ -318,15 +318,16 @@ static int set_room_mass(struct packing *p, const struct scene *s, int32_t w,
         if (servo_box_has(&p->wall[k]))
             farthest = fmax(farthest, fabs(wall_lever(p, &p->wall[k], p->t)));
     if (lever > 1e-9 * farthest || farthest == 0)
-        return failure_set(failure, EX_DATAERR,
-                           "room.center: lies behind walls[%d], by %g m: give a \"center\" between "
-                           "the walls",
-                           s->wall_item[w], lever);
+        return failure_set(
+            failure, EX_DATAERR,
+            "servo.center: lies behind walls[%d], by %g m: give a \"center\" between "
+            "the walls",
+            s->wall_item[w], lever);
     if (!s->room_yields) return 0;
     if (!(l->mass > 0)) l->mass = time_step_wall_mass(p, &p->wall[w]);
     if (!(l->mass > 0))
         return failure_set(failure, EX_DATAERR,
-                           "room: no bodies move, whose mass would give the walls theirs: give a "
+                           "servo: no bodies move, whose mass would give the walls theirs: give a "
                            "\"mass\", kg");
     l->mass *= lever * lever;
     return 0;

@@ -109,8 +109,8 @@ static const struct key scene_key[] = {
     { LIST(walls, wall,
            "Walls, see Walls. Default: the walls of the first document among the bodies, in their "
            "last position.") },
-    { "room", &key_object, 0, "-", "none", "{\"walls\": \"box\"}",
-      "Walls that move in proportion under one mean pressure, see Rooms.",
+    { "servo", &key_object, 0, "-", "none", "{\"walls\": \"box\"}",
+      "Walls that move in proportion under one mean pressure, see Servo boxes.",
       .object = &scene_room_keys, .read = scene_read_room },
     { LIST(bodies, bodies, "Groups of bodies, see Groups of bodies.") },
     { "pour", &key_list, 0, "-", "none", "see below", "Inlets, see Inlets and outlets.",

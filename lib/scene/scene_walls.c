@@ -242,7 +242,7 @@ static const struct key wall_key[] = {
       "Archard's coefficient k, by which nsd-stat(1) reports the worn volume: k times the "
       "normal force times the sliding distance. The shape of the wall does not change." },
     { "load", &key_object, AT(w), "-", "none", "see below",
-      "Force, torque or pressure on a load-controlled wall; not for a box, which a room may have.",
+      "Force, torque or pressure on a load-controlled wall; not for a box, which a servo may have.",
       .without = "box", .object = &load_keys },
     { "materials", &key_list, AT(w), "-", "none", "see below",
       "Kinds and belts of parts of a mesh or of a polygon; not with a load.",
@@ -319,7 +319,7 @@ static int add_named(jnode n, struct scene *s, bool *in)
         const struct wall *wall = &s->wall[w];
         if (in[w]) return json_node_fault(n, "names walls[%d] twice", s->wall_item[w]);
         if (wall->shape != WALL_PLANE)
-            return json_node_fault(n, "walls[%d] is no plane: a room has planes, or boxes of them",
+            return json_node_fault(n, "walls[%d] is no plane: a servo has planes, or boxes of them",
                                    s->wall_item[w]);
         if (wall->load.way)
             return json_node_fault(n, "walls[%d] has a load of its own: take one of the two away",
@@ -374,7 +374,7 @@ static int find_center(jnode o, const struct scene *s, const bool *in, vec3 *cen
         }
         if (askew)
             return json_node_fault(o,
-                                   "walls[%d] is neither parallel to another of the room nor at "
+                                   "walls[%d] is neither parallel to another of the servo nor at "
                                    "right angles: give a \"center\"",
                                    s->wall_item[w]);
         if (had) continue;
@@ -450,7 +450,7 @@ static int set_loads(jnode o, struct scene *s, const bool *in, struct room *r)
         return 1;
     if (l->speed != 0 && !pressure.json)
         return json_node_fault(json_node_key(&o, "growth"),
-                               "only a room with a \"pressure\" grows: make it 0");
+                               "only a servo with a \"pressure\" grows: make it 0");
     for (int32_t w = 0; w < s->walls; w++) {
         const vec3 n = s->wall[w].n;
         if (!in[w]) continue;
@@ -486,27 +486,28 @@ static const struct key room_key[] = {
       "Names of the walls: planes without a load of their own, and boxes. Other walls of the "
       "scene keep their motion." },
     { "pressure", &key_signal, 0, "Pa", "none", "1000",
-      "Mean pressure that controls the size of the room; in 2D in N/m. A signal is that of a load. "
+      "Mean pressure that controls the size of the box of walls; in 2D in N/m. A signal is that of "
+      "a load. "
       "Default: nothing controls the size.",
       .some = true },
     { "strain_rate", &key_vector, AT(rate), "1/s", "0", "[0.5, 0.5, -1]",
-      "Rates at which the room becomes longer along x, y and z; a wall has that along its normal.",
+      "Rates at which the box becomes longer along x, y and z; a wall has that along its normal.",
       .some = true },
     { "center", &key_vector, AT(l.point), "m", "see below", "[0, 0, 0]",
       "Point that stays where it is; no wall may be on its wrong side. Default: midway between "
-      "opposite walls of the room. Where only one of two opposite walls belongs to the room, the "
+      "opposite walls of the servo. Where only one of two opposite walls belongs to the servo, the "
       "centre is on the other one, which stays." },
     { "mass", &key_positive, AT(l.mass), "kg", "see below", "0.1",
       "Mass of each wall, as of a load; the inertia of the size is the sum of mass times squared "
       "distance at the start. Default: that of one layer of the grains on the wall.",
-      .with = "pressure", .why = "only a room with a \"pressure\" has a mass" },
+      .with = "pressure", .why = "only a servo with a \"pressure\" has a mass" },
     { "growth", &key_number, AT(l.speed), "1/s", "0", "0",
       "Rate at the start at which the size grows by the pressure." },
     { "travel", &key_travel, 0, "m", "0", "[0, 0, 0, ...]",
-      "Displacement at the start of each wall by the room, in the order of the walls." },
+      "Displacement at the start of each wall by the servo, in the order of the walls." },
     { 0 },
 };
-const struct keys scene_room_keys = { "room", room_key, .finish = finish_room };
+const struct keys scene_room_keys = { "servo", room_key, .finish = finish_room };
 
 int scene_read_room(jnode o, struct scene *s, void *out)
 {

@@ -335,7 +335,7 @@ static int look_for_better(struct strategy *a, double more)
 /*
  * Whether the sweeps wander: in a large pile friction makes their fixed points repel, along motions of
  * much of the pile that hardly change the velocities at the contacts, and they stay at some distance for
- * ever [nsd-methods(7), THE WALL]. Then four times the sweeps have hardly improved the best map. Only
+ * ever [nsd-convergence(7), STAGNATION]. Then four times the sweeps have hardly improved the best map. Only
  * below a map that is small already, where a chain of contacts that drifts no longer decides.
  */
 static bool wanders(struct strategy *a)

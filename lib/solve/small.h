@@ -3,7 +3,7 @@
  * step, in which a pair finds its gap, starts from the part of its reaction that persists and is solved in closed form.
  * The passes of a step, and the bytes that each moves:
  *
- *     bodies    v <- v + h g + 0.98 (v - v^- - h g): free motion, and what persists of all r   200 per body
+ *     bodies    v <- v + h g + warm (v - v^- - h g): free motion, and what persists of all r   200 per body
  *     walls     each body against the walls that are near it                                   600 per contact
  *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             550 per pair in reach,
  *                                                                                              140 per other pair
@@ -12,7 +12,7 @@
  *     settle    what of a new reaction does not persist is taken out of v^-                    500 per such pair
  *     move      x <- x + h v                                                                   150 per body
  *
- * Reactions are vectors in space, f on b. A step begins with a part of the reactions of the one before, SMALL_WARM. What these
+ * Reactions are vectors in space, f on b. A step begins with a part of the reactions of the one before, rate.warm. What these
  * have made of a body's velocity is v - v^- - h g, with v^- and v before and after that step of the same length, so that
  * no pass over the pairs has to apply them. What turns bodies is the couple d x f, which is kept with f: the next step takes
  * that back, and not what f would do along the normal of that step, so that angular momentum is kept and frictionless balls
@@ -82,6 +82,7 @@ struct small_shift {
 /* What a step is made with */
 struct small_rates {
     double h, per_h; /* s, 1/s */
+    double warm;     /* of the reactions of the last step: the part that a step starts from */
     double relax;    /* 1/s: 1/(h + tau) */
     double push;     /* m/s: v_push */
     double soft;     /* C over W of the pair */
@@ -157,9 +158,6 @@ ALWAYS_INLINE void small_press(struct small_law *l, const struct small_rates *o)
     small_cross(l->n, t, turn);
     for (int i = 0; i < 3; i++) l->q[i] = qn * l->n[i] - l->ct * (t[i] + l->spin * turn[i]);
 }
-
-/* Of the reactions of the last step: the part that a step starts from */
-#define SMALL_WARM 0.98
 
 /* Of the impulse of an impact: what a pair pushes that is taken to meet */
 #define SMALL_SLIGHT 0.01

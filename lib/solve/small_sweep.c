@@ -105,7 +105,7 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
     struct small_bundle *c = y->c;
     vd sum[3], w[3];
     small_load(sum, c->sum, k);
-    for (int j = 0; j < 3; j++) sum[j] += l->f[j], l->f[j] = SMALL_WARM * l->f[j];
+    for (int j = 0; j < 3; j++) sum[j] += l->f[j], l->f[j] = s->rate.warm * l->f[j];
     vd kept = dot3(l->n, l->f);
     for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j];
     small_store(c->sum, k, sum);
@@ -138,11 +138,11 @@ ALWAYS_INLINE void small_turned(const struct small_pairs *y, struct small_law *l
 
 /* The change of the moments that the change dc of the couple leaves to be made */
 ALWAYS_INLINE void small_turn_pairs(const struct small_pairs *y, const struct small *s,
-                                    const struct small_law *l, vm acts, double warm, const vd dc[3],
-                                    vd dm[3])
+                                    const struct small_law *l, vm acts, double begins,
+                                    const vd dc[3], vd dm[3])
 {
     struct small_turn *t = &s->turn[y->i];
-    const double begins = warm < 1;
+    const double warm = begins > 0 ? s->rate.warm : 1;
     vd w[3], m[3], sum[3], most[2], turn = y->b.ii * y->sb - y->a.ii * y->sa;
     for (int j = 0; j < 3; j++) w[j] = y->mb.w[j] - y->ma.w[j] - turn * dc[j];
     small_load(m, t->m, y->k), small_load(sum, t->sum, y->k);
@@ -224,7 +224,7 @@ ALWAYS_INLINE void small_set_law(struct small_law *l, const struct small_pairs *
     l->cn = s->rate.soft * l->wn, l->ct = s->rate.soft * l->wt, l->mu = vload(y->c->mu + y->k);
 }
 
-/* Attraction of pairs that have pushed f: dp, the change of the pull, of which 0.98 persists; lanes that it holds */
+/* Attraction of pairs that have pushed f: dp, the change of the pull, of which rate.warm persists; lanes that it holds */
 ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct small *s,
                                   struct small_law *l, bool again, vd dp[3])
 {
@@ -234,7 +234,7 @@ ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct smal
     for (int j = 0; j < HOLD_COUNT; j++) x[j] = vload(to[j] + k);
     for (int j = 0; j < 3; j++) dp[j] = zero;
     if (!again) {
-        small_hold_pull(x, l->n, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h, SMALL_WARM, dp);
+        small_hold_pull(x, l->n, l->gap, lt(zero, dot3(l->n, l->f)), s->rate.h, s->rate.warm, dp);
         for (int j = HOLD_WET; j < HOLD_COUNT; j++) vstore(to[j] + k, x[j]);
         small_load(sum, y->c->sum, k);
         for (int j = 0; j < 3; j++) sum[j] -= x[HOLD_PULL] * l->n[j];
@@ -281,7 +281,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     small_set_law(&l, &y, s);
     l.calm = splat(s->rate.calm);
     small_load(l.f, y.c->f, k), small_load(couple, y.c->couple, k);
-    const double warm = hot ? 1 : SMALL_WARM;
+    const double warm = hot ? 1 : s->rate.warm;
     for (int j = 0; j < 3; j++) had[j] = warm * l.f[j], couple[j] *= warm;
     vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
     if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, dp), acts = acts | holds;
@@ -294,7 +294,7 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     small_solve(&l, df);
     small_keep(&y, &l, had, couple, acts, df, dc);
     small_store(y.c->f, k, l.f), small_store(y.c->couple, k, couple);
-    if (rolls) small_turn_pairs(&y, s, &l, acts, warm, dc, dm);
+    if (rolls) small_turn_pairs(&y, s, &l, acts, !hot, dc, dm);
     s->live[BUNDLE * i + k] = any(lt(splat(0), l.rn) | holds);
     s->late[BUNDLE * i + k] = any(lt(2 * (vload(y.c->kept + k) + l.calm / l.wn), l.rn));
     for (int j = 0; j < 3 && rich; j++) df[j] -= dp[j];
@@ -345,7 +345,8 @@ static void small_push_bundles(struct small *s, int64_t first, int64_t end)
             small_store(y.c->couple, k, c);
             for (int j = 0; j < 3 && s->hold; j++)
                 f[j] -= vload(s->hold[i].x[HOLD_PULL] + k) * y.n[j];
-            for (int j = 0; j < 3; j++) f[j] *= SMALL_WARM, c[j] *= SMALL_WARM, m[j] *= SMALL_WARM;
+            for (int j = 0; j < 3; j++)
+                f[j] *= s->rate.warm, c[j] *= s->rate.warm, m[j] *= s->rate.warm;
             small_give(&y, s, f, c, s->turn ? m : NULL);
         }
 }

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { EDGE = -1, SIZE = -2, ROOM = -3 }; /* in place of a wall */
+enum { EDGE = FREEDOM_EDGE, SIZE = FREEDOM_SIZE, ROOM = FREEDOM_ROOM };
 
 bool freedoms_in(const struct packing *p)
 {

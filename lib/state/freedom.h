@@ -36,6 +36,9 @@
 #include "state/contact.h"
 #include "state/packing.h"
 
+/* In place of a wall */
+enum { FREEDOM_EDGE = -1, FREEDOM_SIZE = -2, FREEDOM_ROOM = -3 };
+
 struct freedom {
     int32_t
         wall; /* the wall that it moves; -1: the cell's edge; -2: its size; -3: the room of walls */

@@ -325,9 +325,9 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     if (!((l->mass > 0 || (room && l->mass == 0)) && isfinite(l->mass)))
         return "the mass of its load must be positive";
     if (!isfinite(l->rate) || (!room && l->rate != 0))
-        return "it has a strain rate that is not finite, or no room";
-    if (room && l->mass > 0 && !l->spread) return "the load of its room is no pressure";
-    if (room && w->shape != WALL_PLANE) return "it belongs to a room, and is no plane";
+        return "it has a strain rate that is not finite, or no servo";
+    if (room && l->mass > 0 && !l->spread) return "the load of its servo is no pressure";
+    if (room && w->shape != WALL_PLANE) return "it belongs to a servo, and is no plane";
     if (!isfinite(l->force) || !isfinite(l->speed) || !isfinite(l->travel) || !v3_finite(l->point))
         return "its load is not finite";
     if (!(fabs(v3_dot(l->axis, l->axis) - 1) < 1e-6)) return "its load's axis is not a unit vector";
@@ -340,7 +340,7 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     if (l->spread && p->walls > SPREAD_MOST)
         return "its pressure is on one of more than 1000 boundaries: give a force";
     if (l->spread && room && !(wall_face(p, w, p->t) > 0))
-        return "its room needs planes on all sides of its face, or a periodic cell";
+        return "its servo needs planes on all sides of its face, or a periodic cell";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
         return "its pressure needs planes on all sides of its face, or a periodic cell: "
                "give a force";
@@ -356,11 +356,11 @@ static const char *room_trouble(const struct packing *p, const struct wall *w,
     const struct load *l = &w->load;
     if (l->speed != first->speed || l->point.x != first->point.x || l->point.y != first->point.y ||
         l->point.z != first->point.z)
-        return "its room has another centre or growth than that of the walls before";
-    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its room is not on the side of its normal";
-    if (w->until < INFINITY) return "it belongs to a room, and vanishes";
+        return "its servo has another centre or growth than that of the walls before";
+    if (v3_dot(l->axis, w->n) < 1 - 1e-9) return "its servo is not on the side of its normal";
+    if (w->until < INFINITY) return "it belongs to a servo, and vanishes";
     for (int32_t k = w->first_drive; k < w->first_drive + w->drives; k++)
-        if (p->drives.drive[k].turns) return "it belongs to a room, and turns";
+        if (p->drives.drive[k].turns) return "it belongs to a servo, and turns";
     if (load_grows_too_fast(l, p->dt))
         return "its room changes by more than a tenth in a step: take a smaller dt, a larger mass "
                "or slower rates";

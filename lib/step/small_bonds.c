@@ -2,6 +2,7 @@
 #include "step/small_bonds.h"
 
 #include "contact/contact_law.h"
+#include "step/small_attract.h"
 #include "step/small_wall.h"
 
 #include <stdlib.h>
@@ -43,6 +44,12 @@ static void wet_slot(struct small *s, int64_t slot, bool new)
     small_list_wake(s, slot);
 }
 
+static void wet_meeting(struct small_meeting *m, bool new, double gap)
+{
+    if (new && !(m->hold[HOLD_WET] > 0)) m->hold[HOLD_JOINED] = small_hold_bridge(m->hold, gap);
+    m->hold[HOLD_WET] = 1;
+}
+
 static void recall_bridges(struct small_run *r)
 {
     const struct bonds *bonds = &r->p->bonds;
@@ -52,6 +59,11 @@ static void recall_bridges(struct small_run *r)
     for (int64_t i = 0; i < bonds->n; i++) {
         const struct bond *b = &bonds->bond[i];
         if (!b->wet) continue;
+        struct small_meeting *m = small_meetings_find(&l->meetings, bond_key(b));
+        if (m) {
+            wet_meeting(m, b->wet == BOND_WETTED, b->gap);
+            continue;
+        }
         if (b->a < 0) {
             struct small_touch *t = small_list_find_touch(l, b->b, -1 - b->a);
             if (t) wet_touch(r, t, b->wet == BOND_WETTED);
@@ -134,6 +146,10 @@ struct small_bonds small_bonds_account(struct small_run *r)
         const double gap = slot_gap(&l->s, l->slot[i], &n);
         sum.stored += small_hold_energy(x, gap - opens_ahead(r, l->slot[i], n));
     }
+    for (int64_t i = 0; i < l->meetings.n; i++) {
+        const struct small_meeting *m = &l->meetings.of[i];
+        sum.joined += m->hold[HOLD_JOINED], sum.stored += small_attract_energy(m);
+    }
     return sum;
 }
 
@@ -143,7 +159,9 @@ struct small_bonds small_bonds_account(struct small_run *r)
 static bool keep_bridge(struct bonds *kept, struct contact_key key, const double x[HOLD_COUNT],
                         double gap, vec3 n)
 {
-    struct bond b = { .a = key.a, .b = key.b, .wet = BOND_WET, .gap = gap, .n = n };
+    struct bond b = {
+        .a = key.a, .b = key.b, .feature = key.feature, .wet = BOND_WET, .gap = gap, .n = n
+    };
     for (int k = 0; k < 3; k++) b.shift[k] = key.shift[k];
     if (!(x[HOLD_WET] > 0) || !(gap < x[HOLD_REACH])) return true;
     return bonds_add(kept, &b) != NULL;
@@ -168,6 +186,16 @@ int small_bonds_keep(struct small_run *r, struct failure *failure)
         const double gap = slot_gap(&l->s, l->slot[i], &n);
         room = keep_bridge(&kept, small_pair_key(&l->pairs.pair[i]), x, gap, n);
     }
+    for (int64_t i = 0; room && i < l->meetings.n; i++) {
+        const struct small_meeting *m = &l->meetings.of[i];
+        struct contact_key key = m->key;
+        for (int64_t k = 0; room && k < m->points; k++) {
+            const struct small_point *t = &m->point[k];
+            key.feature = t->feature;
+            if (t->there && !t->seam) room = keep_bridge(&kept, key, m->hold, t->gap, t->n);
+        }
+    }
+    if (room && l->meetings.n) bonds_sort(&kept);
     free(by);
     if (!room) {
         bonds_free(&kept);

@@ -1,6 +1,8 @@
 /* step/small_cell.c: a cell that moves, in small steps [step/small_cell.h]. */
 #include "step/small_cell.h"
 
+#include "step/small_stress.h"
+
 #include <math.h>
 
 bool small_cell_moves(const struct packing *p)
@@ -42,6 +44,7 @@ double small_cell_speed(const struct packing *p)
 void small_cell_init(struct small_run *r)
 {
     struct small_cell *c = &r->cell;
+    c->yields = cell_yields(&r->p->cell);
     c->moves = small_cell_moves(r->p), c->relative = c->moves && !r->p->walls;
     c->cell = r->p->cell;
     cell_predict(&c->cell, r->ahead, c->edge);
@@ -54,6 +57,7 @@ void small_cell_begin(struct small_run *r)
     vec3 gain[3];
     cell_predict(&c->cell, r->ahead, c->edge);
     cell_next_rate(&c->cell, r->p->t + r->h, r->ahead, after, c->next);
+    if (c->yields) small_stress_begin(r);
     for (int k = 0; k < 3; k++) gain[k] = v3_sub(c->next[k], c->cell.rate[k]);
     cell_flow_init(&c->flow, &c->cell, c->edge, gain);
     cell_flow_init(&c->peculiar, &c->cell, c->edge, c->cell.rate);
@@ -99,6 +103,7 @@ void small_cell_end(struct small_run *r)
 {
     const struct small_list *l = r->l;
     struct small_cell *c = &r->cell;
+    if (c->yields) small_stress_end(r);
     for (int64_t i = 0; i < l->meetings.n; i++) {
         const struct small_meeting *m = &l->meetings.of[i];
         for (int64_t k = 0; m->key.a >= 0 && k < m->points; k++)

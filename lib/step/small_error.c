@@ -109,6 +109,19 @@ void small_error_give(const struct small_run *r, struct report *rep)
 /* Times the permitted overlap */
 #define CRUSHED 3
 
+bool small_error_crushes(const struct small_run *r, const struct contacts *s, double permitted)
+{
+    const struct packing *p = r->p;
+    for (int64_t i = 0; i < s->n; i++) {
+        const struct contact *c = &s->c[i];
+        const double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
+        const vec3 a = c->a < 0 ? r->wall[-1 - c->a].v : small_vec(r->l->s.body[c->a].v);
+        const double approach = v3_dot(c->n, v3_sub(a, small_vec(r->l->s.body[c->b].v)));
+        if (-c->gap > CRUSHED * permitted * small && approach > r->l->s.rate.push) return true;
+    }
+    return false;
+}
+
 void small_error_approach(const struct small_run *r, const struct contacts *s, double permitted,
                           struct report *rep)
 {

@@ -16,6 +16,9 @@ void small_error_step(struct small_run *r, int me, int threads);
 bool small_error_exceeds(struct small_run *r, int me, int threads);
 /* Writes what is missing into the report. */
 void small_error_give(const struct small_run *r, struct report *rep);
+/* Does a pair, or a body and a wall, approach that overlaps by more than three times what is permitted (radii)? Where masses are
+   very different more sweeps would have stopped it. */
+bool small_error_crushes(const struct small_run *r, const struct contacts *s, double permitted);
 /*
  * Writes the velocity of approach of contacts that overlap, s, at the end of the interval. The interval has no solution, and has
  * not converged, where a contact is deeper than CRUSHED times the permitted overlap (radii) and still approaches, faster than

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "state/servo_box.h"
+#include "step/small_point.h"
 #include "step/small_touch.h"
 #include "step/small_wall.h"
 
@@ -19,9 +20,8 @@ struct small_loaded {
 };
 
 enum { ROUNDS_MOST = 60 };
-/* Layers of grains: a wall of more mass is heavy */
-static const double HEAVY = 2;
-static const double EXACT = 1e-13; /* of the reactions: what may be missing */
+static const double EXACT = 1e-13;          /* of the reactions: what may be missing; */
+static const double EXACT_MEETINGS = 1e-10; /* where points are solved in rounds */
 
 /* ---- the interval ---- */
 
@@ -34,6 +34,8 @@ static int find_freedoms(struct small_run *r, struct failure *failure)
     }
     freedoms_free(&r->loads.list);
     r->loads.list = now;
+    while (now.n && freedom_of_cell(&now.f[now.n - 1])) now.n--; // those of walls come first
+    r->loads.list.n = now.n;
     return 0;
 }
 
@@ -64,23 +66,9 @@ void small_loads_free(struct small_run *r, bool failed)
     for (int32_t w = 0; failed && o->had && o->of && w < r->p->walls; w++)
         r->p->wall[w].load = o->had[w];
     free(o->of), free(o->had), free(o->change), free(o->free), free(o->kept), free(o->touch);
+    free(o->meeting);
     freedoms_free(&o->list);
     *o = (struct small_loads){ 0 };
-}
-
-bool small_loads_heavy(const struct packing *p)
-{
-    double mass = 0, n = 0, levers = 0, most = 0;
-    for (int64_t i = 0; i < p->n; i++)
-        if (p->mass[i] > 0) mass += p->mass[i], n++;
-    for (int32_t w = 0; w < p->walls; w++) {
-        const struct load *l = &p->wall[w].load;
-        if (l->way == LOAD_GLIDES) most = fmax(most, l->mass);
-        if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, &p->wall[w], p->t), 2);
-    }
-    if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3);
-    const double layers = p->dim == 2 ? sqrt(n) : cbrt(n);
-    return n > 0 && most > HEAVY * mass / layers;
 }
 
 double small_loads_energy(const struct packing *p)
@@ -102,7 +90,7 @@ void small_loads_begin(struct small_run *r)
     if (find_freedoms(r, &failure)) r->lost = r->stop = true;
     for (int32_t k = 0; k < o->list.n; k++) {
         o->free[k] = r->h * o->list.f[k].force / o->list.f[k].mass;
-        o->change[k] = o->free[k] + (r->begins ? 0 : SMALL_WARM * o->kept[k]);
+        o->change[k] = o->free[k] + (r->begins ? 0 : r->l->s.rate.warm * o->kept[k]);
     }
 }
 
@@ -151,46 +139,120 @@ static double loaded_at(const struct small_loaded *y, double ds, struct small_la
     return v3_dot(y->D, small_vec(df));
 }
 
-/* By how much the speed of freedom k changes, so that its n touches balance it */
-static double balance_load(const struct small_run *r, int32_t k, int64_t n)
+/* The meetings of freedom k whose sweep begins. Returns how many; -1: memory is short. */
+static int64_t gather_meetings(struct small_run *r, int32_t k, bool again)
 {
-    const double m = r->loads.list.f[k].mass;
-    double lo = 0, hi = 0, ds = 0;
+    const struct small_meetings *all = &r->l->meetings;
+    struct small_loads *o = &r->loads;
+    int64_t n = 0;
+    for (int64_t i = 0; i < all->n; i++) {
+        struct small_meeting *m = &all->of[i];
+        if (!m->points || !small_meeting_loaded(r, m) || o->of[-1 - m->key.a] != k) continue;
+        if (!small_meeting_begin(r, m, again)) continue;
+        if (!array_grow(&o->meeting, &o->meeting_room, n + 1, sizeof(struct small_meeting *)))
+            return -1;
+        o->meeting[n++] = m;
+    }
+    return n;
+}
+
+/* What is near the walls of a freedom in a sweep */
+struct near_load {
+    int32_t k;
+    int64_t touches, meetings;
+};
+
+/* kg m/s: what is missing of the balance of a load where its speed changes by ds; *slope, *size: its derivative, and its terms */
+static double load_off(struct small_run *r, const struct near_load *y, double ds, double *slope,
+                       double *size)
+{
+    const double m = r->loads.list.f[y->k].mass;
+    double g = m * ds;
+    *slope = m, *size = fabs(m * ds);
+    for (int64_t i = 0; i < y->touches; i++) {
+        const struct small_loaded *t = &r->loads.touch[i];
+        struct small_law l;
+        double df[3];
+        const double got = loaded_at(t, ds, &l, df, slope);
+        g += got - v3_dot(t->D, t->dp), *size += fabs(got);
+    }
+    r->loads.trial = ds;
+    for (int64_t i = 0; i < y->meetings; i++) small_meeting_back(r, r->loads.meeting[i]);
+    for (int64_t i = 0; i < y->meetings; i++) {
+        const double got = small_meeting_try(r, r->loads.meeting[i], slope);
+        g += got, *size += fabs(got);
+    }
+    r->loads.trial = 0;
+    return g;
+}
+
+/* By how much the speed changes, so that what is near balances it: Newton steps, and the secant where the derivative is estimated,
+   within a bracket */
+static double balance_load(struct small_run *r, const struct near_load *y)
+{
+    const double m = r->loads.list.f[y->k].mass, exact = y->meetings ? EXACT_MEETINGS : EXACT;
+    double lo = 0, hi = 0, ds = 0, was = 0, g_was = 0;
+    r->loads.tries = true;
     for (int round = 0; round < ROUNDS_MOST; round++) {
-        double g = m * ds, slope = m, size = fabs(m * ds);
-        for (int64_t i = 0; i < n; i++) {
-            const struct small_loaded *y = &r->loads.touch[i];
-            struct small_law l;
-            double df[3];
-            const double got = loaded_at(y, ds, &l, df, &slope);
-            g += got - v3_dot(y->D, y->dp), size += fabs(got);
-        }
-        if (!(fabs(g) > EXACT * size)) break;
+        double slope, size;
+        const double g = load_off(r, y, ds, &slope, &size);
+        if (!(fabs(g) > exact * size)) break;
         if (!round) lo = g > 0 ? -g / m : 0, hi = g > 0 ? 0 : -g / m;
         *(g > 0 ? &hi : &lo) = ds;
+        if (y->meetings && round && g != g_was) slope = (g - g_was) / (ds - was);
+        was = ds, g_was = g;
         const double next = ds - g / slope;
         ds = next > lo && next < hi ? next : 0.5 * (lo + hi);
     }
+    if (y->meetings) { // where the last trial was not the last of ds
+        double slope, size;
+        load_off(r, y, ds, &slope, &size);
+    }
+    r->loads.tries = false;
     return ds;
+}
+
+/* m/s: a change of a body, which counts more where its load is heavier */
+static double load_weighs(const struct small_run *r, int32_t k, int32_t body, vec3 D)
+{
+    const double ratio = r->loads.list.f[k].mass * r->l->s.body[body].im / v3_dot(D, D);
+    return ratio > 1 ? sqrt(ratio) : 1;
+}
+
+static void sweep_load(struct small_run *r, int32_t k, bool again)
+{
+    struct small_loads *o = &r->loads;
+    const struct near_load y = { k, gather_loaded(r, k, again), gather_meetings(r, k, again) };
+    if (y.touches < 0 || y.meetings < 0) {
+        r->lost = r->stop = true;
+        return;
+    }
+    const double ds = y.touches + y.meetings > 0 ? balance_load(r, &y) : 0;
+    for (int64_t i = 0; i < y.touches; i++) {
+        const struct small_loaded *t = &o->touch[i];
+        struct small_law l;
+        double df[3], slope = 0;
+        loaded_at(t, ds, &l, df, &slope);
+        small_touch_give(r, t->t, &l, df, t->dp, load_weighs(r, k, t->t->body, t->D), again);
+    }
+    for (int64_t i = 0; i < y.meetings; i++) {
+        struct small_meeting *m = o->meeting[i];
+        small_meeting_mark(
+            r, m, load_weighs(r, k, m->key.b, m->point[0].D) * small_meeting_moved(r, m), again);
+    }
+    o->change[k] += ds;
 }
 
 void small_loads_sweep(struct small_run *r, bool again)
 {
-    struct small_loads *o = &r->loads;
-    for (int32_t k = 0; k < o->list.n; k++) {
-        const int64_t n = gather_loaded(r, k, again);
-        if (n < 0) r->lost = r->stop = true;
-        const double ds = n > 0 ? balance_load(r, k, n) : 0;
-        for (int64_t i = 0; i < n; i++) {
-            const struct small_loaded *y = &o->touch[i];
-            struct small_law l;
-            double df[3], slope = 0;
-            loaded_at(y, ds, &l, df, &slope);
-            const double ratio =
-                o->list.f[k].mass * r->l->s.body[y->t->body].im / v3_dot(y->D, y->D);
-            small_touch_give(r, y->t, &l, df, y->dp, ratio > 1 ? sqrt(ratio) : 1, again);
-        }
-        o->change[k] += ds;
+    for (int32_t k = 0; k < r->loads.list.n; k++) sweep_load(r, k, again);
+}
+
+void small_loads_start(struct small_run *r)
+{
+    for (int64_t i = 0; i < r->l->meetings.n; i++) {
+        struct small_meeting *m = &r->l->meetings.of[i];
+        if (m->points && small_meeting_loaded(r, m)) small_meeting_start(r, m);
     }
 }
 
@@ -204,6 +266,10 @@ void small_loads_end(struct small_run *r)
         const int32_t k = o->of[t->wall];
         const vec3 D = small_load_direction(r, t), back = small_touch_end(r, t);
         o->kept[k] += v3_dot(D, back) / o->list.f[k].mass;
+    }
+    for (int64_t i = 0; i < r->l->meetings.n; i++) {
+        struct small_meeting *m = &r->l->meetings.of[i];
+        if (m->points && small_meeting_loaded(r, m)) small_meeting_end(r, m);
     }
     for (int32_t k = 0; k < o->list.n; k++) {
         const struct freedom *f = &o->list.f[k];

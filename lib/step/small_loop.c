@@ -2,6 +2,7 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
+#include "step/small_attract.h"
 #include "step/small_cell.h"
 #include "step/small_converge.h"
 #include "step/small_error.h"
@@ -30,21 +31,47 @@ static void small_share(int64_t n, int me, int threads, int64_t *first, int64_t 
 
 /* ---- bodies ---- */
 
-/* v^- and v; in the first step of an interval v is free, and the reactions follow. Returns the largest v^2. */
-static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
+/* Of the reactions of a step, FADES does not persist while bodies gain velocity as if they fell. Where forces balance, they
+   persist wholly, and sweeps converge from step to step: a packing that is at rest stays there. Between the two is the mean
+   change of a velocity in a step over that in a fall, times FADES_BY over the mean load of a body in weights, FADES_MOST at
+   most: where bodies carry more, what fades changes their velocities by more, which is not to make more fade. Changes are
+   summed as integers, so that any number of threads gives the same sum. */
+#define FADES      0.02
+#define FADES_BY   25
+#define FADES_MOST 10
+#define SHAKEN_ONE 1048576.0
+
+static int64_t shaken_by(const struct small_run *r, int64_t i)
+{
+    const struct small *s = &r->l->s;
+    const vec3 dv = v3_sub(small_vec(s->body[i].v), small_vec(s->before[i].v));
+    return s->body[i].im > 0 ? (int64_t)(SHAKEN_ONE * fmin(1, v3_norm(dv) / r->fall)) : 0;
+}
+
+static double small_warm(const struct small_run *r, int64_t shaken)
+{
+    const double mean = (double)shaken / SHAKEN_ONE / (double)(r->free + !r->free);
+    const double by = fmin(FADES_MOST, FADES_BY / r->load);
+    return 1 - FADES * (r->fall > 0 ? fmin(1, by * mean) : 1);
+}
+
+/* v^- and v, with the part `warm` of the reactions of the last step; in the first step of an interval v is free, and the
+   reactions follow. Returns the largest v^2. */
+static double begin_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
 {
     struct small *s = &r->l->s;
     const vec3 g = r->p->g;
     const double fall[3] = { r->h * g.x, r->h * g.y, r->h * g.z };
     double most = 0;
-    if (r->pull) return small_pull_bodies(r, first, end);
+    if (r->begins) warm = 0;
+    if (r->pull) return small_pull_bodies(r, warm, first, end);
     for (int64_t i = first; i < end; i++) {
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
         for (int k = 0; k < 3; k++) {
             const double v = b->v[k], w = b->w[k], free = b->im > 0 ? fall[k] : 0;
-            b->v[k] = v + free + (r->begins ? 0 : SMALL_WARM * (v - was->v[k] - free));
-            b->w[k] = w + (r->begins ? 0 : SMALL_WARM * (w - was->w[k]));
+            b->v[k] = v + free + warm * (v - was->v[k] - free);
+            b->w[k] = w + warm * (w - was->w[k]);
             was->v[k] = v, was->w[k] = w;
             v2 += v * v;
         }
@@ -57,11 +84,16 @@ static double begin_bodies(struct small_run *r, int64_t first, int64_t end)
 static void move_bodies(struct small_run *r, int64_t first, int64_t end)
 {
     struct small *s = &r->l->s;
+    int64_t shaken = 0;
     for (int64_t i = first; i < end; i++) {
         const struct body *b = &s->body[i];
+        shaken += shaken_by(r, i);
         for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
         r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
     }
+    pthread_mutex_lock(&r->lock);
+    r->shaken += shaken;
+    pthread_mutex_unlock(&r->lock);
     if (r->meets) small_points_place(r, first, end);
 }
 
@@ -143,6 +175,36 @@ static void push_reactions(struct small_run *r, int me, int threads)
     }
 }
 
+/* The load of a body by pairs and touches, over its weight: the mean of all */
+static double mean_load(const struct small_run *r)
+{
+    const struct small_list *l = r->l;
+    double sum = 0;
+    for (int64_t i = 0; i < l->s.bundles; i++)
+        for (int k = 0; k < BUNDLE; k++) {
+            const struct small_bundle *c = &l->s.bundle[i];
+            sum += 2 * v3_norm(v3(c->f[0][k], c->f[1][k], c->f[2][k]));
+        }
+    for (int64_t i = 0; i < l->touches; i++) sum += v3_norm(small_vec(l->touch[i].f));
+    return r->weight > 0 ? sum / r->weight : 0;
+}
+
+/* In the first step of an interval, where bodies have all of the reactions that are remembered: what does not persist is
+   taken back. */
+static void fade_reactions(struct small_run *r, int me, int threads)
+{
+    double *warm = &r->l->s.rate.warm;
+    int64_t shaken = 0;
+    team_meet();
+    if (!me) r->load = mean_load(r);
+    for (int64_t i = 0; !me && i < r->p->n; i++) shaken += shaken_by(r, i);
+    if (!me) *warm = small_warm(r, shaken) - 1;
+    team_meet();
+    if (*warm < 0) push_reactions(r, me, threads);
+    team_meet();
+    if (!me) *warm += 1;
+}
+
 /* Takes what does not persist of the reaction of a slot out of v^-: v + (v - v^-) then has less of it. */
 static void settle_slot(struct small *s, int64_t slot)
 {
@@ -209,6 +271,7 @@ static void prepare_step(struct small_run *r)
     l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
     if (wall == 0 && !r->cell.moves && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
     l->way += way;
+    r->shaken = 0;
     r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;
 }
@@ -301,7 +364,9 @@ void small_loop(void *arg, int me, int threads)
             team_meet();
             small_cell_images(r, me, threads);
         }
-        const double fastest = begin_bodies(r, first, end);
+        const double warm = r->begins ? 1 : small_warm(r, r->shaken);
+        if (!me) r->l->s.rate.warm = warm;
+        const double fastest = begin_bodies(r, warm, first, end);
         pthread_mutex_lock(&r->lock);
         r->fastest = fastest <= r->fastest ? r->fastest : fastest;
         pthread_mutex_unlock(&r->lock);
@@ -310,7 +375,12 @@ void small_loop(void *arg, int me, int threads)
         team_meet();
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
-        if (r->meets) small_points_look(r, me, threads), small_points_start(r, me, threads);
+        if (r->meets) small_points_look(r, me, threads);
+        if (r->meets && r->l->s.hold && !me) small_attract(r);
+        if (r->meets && r->l->s.hold) team_meet();
+        if (r->meets) small_points_start(r, me, threads);
+        if (r->meets && r->loads.of && !me) small_loads_start(r);
+        if (r->begins) fade_reactions(r, me, threads);
         small_sweeps(r, me, threads);
         if (r->sums && !me) small_sums_step(r);
         if (r->sums) team_meet();

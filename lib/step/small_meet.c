@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "contact/contact_law.h"
+#include "step/small_tie.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -29,6 +30,7 @@ bool small_meetings_add(struct small_meetings *m, const struct packing *p, struc
     struct small_meeting *new = &m->of[m->n++];
     *new = (struct small_meeting){ .key = key };
     contact_laws_rolling(p, key.a, key.b, &new->most[1], &new->most[0]);
+    if (small_tie_holds(p)) small_tie_set(new->hold, p, key.a, key.b, p->dt);
     return true;
 }
 

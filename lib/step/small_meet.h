@@ -18,16 +18,20 @@ struct small_point {
     bool there;  /* the narrow phase has found it when it last looked */
     bool near;   /* its gap is in reach in the step in hand */
     bool starts; /* its bodies do not have its f yet */
+    bool seam;   /* it is none: at a seam of surfaces */
     double f[3], kept, q[3], sum[3], m[3], turned[3]; /* turned: the sum of m */
     double mu, e[2];
-    double soft; /* C over W in the step in hand; 0: an impact */
-    vec3 had;    /* N s: f before the sweep of an impact */
+    double soft;  /* C over W in the step in hand; 0: an impact */
+    vec3 had;     /* N s: f before the sweep of an impact */
+    double pulls; /* N s: the attraction of the step in hand, along -n; */
+    vec3 pull;    /* that which bodies have */
     /* Where it is, or was last */
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */
     vec3 a, b;     /* m: arms from the centres, that of the image that a meets */
     vec3 was[2];   /* m: those at which f was made */
-    vec3 v;        /* m/s: of the wall's material there */
+    vec3 v;        /* m/s: of the wall's material there, without its load; */
+    vec3 D, had_D; /* and per unit of the load's speed; that at which f was made */
     double W[9];   /* 1/kg, in the basis */
 };
 
@@ -38,8 +42,10 @@ struct small_meeting {
     double wide, way; /* m: points were looked for to this gap; and what both had gone then */
     int64_t points, room;
     struct small_point
-        *point;  /* [points] by feature: those that are there, or have pushed in this interval */
-    double work; /* J: on a wall or a body that does not move, in this interval */
+        *point; /* [points] by feature: those that are there, or have pushed in this interval */
+    int rounds; /* of its points in the sweep in hand, at most; 0: none is in reach */
+    double hold[HOLD_COUNT]; /* where something attracts */
+    double work;             /* J: on a wall or a body that does not move, in this interval */
 };
 
 struct small_meetings {

@@ -6,6 +6,7 @@
 #include "contact/detect.h"
 #include "contact/internal_edge.h"
 #include "state/rotation.h"
+#include "step/small_attract.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -52,7 +53,7 @@ void small_points_free(struct small_run *r)
     for (int k = 0; s->scratch && k < s->threads; k++)
         contacts_free(&s->scratch[k].found), free(s->scratch[k].point);
     free(s->scratch), free(s->q), free(s->inverse), free(s->spread), free(s->way);
-    placed_free(&s->placed);
+    placed_free(&s->placed), small_attract_free(r);
     *s = (struct small_shapes){ 0 };
 }
 
@@ -150,11 +151,12 @@ static void set_arms(const struct small_run *r, const struct small_meeting *m,
                      struct small_point *t)
 {
     t->b = v3_sub(t->x, v3_add(r->x[m->key.b], image_of(r, m)));
-    t->v = t->a = v3(0, 0, 0);
+    t->v = t->a = t->D = v3(0, 0, 0);
     if (m->key.a < 0)
         t->v = small_wall_velocity(&r->wall[-1 - m->key.a], t->x, t->n);
     else
         t->a = v3_sub(t->x, r->x[m->key.a]);
+    if (small_meeting_loaded(r, m)) t->D = small_load_material(r, -1 - m->key.a, m->key.b, t->x);
 }
 
 /* A point is where contact c is. */
@@ -237,6 +239,7 @@ static void choose_points(const struct small_run *r, struct small_meeting *m)
         struct small_point *t = &m->point[i];
         t->near = t->there && t->gap <= r->l->s.rate.reach;
         if (t->near && small_is_zero(t->f)) t->starts = true;
+        t->seam = false;
     }
 }
 
@@ -259,7 +262,7 @@ static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
                             struct small_scratch *c)
 {
     const int32_t a = m->key.a, b = m->key.b;
-    const double *way = r->shapes.way, reach = r->l->s.rate.reach;
+    const double *way = r->shapes.way, reach = fmax(r->l->s.rate.reach, small_attract_reach(m));
     const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
     bool there = false;
     for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
@@ -307,7 +310,7 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
             const struct contact *at = &c->found.c[n++];
             if (seams_may(&r->shapes.at, at) &&
                 seams_has(&c->found, &r->shapes.at, (int32_t)i, at - c->found.c))
-                t->near = false;
+                t->near = false, t->seam = true;
         }
     }
     return true;

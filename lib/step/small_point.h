@@ -33,6 +33,22 @@ void small_points_sweep(struct small_run *r, int me, int threads, bool again);
 void small_points_judge(struct small_run *r, int me, int threads);
 void small_points_end(struct small_run *r, int me, int threads);
 
+/*
+ * Meetings with walls that loads move, which the passes above leave out; by one thread. A sweep begins, returns
+ * whether a point is in reach, and is taken back to where it has begun, and tries: the points in turn, at the speed r->loads.trial. Returns
+ * D . df (kg m/s, of the load), the change that the points push it by; *slope grows by an estimate of the derivative.
+ */
+void small_meeting_start(struct small_run *r, struct small_meeting *m);
+bool small_meeting_begin(struct small_run *r, struct small_meeting *m, bool again);
+void small_meeting_back(struct small_run *r, struct small_meeting *m);
+double small_meeting_try(struct small_run *r, struct small_meeting *m, double *slope);
+/* m/s: by how much the last try has changed the points, at most */
+double small_meeting_moved(const struct small_run *r, const struct small_meeting *m);
+/* Its body has been changed by so much (m/s) by the sweep. */
+void small_meeting_mark(struct small_run *r, const struct small_meeting *m, double change,
+                        bool again);
+void small_meeting_end(struct small_run *r, struct small_meeting *m);
+
 /* By one thread: the points where the bodies are now */
 void small_points_last(struct small_run *r);
 
@@ -47,7 +63,7 @@ static inline vec3 small_turned_by(const struct small_run *r, int32_t i, vec3 m)
 /* Has it pushed in this interval, or a reaction that its bodies have? */
 static inline bool small_point_lasts(const struct small_point *t)
 {
-    return !small_is_zero(t->f) || !small_is_zero(t->sum);
+    return !small_is_zero(t->f) || !small_is_zero(t->sum) || v3_dot(t->pull, t->pull) > 0;
 }
 
 /* What a point has pushed goes into its sums. */

@@ -20,10 +20,25 @@ enum { BISECTIONS = 7 }; /* of a restitution that is reduced */
 
 /* ---- the law ---- */
 
+/* The load of a wall gets a reaction f on b: of a point whose material moves by D with it. */
+static void push_load(const struct small_run *r, const struct body *of,
+                      const struct small_meeting *y, vec3 D, vec3 f)
+{
+    const struct small_loads *o = &r->loads;
+    if (!small_meeting_loaded(r, y) || o->tries) return;
+    const int32_t k = o->of[-1 - y->key.a];
+    const double gain = v3_dot(D, f) / o->list.f[k].mass;
+    if (of == r->l->s.before)
+        o->kept[k] += gain;
+    else
+        o->change[k] -= gain;
+}
+
 /* Bodies of[] get a reaction f on b, and its moment m. */
 static void push_point(const struct small_run *r, struct body *of, const struct small_meeting *y,
                        const struct small_point *t, vec3 f, vec3 m)
 {
+    push_load(r, of, y, t->D, f);
     for (int side = 0; side < 2; side++) {
         const int32_t i = side ? y->key.b : y->key.a;
         const double sign = side ? 1 : -1;
@@ -60,7 +75,13 @@ static vec3 velocity_at_b(const struct small_meeting *m, const struct small_poin
 static vec3 point_velocity(const struct small_run *r, const struct small_meeting *m,
                            const struct small_point *t, const struct body *of)
 {
-    const vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
+    if (small_meeting_loaded(r, m)) {
+        const struct small_loads *o = &r->loads;
+        const int32_t k = o->of[-1 - m->key.a];
+        const double gain = of == r->l->s.before ? 0 : o->change[k] + o->trial;
+        u = v3_axpy(u, -(o->list.f[k].speed + gain), t->D);
+    }
     return r->cell.moves ? v3_add(u, cell_shift(r->cell.next, m->key.shift)) : u;
 }
 
@@ -87,9 +108,14 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
-    t->kept = dot3(l.n, l.f), t->starts = false;
+    t->kept = dot3(l.n, l.f), t->starts = false, l.calm += 2 * l.wn * t->pulls;
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
+    if (small_meeting_loaded(r, m)) { // an impact of the pair alone moves the wall, too
+        const double mass = r->loads.list.f[r->loads.of[-1 - m->key.a]].mass;
+        const double D2 = v3_dot(t->D, t->D), along = v3_dot(t->D, t->n);
+        l.wn += along * along / mass, l.wt += (D2 - along * along) / mass;
+    }
     small_press(&l, o);
     const vec3 u = point_velocity(r, m, t, s->before);
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
@@ -179,8 +205,8 @@ static bool mark_body(struct small *s, int32_t i, double x, double allowed)
     return true;
 }
 
-static void mark_meeting(struct small_run *r, const struct small_meeting *m, double change,
-                         bool again)
+void small_meeting_mark(struct small_run *r, const struct small_meeting *m, double change,
+                        bool again)
 {
     struct small *s = &r->l->s;
     const int32_t a = m->key.a, b = m->key.b;
@@ -198,14 +224,14 @@ static bool is_hot(const struct small *s, const struct small_meeting *m)
     return s->hot[b] >= last || (a >= 0 && s->hot[a] >= last);
 }
 
-/* The points in turn, until nothing changes. *first: m/s, the largest change of
-   the first round */
+/* The points in turn, until a round changes nothing by more than the part `enough` of the first one. *first: m/s, the
+   largest change of that */
 static struct small_work solve_points(struct small_run *r, struct small_meeting *m, int rounds,
-                                      double *first)
+                                      double enough, double *first)
 {
     struct small_work work = { 0 };
     double most = INFINITY;
-    for (int k = 0; k < rounds && most > (k ? ENOUGH * *first : 0); k++) {
+    for (int k = 0; k < rounds && most > (k ? enough * *first : 0); k++) {
         most = 0;
         for (int64_t i = 0; i < m->points; i++)
             if (m->point[i].near) most = fmax(most, solve_point(r, m, &m->point[i], &work));
@@ -214,18 +240,25 @@ static struct small_work solve_points(struct small_run *r, struct small_meeting 
     return work;
 }
 
-/* The same once more, as before, with `times` the restitution. Returns whether the reactions gain energy. */
-static bool solve_again(struct small_run *r, struct small_meeting *m, double times)
+void small_meeting_back(struct small_run *r, struct small_meeting *m)
 {
-    double first;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *t = &m->point[i];
         if (!t->near) continue;
         push_point(r, r->l->s.body, m, t, v3_sub(t->had, small_vec(t->f)), v3(0, 0, 0));
         small_array(t->f, t->had);
-        for (int k = 0; k < 3 && t->soft == 0; k++) t->q[k] *= times;
     }
-    return solve_points(r, m, ROUNDS_MOST, &first).done > 0;
+}
+
+/* The same once more, as before, with `times` the restitution. Returns whether the reactions gain energy. */
+static bool solve_again(struct small_run *r, struct small_meeting *m, double times)
+{
+    double first;
+    small_meeting_back(r, m);
+    for (int64_t i = 0; i < m->points; i++)
+        for (int k = 0; k < 3 && m->point[i].near && m->point[i].soft == 0; k++)
+            m->point[i].q[k] *= times;
+    return solve_points(r, m, ROUNDS_MOST, ENOUGH, &first).done > 0;
 }
 
 /* An impact that gains energy, as friction may make it [Kane 1984], has the largest restitution with which it does not, by
@@ -245,11 +278,12 @@ static void bound_impact(struct small_run *r, struct small_meeting *m)
     if (is > least) solve_again(r, m, least / is);
 }
 
-static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
+/* The points before a sweep, from which the law begins where it is the first one. m->rounds gets the most rounds; 0: no point
+   is in reach. Returns whether an impact rebounds. */
+static bool begin_meeting(struct small_run *r, struct small_meeting *m, bool again)
 {
-    int64_t near = 0;
     bool hits = false, rebounds = false, new = false;
-    double first = 0;
+    int64_t near = 0;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *t = &m->point[i];
         if (!t->near) continue;
@@ -258,27 +292,83 @@ static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool aga
         hits |= t->soft == 0, new |= t->kept <= 0;
         rebounds |= t->soft == 0 && (t->e[0] > 0 || t->e[1] > 0);
     }
-    if (!near) return;
-    const int rounds = hits ? ROUNDS_MOST : new ? ROUNDS_NEW : ROUNDS;
-    const struct small_work work = solve_points(r, m, near > 1 ? rounds : 1, &first);
-    if (rebounds && !again && work.done > GAIN * work.scale) bound_impact(r, m);
-    mark_meeting(r, m, first, again);
+    m->rounds = near > 1 ? hits ? ROUNDS_MOST : new ? ROUNDS_NEW : ROUNDS : near > 0;
+    return rebounds;
 }
 
-/* Bodies have SMALL_WARM of the reactions of the last step, and get all; of points that start they have nothing, and of those
+static void sweep_meeting(struct small_run *r, struct small_meeting *m, bool again)
+{
+    double first = 0;
+    const bool rebounds = begin_meeting(r, m, again);
+    if (!m->rounds) return;
+    const struct small_work work = solve_points(r, m, m->rounds, ENOUGH, &first);
+    if (rebounds && !again && work.done > GAIN * work.scale) bound_impact(r, m);
+    small_meeting_mark(r, m, first, again);
+}
+
+/* ---- meetings with walls that loads move ---- */
+
+double small_meeting_moved(const struct small_run *r, const struct small_meeting *m)
+{
+    double most = 0;
+    for (int64_t i = 0; i < m->points; i++) {
+        const struct small_point *t = &m->point[i];
+        const double change = v3_norm(v3_sub(small_vec(t->f), t->had));
+        if (t->near) most = fmax(most, change * r->l->s.body[m->key.b].im);
+    }
+    return most;
+}
+
+bool small_meeting_begin(struct small_run *r, struct small_meeting *m, bool again)
+{
+    begin_meeting(r, m, again);
+    return m->rounds > 0;
+}
+
+double small_meeting_try(struct small_run *r, struct small_meeting *m, double *slope)
+{
+    double sum = 0, steep = 0, pushes = 0, first;
+    solve_points(r, m, m->rounds, 0, &first);
+    for (int64_t i = 0; i < m->points; i++) {
+        const struct small_point *t = &m->point[i];
+        const double along = v3_dot(t->D, t->n);
+        if (!t->near) continue;
+        sum += v3_dot(t->D, v3_sub(small_vec(t->f), t->had));
+        if (small_is_zero(t->f)) continue;
+        steep += along * along / t->W[0], pushes++;
+    }
+    if (pushes > 0) *slope += steep / pushes;
+    return sum;
+}
+
+/* Bodies have rate.warm of the attraction of the last step, at the arms of `had`, and get all of this one. */
+static void pull_point(struct small_run *r, const struct small_meeting *m, struct small_point *t,
+                       const struct small_point *had)
+{
+    const vec3 none = v3(0, 0, 0), pull = v3_scale(-t->pulls, t->n);
+    if (!(t->pulls > 0) && v3_dot(t->pull, t->pull) == 0) return;
+    if (!r->begins)
+        push_point(r, r->l->s.body, m, had, v3_scale(-r->l->s.rate.warm, t->pull), none);
+    push_point(r, r->l->s.body, m, t, pull, none);
+    t->pull = pull;
+    t->sum[0] += pull.x, t->sum[1] += pull.y, t->sum[2] += pull.z;
+}
+
+/* Bodies have what persists of the reactions of the last step, and get all; of points that start they have nothing, and of those
    that have gone they are to have nothing. */
-static void start_meeting(struct small_run *r, struct small_meeting *m)
+void small_meeting_start(struct small_run *r, struct small_meeting *m)
 {
     int64_t n = 0;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
-        const double has = t.starts ? 0 : SMALL_WARM;
-        had.a = t.was[0], had.b = t.was[1];
+        const double has = t.starts ? 0 : r->l->s.rate.warm;
+        had.a = t.was[0], had.b = t.was[1], had.D = t.had_D;
         if (has > 0 && !small_is_zero(t.f))
             push_point(r, r->l->s.body, m, &had, v3_scale(-has, f), v3_scale(-has, moment));
         if (t.near && !small_is_zero(t.f)) push_point(r, r->l->s.body, m, &t, f, moment);
-        t.was[0] = t.a, t.was[1] = t.b;
+        pull_point(r, m, &t, &had);
+        t.was[0] = t.a, t.was[1] = t.b, t.had_D = t.D;
         for (int k = 0; k < 3 && t.starts && t.near; k++) // the step adds it
             t.sum[k] -= t.f[k], t.turned[k] -= t.m[k];
         if (t.starts && !t.near) memset(t.f, 0, sizeof t.f), memset(t.m, 0, sizeof t.m);
@@ -307,28 +397,29 @@ static void judge_meeting(struct small_run *r, const struct small_meeting *m)
 }
 
 /* What persists of the reactions, and what they have done to walls and bodies that do not move */
-static void end_meeting(struct small_run *r, struct small_meeting *m)
+void small_meeting_end(struct small_run *r, struct small_meeting *m)
 {
     struct small *s = &r->l->s;
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *t = &m->point[i];
-        const vec3 f = small_vec(t->f), moment = small_vec(t->m);
+        const vec3 f = v3_add(small_vec(t->f), t->pull), moment = small_vec(t->m);
         const int32_t a = m->key.a, b = m->key.b;
-        if (!t->near || small_is_zero(t->f)) continue;
+        if (!t->near && !(t->pulls > 0)) continue;
         if (a < 0 || !(s->body[a].im > 0))
             m->work -=
                 v3_dot(f, velocity_at_a(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, a));
         if (!(s->body[b].im > 0))
             m->work +=
                 v3_dot(f, velocity_at_b(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, b));
-        const double rn = v3_dot(f, t->n), most = small_persists(&s->rate, t->kept, t->W[0], rn);
-        if (rn <= most) continue;
+        const double rn = v3_dot(small_vec(t->f), t->n), held = t->kept + 2 * t->pulls;
+        const double most = small_persists(&s->rate, held, t->W[0], rn);
+        if (!t->near || !(rn > most)) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
             t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];
             t->f[k] *= most / rn, t->m[k] *= most / rn;
         }
-        push_point(r, s->before, m, t, v3_scale(back, f), v3_scale(back, moment));
+        push_point(r, s->before, m, t, v3_scale(back, v3_sub(f, t->pull)), v3_scale(back, moment));
     }
 }
 
@@ -341,12 +432,12 @@ static void pass_meetings(struct small_run *r, int64_t first, int64_t end,
 {
     for (int64_t i = first; i < end; i++) {
         struct small_meeting *m = &r->l->meetings.of[r->l->meetings.order[i]];
-        if (!m->points) continue;
-        if (pass == PASS_START) start_meeting(r, m);
+        if (!m->points || (pass != PASS_JUDGE && small_meeting_loaded(r, m))) continue;
+        if (pass == PASS_START) small_meeting_start(r, m);
         if (pass == PASS_SWEEP) sweep_meeting(r, m, false);
         if (pass == PASS_AGAIN && is_hot(&r->l->s, m)) sweep_meeting(r, m, true);
         if (pass == PASS_JUDGE) judge_meeting(r, m);
-        if (pass == PASS_END) end_meeting(r, m);
+        if (pass == PASS_END) small_meeting_end(r, m);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "state/rotation.h"
 #include "step/small_cell.h"
+#include "step/small_stress.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -65,9 +66,8 @@ static void next_forces(struct small_run *r, int64_t i)
     add_half_work(r, i, y);
 }
 
-double small_pull_bodies(struct small_run *r, int64_t first, int64_t end)
+double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
 {
-    const double warm = r->begins ? 0 : SMALL_WARM;
     double most = 0;
     for (int64_t i = first; i < end; i++) {
         struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
@@ -98,13 +98,28 @@ struct small_pull small_pull_sum(const struct small_run *r)
     return sum;
 }
 
-double small_pull_presses(const struct packing *p)
+/* N: of loads that walls and the edges of a cell put on the bodies between them */
+static double load_forces(const struct packing *p)
 {
-    double mass = 0, force = 0, wide = 0, lo[3], hi[3];
-    if (!small_pull_acts(p) && !freedoms_in(p)) return 0;
+    double force = small_stress_forces(p);
     for (int32_t w = 0; w < p->walls; w++)
         if (p->wall[w].load.way && p->wall[w].load.way != LOAD_TURNS)
             force += fabs(wall_force(p, &p->wall[w], p->t + p->dt / 2));
+    return force;
+}
+
+double small_pull_load(const struct packing *p)
+{
+    double mass = 0;
+    if (!freedoms_in(p)) return 0;
+    for (int64_t i = 0; i < p->n; i++) mass += p->mass[i];
+    return mass > 0 ? load_forces(p) / mass : 0;
+}
+
+double small_pull_presses(const struct packing *p)
+{
+    double mass = 0, force = load_forces(p), wide = 0, lo[3], hi[3];
+    if (!small_pull_acts(p) && !freedoms_in(p)) return 0;
     for (int k = 0; k < 3; k++) lo[k] = INFINITY, hi[k] = -INFINITY;
     for (int64_t i = 0; i < p->n; i++) {
         const double x[3] = { p->x[i].x, p->x[i].y, p->x[i].z };

@@ -10,9 +10,11 @@
 /* r->pull, where the packing has forces, or a cell that moves. Returns 0 or EX_SOFTWARE. */
 int small_pull_init(struct small_run *r, struct failure *failure);
 /* As begin_bodies() [step/small_loop.c], with forces */
-double small_pull_bodies(struct small_run *r, int64_t first, int64_t end);
+double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_t end);
 /* work, carried and impulse of all bodies, when all small steps of the interval have been made */
 struct small_pull small_pull_sum(const struct small_run *r);
 /* m/s^2: the acceleration of a body that its own force and those of all bodies behind it push, from any side; 0 without
    forces */
 double small_pull_presses(const struct packing *p);
+/* m/s^2: what the loads of walls would give to all bodies together */
+double small_pull_load(const struct packing *p);

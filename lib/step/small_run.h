@@ -28,6 +28,10 @@ struct small_cell {
     struct cell_flow peculiar; /* and their flow where it begins */
     double strain;             /* 1/s */
     double work;               /* J: of the edges in the interval, by images */
+    bool yields;               /* to a stress [step/small_stress.h]: */
+    struct freedoms list;
+    double push[3][3]; /* N m s: of reactions, in what sweeps see of the rates; */
+    double loads;      /* J: of the stress in the interval */
 };
 
 /* What loads move in a small step [step/small_load.h] */
@@ -41,6 +45,10 @@ struct small_loads {
     double work;      /* J: of the loads in the interval */
     int64_t room;
     struct small_loaded *touch; /* of the freedom in hand */
+    int64_t meeting_room;
+    struct small_meeting **meeting; /* of the freedom in hand */
+    bool tries; /* the speed of the freedom in hand is `trial` more; pushes of points leave it */
+    double trial;
 };
 
 /* What a thread looks for points with */
@@ -48,6 +56,14 @@ struct small_scratch {
     struct contacts found;
     struct small_point *point;
     int64_t room;
+};
+
+/* The places where bodies are held [step/small_attract.h] */
+struct small_shares {
+    struct contacts places;
+    struct small_point **point; /* [places.n] */
+    struct attraction *of;      /* [places.n] */
+    int64_t point_room, of_room;
 };
 
 /* Bodies as meetings have them, where there are any [step/small_point.h] */
@@ -60,7 +76,8 @@ struct small_shapes {
     struct situation at;
     int threads;
     struct small_scratch *scratch; /* [threads] */
-    _Atomic bool failed;           /* memory was short */
+    struct small_shares shares;
+    _Atomic bool failed; /* memory was short */
 };
 
 /* Forces on a body in the small step in hand [step/small_pull.h] */
@@ -88,6 +105,9 @@ struct small_run {
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */
+    double fall;             /* m/s: in a small step, by all forces that are not reactions */
+    double weight, load;     /* N s: of all bodies, in it; of the mean body, over its weight */
+    int64_t free;            /* bodies that move */
     int64_t n, made, sweeps; /* small steps, and those made; sweeps of all */
     int64_t unsolved;        /* small steps that have ended with the limit of sweeps */
     int32_t swept;           /* of the step in hand */
@@ -105,12 +125,19 @@ struct small_run {
     _Atomic bool far;     /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock; /* of what follows */
     double fastest;       /* m^2/s^2: of bodies */
+    int64_t shaken;       /* by how much the last step has changed velocities [step/small_loop.c] */
 };
 
 /* Does a load move the wall of a touch? */
 static inline bool small_is_loaded(const struct small_run *r, const struct small_touch *t)
 {
     return r->loads.of && r->loads.of[t->wall] >= 0;
+}
+
+/* Does a load move the wall of a meeting? */
+static inline bool small_meeting_loaded(const struct small_run *r, const struct small_meeting *m)
+{
+    return m->key.a < 0 && r->loads.of && r->loads.of[-1 - m->key.a] >= 0;
 }
 
 /* m/s: at most, of a point of body i, which has a shape */

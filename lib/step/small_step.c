@@ -18,6 +18,7 @@
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
 
@@ -26,7 +27,8 @@
 #include <string.h>
 
 enum {
-    COUNT_MOST = 100000 /* small steps of a step; one that needs more is made at once */
+    COUNT_MOST = 100000, /* small steps of a step; one that needs more is made at once */
+    PARTS_MOST = 100     /* of a step that is made at once after all: solves */
 };
 
 /* C over W of a pair */
@@ -34,7 +36,7 @@ enum {
 /* Times the lightest body */
 #define UNEVEN 30
 /* Of h: tau, in which overlaps are left */
-#define RELAXES 8
+#define RELAXES 11
 /* Of the fastest speed, or of what moves a body by UNSEEN of the smallest radius in h: a change of a velocity that is not
    followed up, in the first sweep of a step, without restitution, and in others. Less would carry impacts farther into a
    packing, and cost a flowing drum a tenth of its time and more. */
@@ -43,15 +45,10 @@ static const double ALLOWED[2] = { 0.67, 0.1 };
 
 const char *small_lacks(const struct packing *p)
 {
-    if (cell_yields(&p->cell)) return "a cell under a stress";
-    if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (freedoms_in(p) && (p->shape || p->mesh.elements))
-        return "loads, and grains with a shape or surfaces as walls";
+    if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
-    if ((p->shape || p->mesh.elements) && small_tie_holds(p))
-        return "attraction of grains with a shape, or on surfaces";
     return NULL;
 }
 
@@ -83,9 +80,11 @@ static struct small_sizes small_sizes(const struct packing *p)
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
-    const double fall = packing_most_fall(p) * (double)r->n;
+    const double fall = (packing_most_fall(p) + p->dt * small_pull_load(p)) * (double)r->n;
     double heaviest = 0, lightest = INFINITY;
+    r->fall = packing_most_fall(p), r->free = 0, r->weight = 0;
     for (int64_t i = 0; i < p->n; i++) {
+        r->free += p->mass[i] > 0, r->weight += p->mass[i] * r->fall;
         heaviest = fmax(heaviest, p->mass[i]);
         if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
     }
@@ -197,7 +196,7 @@ static struct small_energy small_energy_of(const struct packing *p)
         e.potential -= m * v3_dot(p->g, p->x[i]);
         e.momentum = v3_axpy(e.momentum, m, p->v[i]);
     }
-    e.kinetic += small_loads_energy(p);
+    e.kinetic += small_loads_energy(p) + small_stress_energy(p);
     return e;
 }
 
@@ -212,7 +211,7 @@ static void small_balance(struct balance *b, const struct small_energy *before,
     b->change = after->kinetic - before->kinetic;
     b->gravity = before->potential - after->potential;
     const struct small_pull pulls = small_pull_sum(r);
-    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work;
+    b->drives = pulls.carried + r->cell.work, b->loads = pulls.work + r->loads.work + r->cell.loads;
     impulse = v3_add(impulse, small_vec(pulls.impulse));
     b->peculiar = after->peculiar, b->peculiar_change = after->peculiar - before->peculiar;
     for (int64_t i = 0; i < l->touches; i++) {
@@ -287,11 +286,40 @@ static double small_steady(const struct packing *p)
     return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
 }
 
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
+static double small_carries(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        const struct recall *c = &p->memory.recall[i];
+        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
+        most = fmax(most, w * v3_norm(c->r));
+    }
+    return most / p->dt;
+}
+
+/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W. */
+static const double CARRIED[2] = { 1.4, 0.4 };
+/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
+enum { CARRIED_MOST = 4 };
+
 int64_t small_count(const struct packing *p, double overlap)
 {
     const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double n = fmax(way / (overlap * small_sizes(p).least), p->dt / small_steady(p));
+    const double least = small_sizes(p).least,
+                 permits = CARRIED[p->shape != NULL] * overlap * least;
+    double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
+    n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
+}
+
+int64_t small_parts(const struct packing *p, double overlap)
+{
+    const double way = p->dt * (small_fastest(p) + packing_most_fall(p));
+    const double n = way / (4 * overlap * small_sizes(p).least);
+    return (int64_t)ceil(fmin(fmax(1, n), PARTS_MOST));
 }
 
 int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
@@ -326,7 +354,9 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.failed = r.failed || (!failure->status && !small_is_finite(&r));
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
-    if (*made && !small_give_contacts(&r, s, o->bare, failure) && !small_bonds_keep(&r, failure) &&
+    if (*made && !small_give_contacts(&r, s, o->bare, failure))
+        *made = !r.uneven || !small_error_crushes(&r, s, o->overlap);
+    if (*made && !failure->status && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
         !(o->warm && small_list_remember(l, p, 1 / (double)r.n, failure))) {
         give_bodies(&r), small_sums_give(&r);
@@ -344,7 +374,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     }
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
-    small_loads_free(&r, !*made);
+    small_loads_free(&r, !*made), small_stress_free(&r);
     small_points_free(&r), small_error_free(&r);
     free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;

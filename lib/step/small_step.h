@@ -27,6 +27,8 @@ const char *small_lacks(const struct packing *p);
 /* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
    radii of the smallest: of its state alone; 0: too many */
 int64_t small_count(const struct packing *p, double overlap);
+/* In how many parts a step is solved that small steps could not make: none moves a body by more than four times `overlap` */
+int64_t small_parts(const struct packing *p, double overlap);
 /* The step: rep but for its criterion, and s, as of step_advance(). *made: false where the packing is as it was, for the step is to
    be made at once. Returns 0, EX_SOFTWARE or EX_DATAERR. */
 int small_advance(struct packing *p, struct contacts *s, struct small_list *l,

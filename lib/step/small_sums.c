@@ -62,8 +62,9 @@ static void add_point_sums(const struct small_run *r, const struct small_meeting
     struct small_push y = {
         .f = small_vec(t->f), .m = small_vec(t->m), .x = t->x, .n = t->n, .v = t->v
     };
+    if (small_meeting_loaded(r, m)) y.v = v3_axpy(y.v, small_load_speed(r, wall), t->D);
     y.w = small_mean(was->w, b->w);
-    y.u = v3_add(v3_sub(small_mean(was->v, b->v), t->v), v3_cross(y.w, t->b));
+    y.u = v3_add(v3_sub(small_mean(was->v, b->v), y.v), v3_cross(y.w, t->b));
     const int32_t face = faces->first[wall] + face_of_contact(faces, r->p, &c, r->ahead);
     add_push(&r->sums[face], &y, r->wall[wall].spin);
 }

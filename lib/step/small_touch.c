@@ -28,10 +28,10 @@ static vec3 touch_moment(const struct small_touch *t)
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
     const struct small *s = &r->l->s;
+    const double warm = s->rate.warm;
     double before[3];
-    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= SMALL_WARM, t->f[k] *= SMALL_WARM;
-    for (int k = 0; k < 3; k++)
-        t->turned[k] += t->m[k], t->m[k] *= SMALL_WARM, t->couple[k] *= SMALL_WARM;
+    for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= warm, t->f[k] *= warm;
+    for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= warm, t->couple[k] *= warm;
     t->kept = dot3(l->n, l->f);
     const vec3 lacks = v3_sub(touch_couple(t, l->f), small_vec(t->couple)); // where it is now
     const vec3 turn = v3_scale(-t->arm * s->body[t->body].ii, v3_cross(lacks, t->n));
@@ -55,13 +55,13 @@ static void roll_touch(const struct small_run *r, struct small_touch *t, const s
     small_roll(l->n, l->rn, w, b->ii, t->most, t->m, dm);
 }
 
-/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull, of which 0.98
-   persists (N s). */
+/* Attraction of a body that has pushed l->f, in the first sweep: l->u gets it. Returns the change of the pull, of which
+   rate.warm persists (N s). */
 static vec3 hold_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
     double dp[3];
-    const double pull =
-        small_hold_pull(t->hold, l->n, l->gap, lt(0, dot3(l->n, l->f)), r->h, SMALL_WARM, dp);
+    const double pull = small_hold_pull(t->hold, l->n, l->gap, lt(0, dot3(l->n, l->f)), r->h,
+                                        r->l->s.rate.warm, dp);
     for (int k = 0; k < 3; k++) t->sum[k] -= pull * l->n[k], l->u[k] -= l->wn * dp[k];
     l->calm = r->l->s.rate.calm + 2 * l->wn * pull;
     return small_vec(dp);
@@ -78,16 +78,17 @@ static void stick_touch(const struct small_run *r, struct small_touch *t)
     t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
 }
 
-vec3 small_touch_persists(const struct small_touch *t)
+vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t)
 {
-    return v3_scale(SMALL_WARM,
+    return v3_scale(r->l->s.rate.warm,
                     v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], small_vec(&t->hold[HOLD_X])));
 }
 
 /* A touch whose body has left gives its reaction back. */
 static void leave_touch(struct small_run *r, struct small_touch *t)
 {
-    vec3 f = v3_scale(-1, small_touch_persists(t)), m = v3_scale(-SMALL_WARM, touch_moment(t));
+    vec3 f = v3_scale(-1, small_touch_persists(r, t)),
+         m = v3_scale(-r->l->s.rate.warm, touch_moment(t));
     const bool pushed = !small_is_zero(t->f) || t->hold[HOLD_PULL] > 0;
     t->hold[HOLD_WET] = t->hold[HOLD_PULL] = 0;
     if (pushed) small_load_push(r, t, f);
@@ -139,9 +140,9 @@ void small_touch_give(struct small_run *r, struct small_touch *t, const struct s
 void small_touch_push(struct small_run *r, struct small_touch *t)
 {
     if (t->mu > 0) small_array(t->couple, touch_couple(t, t->f));
-    small_body_push(&r->l->s.body[t->body], small_touch_persists(t),
-                    v3_scale(SMALL_WARM, touch_moment(t)));
-    small_load_push(r, t, small_touch_persists(t));
+    small_body_push(&r->l->s.body[t->body], small_touch_persists(r, t),
+                    v3_scale(r->l->s.rate.warm, touch_moment(t)));
+    small_load_push(r, t, small_touch_persists(r, t));
 }
 
 vec3 small_touch_end(struct small_run *r, struct small_touch *t)

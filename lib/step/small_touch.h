@@ -7,7 +7,7 @@
 void small_body_push(struct body *b, vec3 f, vec3 m);
 
 /* N s: what persists of the reaction and the pull of the last step, on the body */
-vec3 small_touch_persists(const struct small_touch *t);
+vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t);
 /* The body gets that, with the moment. */
 void small_touch_push(struct small_run *r, struct small_touch *t);
 /* First sweep: is the body near its wall? One that has left gives its reaction back. */

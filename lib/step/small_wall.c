@@ -56,12 +56,17 @@ vec3 small_touch_velocity(const struct small_touch *t, const struct body *b)
     return v3_axpy(v, -t->arm, v3_cross(small_vec(b->w), t->n));
 }
 
+vec3 small_load_material(const struct small_run *r, int32_t wall, int32_t body, vec3 x)
+{
+    const struct contact c = { .a = -1 - wall, .b = body, .x = x };
+    const struct freedom *f = &r->loads.list.f[r->loads.of[wall]];
+    return v3_scale(-1, freedom_direction(f, r->p, &c, r->ahead, r->cell.edge));
+}
+
 vec3 small_load_direction(const struct small_run *r, const struct small_touch *t)
 {
     const vec3 x = v3_axpy(small_vec(r->l->s.place[t->body].x), -t->arm, t->n);
-    const struct contact c = { .a = -1 - t->wall, .b = t->body, .x = x };
-    const struct freedom *f = &r->loads.list.f[r->loads.of[t->wall]];
-    return v3_scale(-1, freedom_direction(f, r->p, &c, r->ahead, r->cell.edge));
+    return small_load_material(r, t->wall, t->body, x);
 }
 
 void small_load_push(struct small_run *r, const struct small_touch *t, vec3 f)
@@ -71,12 +76,16 @@ void small_load_push(struct small_run *r, const struct small_touch *t, vec3 f)
     r->loads.change[k] -= v3_dot(small_load_direction(r, t), f) / r->loads.list.f[k].mass;
 }
 
+double small_load_speed(const struct small_run *r, int32_t wall)
+{
+    const int32_t k = r->loads.of[wall];
+    return r->loads.list.f[k].speed + 0.5 * r->loads.change[k];
+}
+
 vec3 small_load_velocity(const struct small_run *r, const struct small_touch *t)
 {
     if (!small_is_loaded(r, t)) return v3(0, 0, 0);
-    const int32_t k = r->loads.of[t->wall];
-    const double s = r->loads.list.f[k].speed + 0.5 * r->loads.change[k];
-    return v3_scale(s, small_load_direction(r, t));
+    return v3_scale(small_load_speed(r, t->wall), small_load_direction(r, t));
 }
 
 vec3 small_touch_before(const struct small_run *r, const struct small_touch *t)

@@ -15,10 +15,13 @@ bool small_look_at_touch(const struct small_run *r, struct small_touch *t, doubl
 vec3 small_touch_velocity(const struct small_touch *t, const struct body *b);
 /* The same before the small step in hand, with the load */
 vec3 small_touch_before(const struct small_run *r, const struct small_touch *t);
-/* m/s, m: of the material of a wall that a load moves, per unit of its speed, where the body touches it */
+/* m/s, m: of the material of a wall that a load moves, per unit of its speed, at x (m), where the body touches it */
+vec3 small_load_material(const struct small_run *r, int32_t wall, int32_t body, vec3 x);
 vec3 small_load_direction(const struct small_run *r, const struct small_touch *t);
 /* The load, if there is one, gets the reaction f (N s) that the body of t has been given. */
 void small_load_push(struct small_run *r, const struct small_touch *t, vec3 f);
+/* m/s, rad/s, 1/s: the speed of the load of a wall, the mean over the small step in hand */
+double small_load_speed(const struct small_run *r, int32_t wall);
 /* m/s: by the load, the mean over the small step in hand */
 vec3 small_load_velocity(const struct small_run *r, const struct small_touch *t);
 /* The law of a touch that is near, from where it is; but for rn */

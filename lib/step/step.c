@@ -194,6 +194,8 @@ struct substep_choice step_substep(const struct substeps *s, const struct step_o
 
 void step_substep_fit(struct substep_choice *c, const struct substeps *s)
 {
+    c->meets = c->meets && c->length <= s->longest;
+    c->length = dmin(c->length, s->longest);
     const double end = dmax(fabs(s->t), fabs(s->t + s->dt)), rest = substeps_rest(s),
                  shortest = 2 * (nextafter(end, INFINITY) - end);
     if (c->length >= rest) return;
@@ -409,6 +411,33 @@ struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s
     return part;
 }
 
+int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kept,
+                  const struct step_opt *o, struct report *rep, bool *made, double *longest,
+                  struct failure *failure)
+{
+    *made = false, *longest = 0;
+    rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
+    rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
+    rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
+    if (!(o->small > 0) || !kept || small_lacks(p)) return 0;
+    const struct small_opt small = { .overlap = o->small,
+                                     .threads = o->solve.threads,
+                                     .near = &kept->near,
+                                     .bare = o->bare,
+                                     .compare = o->compare,
+                                     .bound = o->bound,
+                                     .warm = o->warm };
+    rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
+    small_advance(p, s, &kept->small, &small, rep, made, failure);
+    if (!*made) *longest = p->dt / (double)small_parts(p, o->small);
+    return failure->status;
+}
+
+void step_forget_impulses(struct packing *p, const struct step_opt *o)
+{
+    memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
+}
+
 static int advance_alone(struct packing *p, struct contacts *s, struct step_memory *kept,
                          const struct step_opt *o, struct report *rep, struct failure *failure)
 {
@@ -422,25 +451,11 @@ static int advance_alone(struct packing *p, struct contacts *s, struct step_memo
                          .watch = watch_alone,
                          .substeps = &steps },
                        kept };
-    bool impulsive = false; // its reactions are no loads, from which small steps could begin
-    rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
-    rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
-    rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
-    if (o->small > 0 && kept && !small_lacks(p)) {
-        const struct small_opt small = { .overlap = o->small,
-                                         .threads = o->solve.threads,
-                                         .near = &kept->near,
-                                         .bare = o->bare,
-                                         .compare = o->compare,
-                                         .bound = o->bound,
-                                         .warm = o->warm };
-        bool made;
-        rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
-        if (small_advance(p, s, &kept->small, &small, rep, &made, failure) || made)
-            return failure->status;
-        impulsive = true;
-    }
+    bool made;
+    double longest;
+    if (step_in_small(p, s, kept, o, rep, &made, &longest, failure) || made) return failure->status;
     substeps_begin(&steps, p);
+    if (longest > 0) steps.longest = longest;
     while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
         const struct step_opt part = step_opt_part(o, &steps);
         if (substeps_remember(&steps, p, failure)) break;
@@ -451,7 +466,7 @@ static int advance_alone(struct packing *p, struct contacts *s, struct step_memo
         if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
     }
     substeps_free(&steps);
-    if (impulsive) memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
+    if (longest > 0) step_forget_impulses(p, o);
     return failure->status;
 }
 

@@ -49,6 +49,15 @@ int step_solve(const struct packing *pack, struct contacts *s, const struct step
 int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o, struct report *rep,
                         struct failure *failure);
 
+/* A step in small ones, where o asks for them and the packing has nothing that they lack. *made: false where the packing is as it
+   was, and the step is to be made at once; *longest (s) > 0: in parts of this length, with reactions that are no loads, from which small
+   steps could begin. */
+int step_in_small(struct packing *p, struct contacts *s, struct step_memory *m,
+                  const struct step_opt *o, struct report *rep, bool *made, double *longest,
+                  struct failure *failure);
+/* After such a step: the next one begins without reactions. */
+void step_forget_impulses(struct packing *p, const struct step_opt *o);
+
 /*
  * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the
  * solve diverged, or something would not be finite after the step, nothing moves: report_made()

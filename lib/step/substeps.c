@@ -7,9 +7,13 @@
 
 void substeps_begin(struct substeps *s, const struct packing *p)
 {
-    *s = (struct substeps){
-        .dt = p->dt, .t = p->t, .t0 = p->t0, .step = p->step, .step0 = p->step0, .length = p->dt
-    };
+    *s = (struct substeps){ .dt = p->dt,
+                            .t = p->t,
+                            .t0 = p->t0,
+                            .step = p->step,
+                            .step0 = p->step0,
+                            .length = p->dt,
+                            .longest = p->dt };
 }
 
 void substeps_free(struct substeps *s)

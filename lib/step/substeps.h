@@ -15,6 +15,7 @@ struct substeps {
     double dt, t, t0; /* s: of the step; at its beginning */
     int64_t step, step0;
     double done, length; /* s: made so far; of the substep in hand, or the one before */
+    double longest;      /* s: no substep is longer */
     int64_t made;
     bool ends;            /* the step is made, or cannot be made */
     struct contacts sum;  /* of the substeps made, where there are several */

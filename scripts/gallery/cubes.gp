@@ -10,5 +10,5 @@ plot "+" using 1:(0.66):(0.68) with filledcurves lc rgb "#888888" title "dice, d
      dir . "/cubes.tsv" using 1:2:3 with yerrorlines ls 1 title "nsd"
 set ylabel "cubatic order above that at random"
 set yrange [-0.2:0.8]
-plot dir . "/cubes.tsv" using 1:4:5 with yerrorlines ls 2 title "nsd", 0 with lines ls 9 notitle
+plot dir . "/cubes.tsv" using 1:4:5 with yerrorlines ls 1 title "nsd", 0 with lines ls 9 notitle
 unset multiplot

@@ -22,6 +22,12 @@ layer()
         (map(.n) | median) as $usual | map(select(.n > 0.6 * $usual)) | (map(.y) | max) as $top |
         .[] | [($top - .y) / $d, .v / $c] | @tsv' -rs --argjson angle "$2" --argjson r "$radius"
 }
+# slip FILE SPEED: how much slower than the wall the discs at it are, over its speed; a mean over the last half of the frames
+slip()
+{
+    nsd-info -p "$1" | with '(map(.step) | max / 2) as $half | map(select(.step > $half) | .x as [$x, $y] | ($x * $x + $y * $y | sqrt) as $d |
+        select($d + 1.1 * .radius > $r) | (.v[1] * $x - .v[0] * $y) / $d / ($w * $r)) | 1 - mean' -s --argjson r "$radius" --argjson w "$2"
+}
 # froude SPEED RADIUS
 froude() { jq -n "$1 * $1 * $2 / 9.81"; }
 
@@ -29,18 +35,25 @@ echo "froude angle seed" >"$out/angle.tsv"
 echo "froude angle seed" >"$out/balls.tsv"
 for s in "${seeds[@]}"; do
     for speed in "${speeds[@]}"; do
-        scene drum --argjson w "$speed" --argjson s "$scale" --argjson seed "$s" '.seed = $seed | .walls[0].circle.radius *= $s |
-            .walls[0].drives[0].speed = $w | .bodies = [{random: {count: (2000 * $s * $s | floor)}, radius: .bodies[0].radius,
-                box: {x: [-0.071 * $s, 0.071 * $s], y: [-0.07 * $s, 0.07 * $s]}}]' |
+        # discs without overlaps: the lowest ones of a block that lie in the circle
+        scene drum --argjson seed "$s" --argjson r "$radius" '.seed = $seed | del(.walls) |
+            .bodies = [.bodies[0] | .count = (4 * $r * $r / 1.1e-5 | floor) | .box = {x: [-$r, $r], y: [-$r, null]}]' | nsd-gen - | nsd-info -p |
+            jq -rs --argjson r "$radius" --argjson n "$(jq -n "2000 * $scale * $scale | floor")" 'map(select((.x[0] * .x[0] + .x[1] * .x[1] | sqrt) + .radius < $r)) |
+                sort_by(.x[1])[:$n][] | [.x[0], .x[1], .radius] | map(tostring) | join(" ")' >"$out/discs.txt"
+        scene drum --argjson w "$speed" --argjson s "$scale" --argjson seed "$s" --arg discs "$out/discs.txt" '.seed = $seed | .walls[0].circle.radius *= $s |
+            .walls[0].drives[0].speed = $w | .bodies = [{file: $discs}]' |
             nsd-gen - | step "drum-$speed.h5" --until "$end" --every 0.05s
         a=$(angle "drum-$speed.h5")
         echo "$(froude "$speed" "$radius") $a $s" >>"$out/angle.tsv"
+        [ "$speed" != "${speeds[0]}" ] || echo "$s $(slip "$out/drum-$speed.h5" "$speed")" >>"$out/slip.tsv"
         layer "$out/drum-$speed.h5" "$a" >"$out/layer-$speed-$s.tsv"
         # the line where the layer flows at a quarter to 95 % of its fastest row
         with '(map(.[1]) | max) as $fastest | map(select(.[1] > $fastest / 4 and .[1] < 0.95 * $fastest)) |
             line + {s: $s, points: length}' -c --argjson s "$s" < <(with 'numbers' -Rs "$out/layer-$speed-$s.tsv")
         [ "$s$speed" != "${seeds[0]}${speeds[1]}" ] || cp "$out/drum-$speed.h5" "$out/drawn.h5"
     done
+    # dem.c has no cylinder
+    by nsd || slow=()
     for speed in "${slow[@]}"; do
         # a slice five balls wide of a drum of 20, about y
         jq -n --argjson w "$speed" --argjson seed "$s" '{title: "A slice of a drum of balls", dt: 5e-4, density: 2500, mu: 0.4, e_n: 0.3, seed: $seed,
@@ -63,6 +76,7 @@ with '. as $lines | ($angle | numbers) as $a | ($balls | numbers) as $b | ($a | 
     row("linear"; by_seed(.r2)),
     row("shear rate"; by_seed(-.b)),
     row("slow angle"; $a | map(select(.[0] == $slowest) | .[1])),
+    row("slip"; $slip | numbers | map(.[1])),
     row("steps that fall"; $a | group_by(.[2]) | map(sort_by(.[0]) | map(.[1]) as $v | [range(1; $v | length) | select($v[.] < $v[. - 1])] | length)),
     if $b == [] then empty else ($b | map(.[0]) | min) as $slowest | row("balls"; $b | map(select(.[0] == $slowest) | .[1])) end' \
-    -s --rawfile angle "$out/angle.tsv" --rawfile balls "$out/balls.tsv" "$out/lines.json" | results
+    -s --rawfile angle "$out/angle.tsv" --rawfile balls "$out/balls.tsv" --rawfile slip "$out/slip.tsv" "$out/lines.json" | results

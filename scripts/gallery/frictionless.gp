@@ -10,6 +10,6 @@ plot dir . "/shear.tsv" using 1:2:3 with yerrorbars ls 1 title "nsd", fit_mu(x) 
 set key left bottom
 set ylabel "solid fraction"
 set yrange [0.58:0.66]
-plot dir . "/shear.tsv" using 1:4:5 with yerrorbars ls 2 title "nsd", fit_phi(x) with lines ls 2 title "a - b I^{0.38}", \
+plot dir . "/shear.tsv" using 1:4:5 with yerrorbars ls 1 title "nsd", fit_phi(x) with lines ls 1 title "a - b I^{0.38}", \
      0.639 with lines ls 9 title "random close packing"
 unset multiplot

@@ -22,7 +22,7 @@ for seed in "${seeds[@]}"; do
         before=shear-$rate-$seed.h5
         nsd-gen "$out/scene.json" | step "$before" --overlap-rule gap --until "$end" --every "$(jq -n "$end / 300")s" --contacts
         # I, mu, phi, the pressure across the shear, seed
-        nsd-stat -m stress,fraction "$out/$before" |
+        stresses "$before" |
             jq -rs --argjson begin "$begin" --argjson I "$rate" --argjson seed "$seed" 'def mean: add / length; map(select(.time > $begin)) |
                 (map(.stress.tensor[1][1]) | mean) as $p |
                 [$I, (map(-.stress.tensor[0][1]) | mean) / $p, (map(.fraction.fraction) | mean), $p, $seed] | @tsv' >>"$out/runs.tsv"

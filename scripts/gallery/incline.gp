@@ -21,5 +21,5 @@ set xrange [0:*]
 set yrange [0:h * 1.25]
 set trange [0:h]
 plot us * (1 - (1 - t / h) ** 1.5), t with lines ls 9 title "Bagnold", \
-     for [i=1:words(profiles)] dir . "/" . word(profiles, i) using 2:1 with points ls 2 ps 0.8 title (i == 1 ? "nsd, 25 degrees" : "")
+     for [i=1:words(profiles)] dir . "/" . word(profiles, i) using 2:1 with points ls 1 ps 0.8 title (i == 1 ? "nsd, 25 degrees" : "")
 unset multiplot

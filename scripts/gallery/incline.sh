@@ -18,10 +18,13 @@ flows() { nsd-info -p "$out/$1" | jq -s 'map(select(.mass > 0)) | (map(.step) | 
 moves() { nsd-info --last -p "$out/$1" | jq -s 'map(select(.mass > 0) | .v[0] | fabs) | add / length > 2e-3'; }
 
 # A layer that flows is lowered by half a degree at a time until nothing moves: height, degrees to start from, width
-stops=$(pick '3:26:24 7:22:15' '4:27:30 6:25:24 9:23:18 13:21:18 18:20:18')
+stops=$(pick '3:26:24 7:22:15' '4:27:30 6:25:24 9:23:18 13:21:18 18:20:18 35:18:18')
 hold=$(pick 40 60) less=$(pick 1 0.5)
 echo "height angle seed" >"$out/stop.tsv"
-for s in "${seeds[@]}"; do
+# two heights only: those that are compared with the independent code, and with what is published
+[ "${PART:-}" != thick ] && by nsd || stops=$(pick "$stops" '18:20:18 35:18:18')
+if by reference || [ "${PART:-}" = thick ]; then PART=stop; fi
+! part stop || for s in "${seeds[@]}"; do
     for h in $stops; do
         IFS=: read -r h angle width <<<"$h"
         layer lower.h5 "$width" "$h" "$angle" "$s" --until "$hold" --every "${hold}s"
@@ -39,7 +42,7 @@ done
 runs=$(pick '8:100 14:150' '16:250 20:250 25:300 32:350 40:450')
 width=$(pick 12 20)
 echo "height speed seed" >"$out/flow.tsv"
-for s in "${seeds[@]}"; do
+! part flow || for s in "${seeds[@]}"; do
     for h in $runs; do
         IFS=: read -r h until <<<"$h"
         layer "flow-$h-$s.h5" "$width" "$h" 25 "$s" --until "$until" --every "$(jq -n "$until / 60")s"
@@ -50,6 +53,13 @@ for s in "${seeds[@]}"; do
         map(select(.[0] > $from)) | group_by(.[1] | floor) | map([(map(.[1]) | add / length) - 1, (map(.[2]) | add / length), length]) |
         (map(.[2]) | max) as $most | .[] | select(.[2] > $most / 2) | @tsv' >"$out/profile-$s.tsv"
 done
+
+if [ "${PART:-}" = stop ]; then
+    with '($stop | numbers) as $s | ($s | map(.[0]) | max) as $thick |
+        row("stop angle"; $s | map(select(.[0] == $thick) | .[1])),
+        (if any($s[]; .[0] == 18) then row("stop angle 18"; $s | map(select(.[0] == 18) | .[1])) else empty end)' -n --rawfile stop "$out/stop.tsv" | results
+    exit
+fi
 
 # What is drawn: means over the seeds, Pouliquen's curve through the angles of rest, Bagnold's profile
 with '($stop | numbers | map([.[0], .[1]]) | spread) as $m |
@@ -72,6 +82,7 @@ curve
 picture -c speed "$out/flow-${h}-${seeds[0]}.h5"
 with '($stop | numbers) as $s | ($s | map(.[0]) | max) as $thick |
     row("stop angle"; $s | map(select(.[0] == $thick) | .[1])),
+    (if any($s[]; .[0] == 18) then row("stop angle 18"; $s | map(select(.[0] == 18) | .[1])) else empty end),
     row("steps that rise"; $s | group_by(.[2]) | map(sort_by(.[0]) | map(.[1]) as $a | [range(1; $a | length) | select($a[.] > $a[. - 1])] | length)),
     row("form"; $r2),
     row("exponent"; map(.exponent)),

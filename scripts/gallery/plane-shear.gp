@@ -7,5 +7,5 @@ plot dir . "/shear.tsv" using 1:2:3 with yerrorbars ls 1 title "nsd", 0.25 + 1.1
 set key right top noreverse Right
 set ylabel "solid fraction"
 set yrange [0.7:0.84]
-plot dir . "/shear.tsv" using 1:4:5 with yerrorbars ls 2 title "nsd", 0.81 - 0.3*x with lines ls 9 title "da Cruz et al.: 0.81 - 0.3 I"
+plot dir . "/shear.tsv" using 1:4:5 with yerrorbars ls 1 title "nsd", 0.81 - 0.3*x with lines ls 9 title "da Cruz et al.: 0.81 - 0.3 I"
 unset multiplot

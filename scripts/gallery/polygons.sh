@@ -4,7 +4,7 @@
 . "$(dirname "$0")/common.sh"
 
 # from fast to slow: every run goes on from the end of the one before; the last one is repeated with friction
-read -ra rates <<<"$(pick '0.1 0.02' '0.1 0.05 0.02 0.01 0.005')"
+read -ra rates <<<"$(pick '0.1 0.02' '0.1 0.05 0.02 0.01 0.005 0.002')"
 slow=$(pick 0.1 0.01) count=$(pick 60 200)
 
 # shear SHAPE SEED MU RATE BEFORE: SHAPE-MU-RATE-SEED.h5, from BEFORE.h5 if that is not empty
@@ -23,7 +23,7 @@ shear()
     fi >"$out/scene.json"
     nsd-gen "$out/scene.json" | step "$name.h5" --until "$end" --every "$(jq -n "$end / 200")s" --contacts
     # I, shear stress over pressure, phi, the pressure, seed
-    nsd-stat -m stress,fraction "$out/$name.h5" |
+    stresses "$name.h5" |
         jq -rs --argjson begin "$begin" --argjson I "$4" --argjson seed "$2" 'def mean: add / length; map(select(.time > $begin)) |
             (map(.stress.tensor[1][1]) | mean) as $p | [$I, (map(-.stress.tensor[0][1]) | mean) / $p,
             (map(.fraction.fraction) | mean), $p, $seed] | @tsv' >>"$out/$1-$3.tsv"
@@ -58,9 +58,11 @@ jq -s 'add / length' "$out/pressed.json" | sed 's/^/pressed = /' >>"$out/fit.gp"
 curve
 picture --network "$out/pentagons-0.4-$slow-${seeds[0]}.h5"
 with '($discs04 | numbers) as $d | ($pentagons04 | numbers) as $p |
-    row("mu"; $pentagons[0] | map(.mu.a)),
-    row("dilatancy"; [$pentagons[0], $pressed] | transpose | map(.[0].phi.a - .[1])),
+    # at the slowest rate: a limit would depend on the exponent of its line
+    ($pentagons0 | numbers | group_by(.[4]) | map(min_by(.[0]))) as $slow |
+    row("mu"; $slow | map(.[1])),
+    row("dilatancy"; [$slow, $pressed] | transpose | map(.[0][2] - .[1])),
     row("strength"; [$p, $d] | transpose | map(.[0][1] / .[1][1])),
     row("pressure"; $pentagons[0] | map(.p))' \
     -n --slurpfile pentagons "$out/pentagons.json" --slurpfile pressed "$out/pressed.json" \
-    --rawfile pentagons04 "$out/pentagons-0.4.tsv" --rawfile discs04 "$out/discs-0.4.tsv" | results
+    --rawfile pentagons0 "$out/pentagons-0.tsv" --rawfile pentagons04 "$out/pentagons-0.4.tsv" --rawfile discs04 "$out/discs-0.4.tsv" | results

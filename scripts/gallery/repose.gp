@@ -13,6 +13,11 @@ set xlabel "Bond number"
 unset ylabel
 set xrange [-1:32]
 set xtics 10
-plot dir . "/cohesion-mean.tsv" using 1:2:3 with yerrorlines ls 2 title "cohesion", \
-     dir . "/lumps.tsv" using 1:(3) with points ls 9 pt 4 dt 1 title (system("cat lumps.tsv") eq "" ? "" : "some heaps are one lump")
+# a heap that is one lump has no slope: its Bond number is marked at the axis
+lumps = system("sort -g lumps.tsv | sed 's/ .*//;q'")
+if (lumps ne "") {
+    set object 1 rectangle from lumps + 0, graph 0 to 32, graph 1 behind fs solid noborder fc rgb "#eeeeee"
+    set label 2 "some heaps:\none lump,\nno slope" at lumps + 1, graph 0.5 left tc rgb "#666666"
+}
+plot dir . "/cohesion-mean.tsv" using 1:2:3 with yerrorlines ls 1 title "cohesion"
 unset multiplot

@@ -32,10 +32,21 @@ def row($key; $found):
   ($found | if type == "array" then . else [.] end | map(select(. != null))) as $v |
   { key: $key, found: ($v | mean | digits(4)), error: ($v | error | digits(2)), seeds: ($v | length) };
 
-# Findings beside what is published ($table: the rows of the experiment's .json). The mean holds where it lies
-# between low and high; a bound that is null is none.
-def judged($table):
-  map(. as $f | ($table | map(select(.key == $f.key)) | .[0] // error("no row named " + $f.key + " is in the table")) |
-    { what, found: $f.found, error: $f.error, seeds: $f.seeds,
-      holds: ($f.found != null and (.low == null or $f.found >= .low) and (.high == null or $f.found <= .high)),
-      low, high, published, source, read });
+# Findings of a run, and those that were kept: a run of a part replaces its rows only
+def merged($kept): . as $new | ($new.runs[0].part) as $part |
+  if $kept == null or $part == null then . else .runs = ($kept.runs | map(select(.part != $part))) + $new.runs |
+    .rows = ($kept.rows | map(select(.key as $k | all($new.rows[]; .key != $k)))) + $new.rows end;
+
+# what a row says. A row judges nothing ("remark") whose range is from a source that was not read, that is an identity, or
+# that has one bound or none. A value differs from a range beyond two of its standard errors only.
+def kind: if .source == "momentum" then "identity" elif .low == null and .high == null then "no range" elif .read | not then "not read"
+  elif .low == null or .high == null then "one bound" else "judged" end;
+def beyond($v; $low; $high): if $low != null and $v < $low then $low - $v elif $high != null and $v > $high then $v - $high else 0 end;
+def verdict($found; $low; $high):
+  if $found == null or $found.found == null or $found.previous then "not yet run"
+  else beyond($found.found; $low; $high) as $off | if $off == 0 then "agrees" elif $off <= 2 * ($found.error // 0) then "within two errors" else "differs" end end;
+# of two codes
+def compared($a; $b):
+  if $a.found == null or $b.found == null or $a.previous then null
+  else ($a.found - $b.found | fabs) as $off | (pow($a.error // 0; 2) + pow($b.error // 0; 2) | sqrt) as $error |
+    if $off <= 2 * $error or $off <= 1e-9 then "same" elif $a.error == null or $b.error == null then "unknown" else "differ" end end;

@@ -1,20 +1,28 @@
-set multiplot layout 1,2
-set xlabel "strain"
-set ylabel "sin of the mobilised friction angle"
-set yrange [0:0.8]
-set xtics 0.1
-set key top right noreverse Right
 shapes = quick ? "discs" : "discs balls"
 starts = "dense loose"
+set multiplot layout 2, words(shapes) columnsfirst
 set style fill transparent solid 0.25 noborder
-colour(s, t) = word("#1f4e79 #c05a1a #4a7d3a #7a4a8a", 2 * s + t - 2)
+# blue: the dense start, orange: the loose one; the band around each curve is the standard error of the mean over the seeds
+colour(t) = word("#1f4e79 #c05a1a", t)
 file(s, t) = dir . "/" . word(shapes, s) . "-" . word(starts, t) . ".tsv"
-plot for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:($2-$3):($2+$3) with filledcurves lc rgb colour(s, t) notitle, \
-     for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:2 with lines lc rgb colour(s, t) title word(shapes, s) . ", " . word(starts, t), \
-     0.29 with lines ls 9 title "discs: 0.28 to 0.3", \
-     for [k = 2 : words(shapes)] 0.36 with lines lc rgb "#888888" dt 4 title "balls: 0.34 to 0.38"
-set ylabel "solid fraction"
-set yrange [*:*]
-plot for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:($4-$5):($4+$5) with filledcurves lc rgb colour(s, t) notitle, \
-     for [s = 1 : words(shapes)] for [t = 1 : 2] file(s, t) using 1:4 with lines lc rgb colour(s, t) notitle
+least(s) = s == 1 ? 0.28 : 0.34
+most(s) = s == 1 ? 0.30 : 0.38
+set xtics 0.1
+set lmargin 10; set rmargin 2
+do for [s = 1 : words(shapes)] {
+    set title sprintf("%s; grey: published, %g to %g", word(shapes, s), least(s), most(s)) offset 0, -0.7
+    set ylabel s == 1 ? "sin of the friction angle" : ""
+    set xlabel ""
+    set yrange [0:0.6]; set ytics 0.2
+    set object 1 rectangle from graph 0, first least(s) to graph 1, first most(s) behind fc rgb "#cccccc" fs solid noborder
+    set key top right horizontal noreverse Right
+    plot for [t = 1 : 2] file(s, t) using 1:($2-$3):($2+$3) with filledcurves lc rgb colour(t) notitle, \
+         for [t = 1 : 2] file(s, t) using 1:2 with lines lw 1.5 lc rgb colour(t) title word(starts, t)
+    unset object 1; unset title; unset key
+    set xlabel "strain"
+    set ylabel s == 1 ? "solid fraction" : ""
+    set yrange [*:*]; set ytics 0.02
+    plot for [t = 1 : 2] file(s, t) using 1:($4-$5):($4+$5) with filledcurves lc rgb colour(t) notitle, \
+         for [t = 1 : 2] file(s, t) using 1:4 with lines lw 1.5 lc rgb colour(t) notitle
+}
 unset multiplot

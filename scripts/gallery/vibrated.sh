@@ -15,14 +15,14 @@ for seed in "${seeds[@]}"; do
             nsd-gen - | step fall.h5 --until "$(jq -n "0.3 + $periods / 40")" --every 1s
         nsd-step --until "$(jq -n "0.3 + $periods / 20")" --contacts -o "$out/bed.h5" "$out/fall.h5" 2>"$out/bed.log"
         mass=$(nsd-info -p --last "$out/bed.h5" | jq -s 'map(.mass) | add')
-        nsd-stat -m boundaries "$out/bed.h5" |
+        nsd-stat -m walls "$out/bed.h5" |
             with '
             # of a ball that does not bounce: the phase from its leaving to its landing, over 2 pi
             def closed($g): if $g <= 1 then 0 else (1 / $g | asin) as $at |
                 def above($x): ($at | sin) + $x * ($at | cos) - $x * $x / (2 * $g) - ($at + $x | sin);
                 (first(range(1; 6000) | . / 1000 | select(. > 0.05 and above(.) < 0))) as $land | $land / (2 * 3.141592653589793) end;
             # a flight is as long as eight steps: a bed that is nearly weightless pushes the floor at one step and not at the next
-            map(.boundaries.normal | add // 0) | mean as $force | length as $all |
+            map(.walls.normal | add // 0) | mean as $force | length as $all |
             (reduce .[] as $f ({run: 0, free: 0};
                 if $f == 0 then .run += 1 else (if .run >= 8 then .free += .run else . end) | .run = 0 end) |
                 .free + (if .run >= 8 then .run else 0 end)) as $free |

@@ -14,11 +14,11 @@ for seed in "${seeds[@]}"; do
             .seed = $seed | .mu = 1 | .e_n = 0.5 | .walls[2] = {segment: [[$w, 0], [$w, 20]], until: $gate} | .pairs = [{pair: ["ball", "wall"], cohesion: {force: 0}}] |
             (if $f > 0 then .cohesion = {force: $f, range: 5e-5} else . end) |
             .bodies = [{random: {phi: $phi}, radius: .bodies[0].radius, box: {x: [0, $w], y: [0, 1.03 * $a * $w]}}]' |
-            nsd-gen - | step column.h5 --until "$gate" --every 1s
+            nsd-gen - | start column.h5 --until "$gate" --every 1s
         # the document has its gate, which vanishes at its next step
-        nsd-step --until 1.8 --every 0.5s --contacts -o "$out/run-$b-$seed.h5" "$out/column.h5" 2>"$out/run-$b-$seed.log"
+        step "run-$b-$seed.h5" --until 1.8 --every 0.5s <"$out/column.h5"
         { nsd-info --last -p "$out/column.h5"; nsd-info --last -p "$out/run-$b-$seed.h5"; } |
-            jq -rs --argjson w "$width" --arg b "$b" --argjson front "$(front "run-$b-$seed.h5")" 'group_by(.step) | map(map(.x[1] + .radius) | max) as $top |
+            jq -rs --argjson w "$width" --arg b "$b" --argjson front "$(front "run-$b-$seed.h5" 0.01)" 'group_by(.step) | map(map(.x[1] + .radius) | max) as $top |
                 "\($b) \(($front - $w) / $w) \($top[1] / $top[0])"'
     done
 done >"$out/runout.tsv"

@@ -12,5 +12,5 @@ unset arrow
 unset label
 set ylabel "roughness of the surface, diameters"
 set yrange [0:*]
-plot dir . "/mean.tsv" using 1:4:5 with yerrorlines ls 2 title "nsd"
+plot dir . "/mean.tsv" using 1:4:5 with yerrorlines ls 1 title "nsd"
 unset multiplot

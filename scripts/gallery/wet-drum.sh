@@ -4,7 +4,6 @@
 # shellcheck source=scripts/gallery/common.sh
 . "$(dirname "$0")/common.sh"
 
-[ -n "${SEEDS:-}${QUICK:-}" ] || seeds=(1 2 3 4)
 scale=$(pick 0.5 1) end=$(pick 0.9 1.6)
 read -ra bonds <<<"$(pick '0 3' '0 1 3 6 12')"
 weight=$(jq -n '2500 * 3.141592653589793 * 1.5e-3 * 1.5e-3 * 9.81')

@@ -35,10 +35,17 @@ cp -r cookbook/drum /tmp; cd /tmp/drum; bash run.sh
 Every recipe runs within seconds at the size that is printed, and a test of nsd runs it.
 .Xr nsd-tutorial 7
 explains the steps of one recipe in detail.
-.Bl -column "stress-strain" "title"
 EOT
-for d in "$@"; do [ ! -e "$d/about" ] || echo ".It Pa $(basename "$d") Ta $(head -n 1 "$d/about" | text)"; done
-echo ".El"
+# the index by task: cookbook/tasks, and what it does not name
+row() { echo ".It Pa $1 Ta $(head -n 1 "cookbook/$1/about" | text)"; }
+unnamed() { for d in "$@"; do d=$(basename "$d"); grep -qE "[ :]$d( |\$)" cookbook/tasks || printf ' %s' "$d"; done; }
+while IFS=: read -r task names; do
+    [ -n "$names" ] || continue
+    echo ".Ss $task"
+    echo '.Bl -column "restart-other-parameters" "title"'
+    for name in $names; do [ ! -e "cookbook/$name/about" ] || row "$name"; done
+    echo ".El"
+done < <(cat cookbook/tasks && echo "Other recipes:$(unnamed "$@")")
 echo ".Sh RECIPES"
 for d in "$@"; do
     [ -e "$d/about" ] || continue

@@ -44,12 +44,15 @@ for f in docs/peers/*.json; do
         "peers_deep\t\($deep | map(select(. > 0.1)) | length)", "peers_deepest\t\($deep | max * 10 | round / 10)",
         "peers_auto_least\t\($auto | min * 100 | round / 100)", "peers_auto_most\t\($auto | max * 10 | round / 10)"' "$f"
 done | sort -u
+printf 'peers_blind\t%s\n' "$(grep -c '^Until then both codes have the same value' docs/peers/README.md)"
 
-jq -rs 'map(.rows[]) | "gallery_rows\t\(length)", "gallery_within\t\(map(select(.holds)) | length)",
-    "gallery_differ\t\(map(select(.holds | not)) | length)",
-    "gallery_read\t\(map(select(.read)) | length)", "gallery_unread\t\(map(select(.read | not)) | length)",
-    "gallery_identities\t\(map(select(.source == "momentum")) | length)",
-    "gallery_one_sided\t\(map(select(.low == null or .high == null)) | length)"' docs/gallery/*/result.json
+jq -r 'def count(f): map(select(f)) | length; def judged: .kind == "judged" and .verdict != "not yet run";
+    "gallery_rows\t\(length)", "gallery_judged\t\(count(judged))", "gallery_within\t\(count(judged and .verdict != "differs"))",
+    "gallery_differ\t\(count(judged and .verdict == "differs"))", "gallery_unread\t\(count(.kind == "not read"))",
+    "gallery_identities\t\(count(.kind == "identity"))", "gallery_one_sided\t\(count(.kind == "one bound"))",
+    "gallery_not_yet\t\(count(.verdict == "not yet run"))", "gallery_independent\t\(count(.codes))",
+    "gallery_same\t\(count(.codes == "same"))", "gallery_codes_differ\t\(count(.codes == "differ"))",
+    "gallery_both\t\(count(judged and .verdict == "differs" and .codes == "same"))"' docs/gallery/table.json
 printf 'gallery_small\t%s\n' "$(jq -rs 'map(select(.quick) | .name) | if length > 0 then join(", ") else "none" end' docs/gallery/*/result.json)"
 printf 'gallery_experiments\t%s\n' "$(find docs/gallery -name result.json | wc -l)"
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""wall.py COMMAND ...: what holds up the solvers on large piles (make wall; nsd-methods(7)).
+"""wall.py COMMAND ...: what holds up the solvers on large piles (make wall; nsd-convergence(7)).
 
   follow G S...          the iterates S of the problem G, one after the other: a line of JSON each
   spectrum G S COUNT     the COUNT eigenvalues nearest to -1e-4 of the law made linear at S: a line of JSON

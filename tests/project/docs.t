@@ -41,10 +41,11 @@ structure() # FILE: what is wrong with it
             if (FILENAME ~ /1$/ && heads !~ /^NAME;SYNOPSIS;DESCRIPTION;.*EXIT STATUS;.*EXAMPLES;/) complain("headings: " heads)
         }' "$1"
 }
-ok "make: nsd-cookbook(7), nsd-scene(5)" make -s build/man/nsd-cookbook.7 build/man/nsd-scene.5
+mapfile -t keyed < <(grep -l '^\.\\" keys ' man/*) # made: with the keys of scenes
+ok "make: nsd-cookbook(7), and pages with keys of scenes" make -s build/man/nsd-cookbook.7 "${keyed[@]/#/build/}"
 is "make demo begins without a complaint where no compiler is installed yet" \
     "$(make -n demo CC=no-such-compiler 2>&1 >/dev/null)" ""
-mapfile -t pages < <(printf '%s\n' man/* build/man/nsd-cookbook.7 build/man/nsd-scene.5 | grep -vx man/nsd-scene.5)
+mapfile -t pages < <(printf '%s\n' man/* build/man/nsd-cookbook.7 "${keyed[@]/#/build/}" | grep -vxFf <(printf '%s\n' "${keyed[@]}"))
 for manual in "${pages[@]}"; do is "$manual: macros, lists and headings" "$(structure "$manual")" ""; done
 broken() # LINE BECOMES: a manual with one fault
 {
@@ -75,8 +76,23 @@ strangers() # references to pages of ours that do not exist
     done
 }
 is "every manual that is referred to exists" "$(strangers)" ""
+quoted() # sections of other pages that a page names, as \(lqTITLE\(rq or .Em TITLE beside .Xr PAGE, and in lines of help, which do not exist
+{
+    {
+        awk '{ sub(/\r$/, "") }
+            /^\.Xr nsd[a-z-]* [0-9] ,$/ { page = $2 "." $3; next }
+            page != "" && match($0, /^\\\(lq[^\\]*\\\(rq/) { print FILENAME "\t" page "\t" substr($0, 5, RLENGTH - 8) }
+            { page = "" }' man/*.[1357]
+        awk '/^\.Em / { title = substr($0, 5); next } title != "" && $0 == "in" { next }
+            title != "" && /^\.Xr nsd[a-z-]* [0-9]/ { print FILENAME "\t" $2 "." $3 "\t" title } { title = "" }' man/*.[1357]
+        nsd-gen --keys | grep -oE 'nsd-[a-z]+\([0-9]\), "[^"]*"' | sed 's/\(.*\)(\(.\)), "\(.*\)"/nsd-gen --keys\t\1.\2\t\3/'
+    } | sort -u | while IFS=$'\t' read -r from page title; do
+        grep -qxF -e ".Ss $title" -e ".Sh $title" -e ".Em $title ." "man/$page" || echo "$from: $title in $page"
+    done
+}
+is "every section that a page names in another one exists" "$(quoted)" ""
 
-# ---- nsd(7) and nsd-scene(5) are complete ----
+# ---- nsd(7) and the pages of scenes are complete ----
 
 is "nsd(7) lists every tool" "$(sed -n '/^\.Ss The tools/,/^\.Ss Conv/s/^\.It Xr \(nsd-[a-z]*\) 1$/\1/p' man/nsd.7 | sort)" "$(tools | sort)"
 letters() # of --help: letter, option, tools
@@ -104,40 +120,58 @@ quantities_of_manual()
         awk '/^\.Ss/ { measure = $2 } /^\.It Va/ { unit = $5 $6; name = $3; getline; sub(/;$/, ""); print measure, name, unit ":", $0 }'
 }
 is "nsd-stat(1) has every quantity of --list, with unit and text" \
-    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^sums_by_name |^sums_by_face ' | LC_ALL=C sort)"
-is "nsd-scene(5) has the tables of all keys" "$(sed -n 's/^\.\\" keys //p' man/nsd-scene.5 | tr ' ' '\n' | sort -u | comm -13 - <(nsd-gen --keys | sed 1d | cut -f 1 | sort -u) | tr '\n' ' ')" \
-    "circle " # has the keys of a sphere
-# groff puts what does not fit at the right edge, a word a line: five columns with three blanks between, indented by five
-unfit()
+    "$(quantities_of_manual | LC_ALL=C sort)" "$(quantities_of_list | grep -vE '^wall_loads_by_name |^wall_loads_by_face ' | LC_ALL=C sort)"
+# a circle has the keys of a sphere
+is "nsd-scene(5), nsd-walls(5) and nsd-import(5) have the keys of every object, each once" \
+    "$(sed -n 's/^\.\\" keys //p' "${keyed[@]}" | tr ' ' '\n' | sort)" "$(nsd-gen --keys | sed 1d | cut -f 1 | sort -u | grep -vx circle)"
+twice() # keys that one list of a page has twice
 {
-    sed 's/\\(dq/"/g; s/\\(ha/^/g; s/\\(ti/~/g; s/\<\(Em\|Va\|Ql\|Cm\) //g' build/man/nsd-scene.5 | awk '
-        /^\.Bl -column/ { n = split($0, width, "\""); sum = 0; for (k = 2; k < n; k += 2) sum += length(width[k]); rows = 1
-            if (sum > 61) print NR ": " sum " characters in a row" }
-        /^\.El/ { rows = 0 }
-        rows && /^\.It/ { m = split(substr($0, 5), cell, " Ta "); for (k = 1; k <= m; k++) if (length(cell[k]) > length(width[2 * k])) print cell[k] }'
+    local page
+    for page in "${keyed[@]}"; do
+        awk -v page="$page" '/^\.Bl/ { split("", seen) } /^\.It Va / && $3 in seen { print page ": " $3 } /^\.It Va / { seen[$3] }' "build/$page"
+    done
 }
-is "and tables that fit 78 characters" "$(unfit)" ""
-is "nsd-tutorial(7)'s scene is the recipe's" "$(sed -n '/^{ "title"/,/^\.Ed/p' man/nsd-tutorial.7 | grep -v '^\.Ed')" "$(cat cookbook/drum/scene.json)"
+is "no list has a key twice" "$(twice)" ""
+is "the index has every key" "$(sed -n '/^\.Sh INDEX/,/^\.Sh SEE/s/^\.It Va //p' build/man/nsd-scene.5 | sort -u)" "$(nsd-gen --keys | sed 1d | cut -f 2 | sort -u)"
 
-if command -v mandoc >/dev/null; then
-    ok "make docs" make -s docs
-    dead() # links to pages or places that are not there
-    {
-        local f page
-        for f in build/man/*.html; do
-            grep -o 'href="[^"]*"' "$f" | sed 's/href="\(.*\)"/\1/' | sort -u | while read -r page; do
-                case $page in
-                http*) ;;
-                \#*) grep -qF "id=\"${page#\#}\"" "$f" || echo "$f: $page" ;;
-                *) [ -e "build/man/${page%%#*}" ] || echo "$f: $page" ;;
-                esac
-            done
-        done
+# ---- the scenes of the pages' EXAMPLES, made and run for some steps ----
+
+mkdir -p "$tmp/scenes"
+examples() # PAGE: each scene into a file of its own
+{
+    awk -v to="$tmp/scenes/$(basename "$1")" '
+        /^\.Sh / { on = $2 == "EXAMPLES" }
+        on && /^\.Bd/ { getline; block = /^\{/; if (block) file = to "-" ++n ".json" }
+        /^\.Ed/ { block = 0 }
+        on && block { gsub(/\\e/, "\\"); gsub(/\\\(dq/, "\""); print >file }' "$1"
+}
+for page in "${keyed[@]}"; do examples "$page"; done
+is "nsd-scene(5), nsd-walls(5) and nsd-import(5) have at least ten scenes as examples" "$(($(find "$tmp/scenes" -name "*.json" | wc -l) >= 10))" 1
+(
+    cd "$tmp/scenes"
+    nsd-gen 100 | nsd-step -n 5 2>/dev/null >run.h5
+    nsd-info -p run.h5 | jq -r '[.x[], .radius] | @tsv' | tail -n 100 | awk '{ $3 += 0.01; print }' >balls.txt
+    box() { # triangles of a cube of 30, inside out: a vessel
+        python3 -c '
+import itertools
+print("solid box")
+for k, s in itertools.product(range(3), (0, 1)):
+    u, v = [[0, 0, 0] for _ in range(2)]
+    u[(k + 1) % 3] = v[(k + 2) % 3] = 30
+    o = [0, 0, 0]; o[k] = 30 * s
+    add = lambda *p: [sum(c) for c in zip(*p)]
+    corners = [o, add(o, u), add(o, u, v), add(o, v)]
+    if s: corners.reverse()
+    for t in ((0, 1, 2), (0, 2, 3)):
+        print("facet normal 0 0 0 outer loop", *("vertex %g %g %g" % tuple(corners[i]) for i in t), "endloop endfacet")
+print("endsolid box")'
     }
-    is "no link of the HTML leads nowhere" "$(dead)" ""
-else
-    skip "the manuals as HTML" "no mandoc"
-fi
+    box >vessel.stl
+)
+for scene in "$tmp"/scenes/*.json; do
+    ok "${scene##*/} is made and makes ten steps" eval 'nsd-gen "$scene" >"$tmp/scene.h5" && nsd-step -e -n 10 "$tmp/scene.h5" >"$tmp/steps.h5"'
+done
+is "nsd-tutorial(7)'s scene is the recipe's" "$(sed -n '/^{ "title"/,/^\.Ed/p' man/nsd-tutorial.7 | grep -v '^\.Ed')" "$(cat cookbook/drum/scene.json)"
 
 # ---- links of the texts, versions ----
 
@@ -153,7 +187,7 @@ missing() # files that a text links to
 is "every file that a text links to exists" "$(missing)" ""
 named() # tests that texts name
 {
-    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
+    git grep -ohE 'tests/[a-z]+/[a-z_]+(\.t|\.c|\.h|\.sh|\.py)\b' -- '*.md' '*.[ch]' man Makefile tests 2>/dev/null | sort -u |
         while read -r f; do [ -e "$f" ] || echo "$f"; done
 }
 is "every test that a text names exists" "$(named)" ""

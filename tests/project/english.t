@@ -4,7 +4,8 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2016 # functions called by name; text for eval
 . tests/support/tap.sh
 
-make -s build/man/nsd-cookbook.7 build/man/nsd-scene.5 >/dev/null
+mapfile -t keyed < <(grep -l '^\.\\" keys ' man/*)
+make -s build/man/nsd-cookbook.7 "${keyed[@]/#/build/}" >/dev/null
 # name<TAB>what is wrong<TAB>what to write
 cat >"$tmp/rejected" <<'EOT'
 \b(cells?|edges?|walls?) that repeats?\b	periodic
@@ -45,7 +46,7 @@ found() # LABEL FILE: FILE:LINE: WORDING: what to write
         text "$2" | grep -niE "$wrong" | sed "s|^|$1:|; s|\$|   -> $right|"
     done <"$tmp/rejected"
 }
-pages=(man/* build/man/nsd-scene.5 README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md cookbook/README.md
+pages=(man/* "${keyed[@]/#/build/}" README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md cookbook/README.md
     docs/notes/README.md docs/peers/README.md docs/scale/README.md docs/wall/README.md)
 for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")" ""; done
 for tool in tools/*.c; do

@@ -22,13 +22,17 @@ changed() # NAME: differs in the changed copy
 }
 sed -i 's/^\(auto\tFC3D_Example1\t.*\t1e-12\t[^\t]*\t[^\t]*\t\)1/\10/' "$tmp/other/bench/results/amd-epyc-avx2/solvers.tsv"
 ok "a problem that is no longer solved" changed fclib_auto
-jq '.rows[0].holds = (.rows[0].holds | not)' docs/gallery/drum/result.json >"$tmp/other/docs/gallery/drum/result.json"
+jq '(first(.[] | select(.kind == "judged" and .verdict == "agrees")) | .verdict) = "differs"' docs/gallery/table.json >"$tmp/other/docs/gallery/table.json"
 ok "a comparison with another verdict" changed gallery_within
 peers=$(find docs/peers -name '*.json' | head -n 1)
 jq '.jobs |= with_entries(.value.variants.nsd.runs[0].cpu *= 3)' "$peers" >"$tmp/other/$peers"
 ok "a job that takes three times as long" changed peers_most
 
 # ---- what the commands print ----
+
+ok "docs/peers/README.md is made of its kept results (else: bench/peers/page.py docs/peers/*.json)" \
+    cmp docs/peers/README.md <(python3 bench/peers/page.py docs/peers/*.json)
+ok "README.md's run ends with status 0 under -e" eval 'nsd-gen cookbook/drum/scene.json | nsd-step -e --until 1.2 --every 0.2s >"$tmp/drum.h5"'
 
 ok "the drum's angles are what it prints" cmp docs/readme/drum.txt <(scripts/readme/readme.sh drum)
 if command -v gnuplot >/dev/null; then

@@ -45,10 +45,10 @@ def lattice(document, phi, z, anisotropy):
 
 def column(document):
     """n balls one above the other at rest: contact k carries what lies above it."""
-    d, s = last(document), stat("--last", "-m", "boundaries,stress,profile", "--layers", "z:5", document)[-1]
+    d, s = last(document), stat("--last", "-m", "walls,stress,profile", "--layers", "z:5", document)[-1]
     n, m, g, r = len(d["mass"]), d["mass"][0], -d["g"][2], d["radius"][0]
-    floor = s["boundaries"]["boundary"].index(0)
-    close(s["boundaries"]["force"][floor], [0, 0, -n * m * g], 1e-6)
+    floor = s["walls"]["wall"].index(0)
+    close(s["walls"]["force"][floor], [0, 0, -n * m * g], 1e-6)
     weights = m * g * np.arange(1, n)  # between balls, from the top
     whole = (2 * r * weights.sum() + r * n * m * g) / (np.pi * r * r)  # times the volume by the area, below
     volume = stat("--last", "-m", "fraction", document)[-1]["fraction"]["volume"]
@@ -76,10 +76,10 @@ def same_as_numpy(document):
     close(s["temperature"]["velocity"], mean, 1e-9)
     close(s["temperature"]["temperature"], np.trace(kinetic) / m.sum() / 3, 1e-9)
     for w in set(-1 - a[wall]):
-        i = s["boundaries"]["boundary"].index(w)
-        close(s["boundaries"]["force"][i], -f[a == -1 - w].sum(0), 1e-9, np.abs(f).max())
+        i = s["walls"]["wall"].index(w)
+        close(s["walls"]["force"][i], -f[a == -1 - w].sum(0), 1e-9, np.abs(f).max())
         torque = np.cross(d["point"][a == -1 - w], -f[a == -1 - w]).sum(0)
-        close(s["boundaries"]["torque"][i], torque, 1e-9, np.abs(f).max() * np.abs(d["point"]).max())
+        close(s["walls"]["torque"][i], torque, 1e-9, np.abs(f).max() * np.abs(d["point"]).max())
     push = d["reaction"][:, 0] > 0
     close(s["fabric"]["tensor"], np.einsum("ci,cj->ij", n[push], n[push]) / push.sum(), 1e-9)
     close(s["energy"]["kinetic"], 0.5 * (m * (v ** 2).sum(1)).sum(), 1e-9)

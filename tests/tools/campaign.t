@@ -69,4 +69,18 @@ chmod +x "$tmp/bin/sbatch"
 ok "a Slurm array makes the same runs" cmp <(frames "$tmp/make") <(frames "$tmp/slurm")
 status 64 "a task too many says so" env SLURM_ARRAY_TASK_ID=4 "$campaign/array.sbatch"
 
+# the script of one run by MPI: the same as the run without it, with --order colour; a job that is requeued resumes
+if command -v mpirun >/dev/null && [ -x "$(command -v nsd-step-mpi)" ]; then
+    nsd-gen "$SCENE" >"$tmp/one.h5"
+    cp "$tmp/one.h5" "$tmp/two.h5"
+    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 MPIRUN="mpirun --oversubscribe" OPTIONS="--order colour"
+    job() { (cd "$tmp" && RUN=two UNTIL=$1 SLURM_NTASKS=2 "$campaign/mpi.sbatch") >/dev/null 2>&1; }
+    ok "mpi.sbatch makes a run" job 0.02
+    ok "and resumes it" job 0.04
+    nsd-step --small-steps 0 --order colour -i --until 0.04 --every "$EVERY" "$tmp/one.h5" 2>/dev/null
+    ok "and has the frames of one process" cmp <(nsd-info -p "$tmp/one.h5") <(nsd-info -p "$tmp/two.h5")
+else
+    skip "mpi.sbatch makes a run" "no MPI"
+fi
+
 done_testing

@@ -356,4 +356,20 @@ for command in "${keepers[@]}"; do
     done
 done
 
+# a solver of the user's own, in Python: nsd-err judges it, and the step is nsd-solve's
+if have_h5py && has scipy; then
+    nsd-gen 20 | nsd-step --solver auto -n 500 --every 500 2>"$tmp/err" | nsd-detect --fclib=local >"$tmp/problem.h5"
+    own() { /usr/bin/python3 docs/examples/solver.py <"$tmp/problem.h5" >"$tmp/own.h5"; }
+    judged() { nsd-err "$tmp/own.h5" | jq -e '.natural < 1e-6 and .contacts > 10'; }
+    ok "docs/examples/solver.py solves a packing" own
+    ok "to a natural map of 1e-6" judged
+    velocities() { nsd-move "$1" | nsd-info -p | jq -c '.v[]'; }
+    nsd-solve --tolerance 1e-9 "$tmp/problem.h5" >"$tmp/solved.h5" 2>"$tmp/err"
+    paste <(velocities "$tmp/own.h5") <(velocities "$tmp/solved.h5") >"$tmp/both"
+    # shellcheck disable=SC2016 # columns of awk
+    ok "and the bodies move as by nsd-solve" awk '($1 - $2) ^ 2 > 1e-14 { bad = 1 } END { exit bad || NR < 60 }' "$tmp/both"
+else
+    skip "docs/examples/solver.py solves a packing" "no h5py, scipy"
+fi
+
 done_testing

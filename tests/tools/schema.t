@@ -78,7 +78,7 @@ space = {
               {"sphere": {"center": [0, 0, 0], "radius": 30, "side": "outside"}},
               {"mesh": {"file": "stone.obj", "scale": 2, "at": [0, 0, 0], "parts": [{"name": "tip", "faces": [0, 1]}]},
                "materials": [{"faces": [0, 1], "kind": "steel", "belt": [0, 0, 0]}]}],
-    "room": {"walls": ["box"], "pressure": 1, "strain_rate": [0, 0, 0], "center": [0, 0, 0], "mass": 1, "growth": 0},
+    "servo": {"walls": ["box"], "pressure": 1, "strain_rate": [0, 0, 0], "center": [0, 0, 0], "mass": 1, "growth": 0},
     "bodies": [{"x": [0, 0, 0], "radius": 1, "v": [0, 0, 0], "w": [0, 0, 0], "kind": "steel", "density": 3, "fixed": True, "name": "one"},
                {"x": [9, 0, 0], "size": 1, "shape": "brick", "orientation": [0, 0, 1], "mass": 1},
                {"count": 3, "radius": {"uniform": [0.1, 0.2]}, "box": {"x": [0, 9], "y": [0, 9], "z": [0, None]}, "cells": "own",
@@ -118,7 +118,7 @@ cell = {
 seen = re.compile("unknown key|is missing|needs |must be positive|must not be negative|must lie in|must be at least|must not be zero|"
                   "goes with|does not go with|is given too|is no choice|only a |must be below 2 pi|must be less than pi/2|types are whole")
 unseen = re.compile("no kind|no wall|no shape|a name|the name|needs a box|needs [0-9]+ to |needs \\[min|needs .walls|closed box|needs a height|"
-                    "must be below|needs two points|needs two kinds|names of walls|needs the name|two adjacent|only a room with .* grows|"
+                    "must be below|needs two points|needs two kinds|names of walls|needs the name|two adjacent|only a servo with .* grows|"
                     "stress-controlled and needs a mass|only a plane|cell: needs one of|drives.*from: is missing|box: is missing")
 def gen(scene):
     p = subprocess.run(["nsd-gen", "-"], input=json.dumps(scene).encode(), capture_output=True, cwd=tmp)
@@ -164,7 +164,7 @@ def parts(scene):
     for key, value in scene.items():
         small = {k: scene[k] for k in ("dt", "dim", "kinds") if k in scene}
         if key in ("bodies", "pour"): small["shapes"] = {k: scene["shapes"][k] for k in ("brick", "pill", "tile") if k in scene["shapes"]}
-        if key == "room": small["walls"] = [scene["walls"][1]]
+        if key == "servo": small["walls"] = [scene["walls"][1]]
         if key == "mu_s": small["v_s"] = scene["v_s"]
         if key == "v_s": small["mu_s"] = scene["mu_s"]
         items = [[x] for x in value] if isinstance(value, list) and isinstance(value[0], dict) else \

@@ -227,4 +227,17 @@ refuses 64 "two measures of many rows in one table" nsd-stat --tsv -m profile,pa
 refuses 64 "fields in a text" nsd-stat -f fields.txt "$tmp/heap.h5"
 refuses 66 "a file that is not there" nsd-stat "$tmp/nothing.h5"
 
+# former names of measures, as scripts of others have them
+nsd-gen 20 | nsd-step --solver auto --sums --contacts -n 200 --every 100 >"$tmp/walls.h5" 2>"$tmp/err"
+for pair in boundaries=walls sums=wall_loads sums_by_face=wall_loads_by_face; do
+    is "-m ${pair%=*} is -m ${pair#*=}, with its former names" \
+        "$(nsd-stat -m "${pair%=*}" "$tmp/walls.h5" 2>"$tmp/err" | jq -c ".${pair%=*} | if .boundary then .wall = .boundary | del(.boundary) else . end |
+            if .rub then .sliding_work = .rub | del(.rub) else . end" | jq -S -c .)" \
+        "$(nsd-stat -m "${pair#*=}" "$tmp/walls.h5" 2>"$tmp/err" | jq -S -c ".${pair#*=}")"
+done
+is "and only these" "$(nsd-stat --last -m boundaries,sums "$tmp/walls.h5" 2>"$tmp/err" | jq -c '[.boundaries, .sums | has("wall", "boundary", "sliding_work", "rub")]')" \
+    '[false,true,false,false,false,true,false,true]'
+is "an unknown measure is answered with a name of today" "$(nsd-stat -m boundarie "$tmp/walls.h5" 2>&1 | head -n 1)" \
+    "nsd-stat: --measures: no 'boundarie' (nsd-stat --list names them)"
+
 done_testing

@@ -166,22 +166,24 @@ wrong() # NAME CHANGE MESSAGE
     refuses 65 "$1" nsd-gen "$tmp/wrong.json"
     like "$1: the message" "$(cat "$tmp/err")" "$3"
 }
+is "the key room is a former name of servo" "$(jq '.servo = .room | del(.room)' "$tmp/one.json" | nsd-gen - | nsd-info -p)" "$(nsd-gen "$tmp/one.json" | nsd-info -p)"
+is "also where nsd-info continues a scene" "$(nsd-gen "$tmp/one.json" | nsd-info -w)" "$(jq '.servo = .room | del(.room)' "$tmp/one.json" | nsd-gen - | nsd-info -w)"
 wrong "an unknown wall" '.room.walls = "boxes"' "room.walls: no wall 'boxes', but box"
 wrong "walls without names" 'del(.walls[0].name)' 'none has a name: give them a "name"'
 wrong "a wall that is named twice" '.room.walls = ["box", "box"]' 'names walls.0. twice'
 wrong "an unknown key" '.room.presure = 1' 'room.presure: '
 wrong "nothing to do" '.room = { walls: "box" }' 'needs at least one of the keys pressure strain_rate'
 wrong "rates that change the volume" '.room.strain_rate = [1, 0, 0]' 'changes the volume at 1 per s'
-wrong "a mass without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], mass: 1 }' 'only a room with a "pressure" has a mass'
-wrong "growth without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], growth: 1 }' 'only a room with a "pressure" grows'
-wrong "a wall on the wrong side of the centre" '.room.center = [0.1, 0, 0]' 'room.center: lies behind walls.0., by 0.05'
+wrong "a mass without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], mass: 1 }' 'only a servo with a "pressure" has a mass'
+wrong "growth without a pressure" '.room = { walls: "box", strain_rate: [1, 0, -1], growth: 1 }' 'only a servo with a "pressure" grows'
+wrong "a wall on the wrong side of the centre" '.room.center = [0.1, 0, 0]' 'servo.center: lies behind walls.0., by 0.05'
 wrong "travel of another number of walls" '.room.travel = [0, 0]' 'needs 6 numbers'
 wrong "a surface that is no plane" '.walls += [{ disc: { center: [0, 0, 1], normal: [0, 0, -1], radius: 1 }, name: "box" }]' 'walls.1. is no plane'
 wrong "a wall with a load of its own" '.walls = [{ point: [0, 0, 1], normal: [0, 0, -1], load: { along: [0, 0, 1], force: 1 }, name: "box" }]' 'has a load of its own'
 wrong "a wall that nothing faces" '.walls = [{ point: [0, 0, 1], normal: [0, 0, -1], name: "box" }]' 'no plane faces walls.0.: give a "center"'
-wrong "a room that is open" '.walls = [{ box: { z: [-0.05, 0.05] }, name: "box" }]' 'its room needs planes on all sides of its face'
-wrong "a wall that rotates" '.walls[0].drives = [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 1 }]' 'belongs to a room, and turns'
-wrong "a wall that is removed" '.walls[0].until = 1' 'belongs to a room, and vanishes'
+wrong "a room that is open" '.walls = [{ box: { z: [-0.05, 0.05] }, name: "box" }]' 'its servo needs planes on all sides of its face'
+wrong "a wall that rotates" '.walls[0].drives = [{ about: [0, 0, 0], axis: [0, 0, 1], speed: 1 }]' 'belongs to a servo, and turns'
+wrong "a wall that is removed" '.walls[0].until = 1' 'belongs to a servo, and vanishes'
 wrong "rates that are too fast" '.room.strain_rate = [100, 0, -100]' 'more than a tenth in a step: take a smaller dt'
 wrong "no body for the mass" 'del(.bodies)' 'give a "mass", kg'
 wrong "a room without walls" 'del(.walls)' 'needs "walls" in the scene'
@@ -205,7 +207,7 @@ f = h5py.File(sys.argv[1], "r+"); f["particles/boundary/load/" + sys.argv[2]][ev
     bent rate '4' -1e9 'more than a tenth in a step'
     bent mass 'slice(None)' 0 'grows, and has no mass'
     bent mass '1' -1 'mass of its load must be positive'
-    bent way '2' 1 'strain rate that is not finite, or no room'
+    bent way '2' 1 'strain rate that is not finite, or no servo'
     bent way '2' 4 'neither translates nor rotates it'
     bent axis '0, 0' -1 'not on the side of its normal'
 else

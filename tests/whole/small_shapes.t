@@ -95,6 +95,65 @@ for mu in 0.45 0.55; do
         eval "jq -en '($(body '.v[0]') > 0.3) == ($mu < 0.5)' >\"\$tmp/near\""
 done
 
+# ---- loads ----
+
+load() # JQ PROGRAM: of the first load of the last frame
+{
+    nsd-info --last -w "$tmp/out.h5" | jq -c "select(.load) | .load | $1" | head -n 1
+}
+scene "$floor, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0.12], normal: [0, 0, -1], load: { along: [0, 0, -1], force: 20, mass: 0.5 } }],
+    mu: 0.5, e_n: 0.2, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0.05] }]"
+small_alone 400
+ok "a lid that falls on a cube comes to rest on it" near "$(load '[.travel - 0.02, .speed] | map(fabs) | max')" 0 1e-4
+cp "$tmp/out.h5" "$tmp/in.h5"
+small_alone 20 --sums
+ok "the cube carries the load" near "$(sums '.normal[1]')" 20 1e-5
+ok "and the floor carries both" near "$(sums '.normal[0]')" "20 + 9.81" 1e-4
+scene "dt: 1e-3, gravity: [0, 0, 0], density: 1000, mu: 0, e_n: 0.5, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0.052] }],
+    walls: [{ point: [0, 0, 0], normal: [0, 0, 1], load: { along: [0, 0, 1], mass: 1, speed: 1 } }]"
+small_alone 30
+ok "a wall of 1 kg strikes a cube of 1 kg at 1 m/s, e 0.5: 0.75 and 0.25 m/s" near "$(body '.v[2]') + $(load .speed) / 1e3" 0.75025 1e-3
+# One column of boxes in 45 carries the whole lid.
+scene "dt: 1e-3, gravity: [0, 0, 0], density: 2500, mu: 0.3, e_n: 0.2, shapes: { it: { box: [1, 0.8, 0.9] } },
+    walls: [{ box: { x: [0, 0.03], y: [0, 0.03], z: [0, null] } }, { point: [0, 0, 0.065], normal: [0, 0, -1], load: { pressure: 1000 } }],
+    bodies: [range(3) as \$i | range(3) as \$j | range(5) as \$k | { shape: \"it\", size: 0.006, orientation: [\$i, \$j, \$k],
+        x: [0.0055 + 0.0095 * \$i, 0.0055 + 0.0095 * \$j, 0.006 + 0.012 * \$k] }]"
+ok "boxes below a lid: the same bytes" same_bytes 60
+small_alone 300 --log "$tmp/log"
+ok "and overlaps of 0.015 of half their thickness at rest, from no load to that of the lid" near "$(jq -s 'last.max_overlap / 0.0024' "$tmp/log")" 0 0.015
+scene 'dim: 2, dt: 1e-3, gravity: [0, 0], density: 2500, mu: 0.3, e_n: 0.2, walls: [{ name: "box", box: { x: [0, 0.05], y: [0, 0.05] } }],
+    room: { walls: "box", pressure: 500 }, shapes: { it: { regular: { sides: 5, radius: 1 } } },
+    bodies: [range(5) as $i | range(5) as $j | { shape: "it", size: 0.004, x: [0.005 + 0.0099 * $i, 0.005 + 0.0099 * $j], orientation: ($i + $j) }]'
+small_alone 400
+cp "$tmp/out.h5" "$tmp/in.h5"
+small_alone 20 --sums
+ok "a room around pentagons comes to rest at the mean pressure" near "$(sums '.normal | add') / $(load .face) / 4" 500 1e-3
+
+# ---- attraction ----
+
+ceiling='gravity: [0, 0, -9.81], dt: 1e-3, density: 1000, e_n: 0, mu: 0.5'
+plane='{ point: [0, 0, 0], normal: [0, 0, -1] }'
+four='[-0.5, -0.5], [-0.5, 0.5], [0.5, -0.5], [0.5, 0.5] | { rectangle: { center: (. + [0]), normal: [0, 0, -1], along: [1, 0, 0], sides: [1, 1] } }'
+for wall in "$plane" "$four"; do
+    for part in 1.1 0.9; do
+        scene "$ceiling, walls: [$wall], cohesion: { force: ($part * 9.81) }, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0.02, 0.03, -0.05] }]"
+        small_alone 100
+        ok "cohesion of $part times the weight $([ $part = 1.1 ] && echo holds || echo "does not hold") a cube at a ceiling" \
+            near "$(body '.v[2]')" "if $part > 1 then 0 else -0.981 end" 0.03
+    done
+done
+scene "$ceiling, walls: [$plane], cohesion: { force: (0.9 * 9.81), range: 1e-3 }, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, -0.05] }]"
+rm -f "$tmp/log"
+small_alone 100 --log "$tmp/log" # 1 mm at 0.1 g, then g
+ok "a cube falls out of the range of cohesion" near "$(body '.v[2]')" "-((2e-3 * 0.981 | sqrt) + 9.81 * (0.1 - (2e-3 / 0.981 | sqrt)))" 0.01
+ok "and nothing is dissipated" near "$(jq -s 'map(.balance.dissipation) | add' "$tmp/log")" 0 1e-4
+scene "gravity: [0, 0, 0], dt: 1e-3, density: 1000, mu: 0.5, e_n: 0, $cube, capillary: { volume: 1e-9, tension: 0.07 },
+    bodies: [{ shape: \"it\", size: 0.01, x: [0, 0, 0], v: [0, 0, 0.1] }, { shape: \"it\", size: 0.01, x: [0, 0, 0.0101] }]"
+small_alone 30
+ok "two cubes that meet stay together by their bridge" near "$(body '.v[2]') - $(body '.v[2]' 1)" 0 1e-4
+ok "which is one" near "$(nsd-info --last -l "$tmp/out.h5" | jq -s 'map(select(.balance)) | last.balance.bond_energy')" "-9.1e-7" 2e-8
+ok "the same bytes" same_bytes 30
+
 # ---- surfaces ----
 
 {
