@@ -80,7 +80,8 @@ static double line_root(const struct line *l)
 
 static const struct quantity quantities[] = {
     { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
-    { "broken", "1", 1, "fraction of the first grains that have broken, by number" },
+    { "broken", "1", 1,
+      "fraction of the first grains, of kinds that break, that have broken, by number" },
     { "fragments", "1", 1, "fraction of the mass in fragments and dust" },
     { "generation", "1", 1, "largest generation" },
     { "dust", "kg", 1, "mass of dust" },
@@ -139,9 +140,10 @@ static int breakage_rows(struct table *t, const struct snapshot *s, struct failu
     if (!at || grading_of(&g, s, failure)) return failure->status;
     put(&at, (double)g.n);
     for (int64_t i = 0; i < p->n; i++)
-        whole += p->mass[i] > 0 && (!p->generation || p->generation[i] == 0);
+        whole += p->breakage && p->breakage[p->material[i]].strength > 0 && p->mass[i] > 0 &&
+                 snapshot_body(s, i) && p->generation[i] == 0;
     const double mass = fragments_of(s, b.dust, g.total, &generation), broken = (double)b.originals;
-    put(&at, whole + broken > 0 ? broken / (whole + broken) : NAN), put(&at, mass);
+    put(&at, whole + broken > 0 ? broken / (whole + broken) : 0), put(&at, mass);
     put(&at, generation), put(&at, b.dust), put(&at, b.kinetic), put(&at, b.potential);
     if (g.n) {
         put(&at, grading_size(&g, 0.1)), put(&at, grading_size(&g, 0.5));

@@ -32,8 +32,8 @@ const struct key_type key_material = { "string", "{'type': 'string'}", scene_mat
 static const struct key scene_material_key[] = {
     { "density", &key_positive, AT(density), "kg/m^3", "of the scene", "7800",
       "Density of the kind; in 2D in kg/m^2." },
-    { "breaks", &key_object, AT(breaks), "-", "none", "see below",
-      "How grains of the kind break.", .object = &scene_breaks_keys },
+    { "breaks", &key_object, AT(breaks), "-", "none", "see below", "How grains of the kind break.",
+      .object = &scene_breaks_keys },
     { 0 },
 };
 #undef AT
@@ -65,8 +65,7 @@ int scene_read_materials(jnode o, struct scene *s, void *out)
         jnode n = json_node_key(&o, name);
         if (!strcmp(name, "comment")) continue;
         if (find_material(s, name) < 0 && add_material(n, s, name, s->density)) return 1;
-        if (keys_read(n, &scene_material_keys, s, &s->material[find_material(s, name)]))
-            return 1;
+        if (keys_read(n, &scene_material_keys, s, &s->material[find_material(s, name)])) return 1;
     }
     return 0;
 }
