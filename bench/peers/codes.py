@@ -4,6 +4,7 @@ Every run has a bound of CPU seconds, after which it is stopped; its cost is the
 """
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -117,23 +118,38 @@ def balls_of(document):
             "kind": np.array([names[k] for k in frame.kind])}
 
 
+def made(folder, out, log, dt, bound):
+    """What a run of nsd has made: dt, span, steps, sweeps a step; the largest overlap and the steps that have not converged."""
+    if os.path.exists(log):  # what was killed may have half of a line
+        lines = [json.loads(line) for line in open(log) if line.endswith("}\n")]
+        if not lines:
+            raise TooSlow(f"not a step in {bound:.3g} CPU s")
+        dt, span, steps, sweeps = lines[0].get("dt", dt), lines[-1]["time"], len(lines), sum(line["sweeps"] for line in lines)
+        account = lines[-1].get("account", {})  # what was killed has none
+    else:  # in small steps a log would judge each of them, which costs a third of the run
+        said = re.search(r"(\d+) steps?, (\d+) sweeps", open(os.path.join(folder, "said")).read())
+        steps, sweeps = map(int, said.groups()) if said else (0, 0)
+        if not steps:
+            raise TooSlow(f"not a step in {bound:.3g} CPU s")
+        kept = subprocess.run(["nsd-info", "--last", "-l", out], capture_output=True, text=True, check=True).stdout.splitlines()
+        last = [line for line in map(json.loads, kept) if "account" in line][-1]
+        span, account = last["time"], last["account"]
+    return {"dt": dt, "span": span, "steps": steps, "sweeps": sweeps / steps,
+            **{key: account.get(key, {}).get("value") for key in ("overlap", "unconverged")}}
+
+
 def run_nsd(folder, start, span, options, threads, bound, **_):
     """Of the document start; frames have what is there."""
     out, log = os.path.join(folder, "out.h5"), os.path.join(folder, "log")
     dt = nsd.last(start).dt
-    # a multiple of dt, whatever it is
-    every = max(1, round(span / FRAMES / dt))
     if "--dt" in options:
-        every = max(1, round(span / FRAMES / float(options[options.index("--dt") + 1])))
-    cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), "--log", log, "-o", out, *options, start],
-                 folder, bound)
-    # what was killed has no account, and may have half of a line
-    lines = [json.loads(line) for line in open(log) if line.endswith("}\n")] if os.path.exists(log) else []
-    if not lines:
-        raise TooSlow(f"not a step in {bound:.3g} CPU s")
-    cost.update(dt=lines[0].get("dt", dt) if "--dt" not in options else float(options[options.index("--dt") + 1]),
-                span=lines[-1]["time"], steps=len(lines), sweeps=sum(line["sweeps"] for line in lines) / len(lines),
-                **{key: lines[-1].get("account", {}).get(key, {}).get("value") for key in ("overlap", "unconverged")})
+        dt = float(options[options.index("--dt") + 1])
+    every = max(1, round(span / FRAMES / dt))  # a multiple of dt, whatever it is
+    if os.path.exists(log):
+        os.remove(log)
+    logs = ["--log", log] if "--small-steps" in options or "--dt" in options else []
+    cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), *logs, "-o", out, *options, start], folder, bound)
+    cost.update(made(folder, out, log, dt, bound))
 
     def frames():
         yield 0.0, nsd.last(start)
