@@ -59,8 +59,8 @@ const struct measure *measure_at(int k)
    old name [base/renamed.h]. */
 static const struct measure *measure_renamed(const struct renamed *r, const struct measure *is)
 {
-    static struct measure old[OLD_MEASURES];
-    static struct quantity quantity[OLD_MEASURES][MOST_QUANTITIES + 1];
+    static _Thread_local struct measure old[OLD_MEASURES];
+    static _Thread_local struct quantity quantity[OLD_MEASURES][MOST_QUANTITIES + 1];
     int k = 0, q = 0;
     while (k < OLD_MEASURES && old[k].name && strcmp(old[k].name, r->was) != 0) k++;
     if (k == OLD_MEASURES) return is;

@@ -25,7 +25,8 @@ NAVIGATION = [
     ('Evidence', [('docs/gallery/README.md', 'Gallery'), ('docs/paper/README.md', 'Paper'),
                   ('docs/powder/README.md', 'Powder'), ('docs/forces/README.md', 'Forces'),
                   ('docs/peers/README.md', 'Peers'), ('docs/wall/README.md', 'Wall'),
-                  ('docs/scale/README.md', 'Scale'), ('bench/README.md', 'Benchmarks')]),
+                  ('docs/scale/README.md', 'Scale'), ('docs/breakage/README.md', 'Breakage'),
+                  ('bench/README.md', 'Benchmarks')]),
     ('Project', [('LIMITATIONS.md', 'Limitations'), ('CHANGELOG.md', 'Changes'), ('CONTRIBUTING.md', 'Contributing'),
                  ('lib/README.md', 'Library')])]
 SECTIONS = [('7', 'Concepts, tutorial, recipes'), ('1', 'Programs'), ('5', 'Scenes and documents'), ('3', 'The C library')]

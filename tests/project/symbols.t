@@ -61,7 +61,7 @@ is "and the Python module knows them" "$(in_python)" ""
 
 # team, busy, judgement: the team of the process, which one thread has at a time. list, owner, running and their locks: files and
 # readers, locked. hdf5, printer, printer_data: libhdf5, locked. embedded, chosen, once: set once. limit, options: the tools' own, which
-# the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together, held: a thread's own. watched: set once.
+# the library only reads. opencl_calls, opencl_open: the loader of OpenCL, locked. plist, registered: of the process that reads. of_thread, size, together, held, old, quantity: a thread's own. watched: set once.
 # writers: those that write, with the lock of libhdf5.
 cat >"$tmp/known" <<'EOT'
 busy
@@ -74,6 +74,7 @@ list
 list_lock
 lock
 of_thread
+old
 once
 opencl_calls
 opencl_open
@@ -82,6 +83,7 @@ owner
 plist
 printer
 printer_data
+quantity
 registered
 running
 size
