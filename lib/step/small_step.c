@@ -301,7 +301,8 @@ static double small_carries(const struct packing *p)
 }
 
 /* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
-   and where points with their levers have more W. */
+   and where points with their levers have more W. Only where loads push: overlaps change with h, and a packing that flows would
+   be shaken by a number of small steps that follows its largest reaction. */
 static const double CARRIED[2] = { 1, 0.4 };
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
@@ -312,7 +313,8 @@ int64_t small_count(const struct packing *p, double overlap)
     const double least = small_sizes(p).least,
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
-    n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
+    if (freedoms_in(p))
+        n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
