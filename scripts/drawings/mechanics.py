@@ -26,7 +26,7 @@ def step():
         if k < 2:
             c.arrow(x + 178, 187, x + 204, 187)
     c.bend([(520, 214), (520, 234), (108, 234), (108, 216)], PALE, 1.5)
-    c.words(320, 252, 'n times; reactions of a small step begin with 0.98 of those before', anchor='middle', size=13)
+    c.words(320, 252, 'n times; a small step begins with the reactions of the one before', anchor='middle', size=13)
     c.line(20, 276, 620, 276, PALE, 1)
     c.words(20, 304, 'One solve per step', bold=True, size=15)
     c.words(620, 304, 'nsd-step --solver auto', mono=True, size=13, colour=CHOICE, anchor='end')
