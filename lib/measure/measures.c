@@ -65,7 +65,7 @@ static const struct measure *measure_renamed(const struct renamed *r, const stru
     while (k < OLD_MEASURES && old[k].name && strcmp(old[k].name, r->was) != 0) k++;
     if (k == OLD_MEASURES) return is;
     old[k] = *is, old[k].name = r->was;
-    for (; is->quantity[q].name && q < MOST_QUANTITIES; q++) {
+    for (; q < MOST_QUANTITIES && is->quantity[q].name; q++) {
         quantity[k][q] = is->quantity[q];
         for (int row = 0; (r = renamed_at(row)); row++)
             if (!strcmp(r->in, "quantity") && !strcmp(r->is, is->quantity[q].name))

@@ -555,7 +555,8 @@ static void test_endless(void)
     must(nsd_step(r, 3) || nsd_read(r, "position", &x), r);
     const double z = ((double *)x.data)[2];
     nsd_force(r, 0, push, NULL, NSD_LASTING);
-    ok(nsd_step(r, 1) == NSD_DIVERGED && strstr(nsd_error(r), "step 4: the energy of body 0 would not be finite"),
+    ok(nsd_step(r, 1) == NSD_DIVERGED &&
+           strstr(nsd_error(r), "step 4: the energy of body 0 would not be finite"),
        "a step whose velocity is infinite is not made: %s", nsd_error(r));
     must(nsd_number(r, "step", &step), r);
     ok(step == 3 && ((double *)x.data)[2] == z, "and the run is as it was");
