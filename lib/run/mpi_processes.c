@@ -138,9 +138,9 @@ int processes_follow(void)
     return 0;
 }
 
-/* By all processes */
-static int mpi_processes_step(struct frame *f, struct changes changes, const struct step_opt *o,
-                              struct failure *failure)
+/* By all processes; longest: s, of a part of the step, or 0 */
+static int mpi_processes_step(struct frame *f, struct changes changes, double longest,
+                              const struct step_opt *o, struct failure *failure)
 {
     if (!self.begun)
         mpi_processes_begin(mpi_processes_next(f->distributed ? BEGIN_ROWS : BEGIN), &f->packing);
@@ -152,6 +152,7 @@ static int mpi_processes_step(struct frame *f, struct changes changes, const str
         mpi_processes_next(OTHER_DT), rank_step_set_dt(&self.step, &f->packing);
     if (changes.acts || moved) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
+    self.step.longest = longest;
     mpi_processes_next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, failure);
 }
@@ -166,8 +167,7 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
         return failure->status;
     self.moved = self.moved || made; // others have not heard of it
     if (made) return 0;
-    self.step.longest = longest;
-    const int status = mpi_processes_step(f, changes, o, failure);
+    const int status = mpi_processes_step(f, changes, longest, o, failure);
     if (longest > 0) step_forget_impulses(&f->packing, o);
     return status;
 }
