@@ -122,7 +122,7 @@ static double take_piece(struct breaking *b, int64_t i, struct shape *piece,
 static double into_pieces(struct breaking *b, int64_t i, struct failure *failure)
 {
     struct packing *p = b->p;
-    const int n = p->breakage[p->material[i]].pieces;
+    const int n = (int)p->breakage[p->material[i]].pieces;
     struct shape piece[FRACTURE_MOST];
     struct solid_frame was[FRACTURE_MOST];
     struct breaking_hull hull;

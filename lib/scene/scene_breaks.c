@@ -14,15 +14,6 @@ static const char *const criteria[] = { "force", "stress", "shear", "energy", NU
 static const char *const damages[] = { "none", "linear", "tavares", NULL };
 static const char *const intos[] = { "pieces", "balls", NULL };
 
-static int read_pieces(jnode n, struct scene *s, void *member)
-{
-    int64_t pieces = 0;
-    (void)s;
-    if (json_node_integer(n, 2, FRACTURE_MOST, &pieces)) return 1;
-    *(int32_t *)member = (int32_t)pieces;
-    return 0;
-}
-
 static const struct key breaks_key[] = {
     { "by", &key_word, AT(by), "-", REQUIRED, "\"force\"",
       "What is compared with the strength: force, the largest force of a neighbour over the square "
@@ -60,7 +51,7 @@ static const struct key breaks_key[] = {
       "mass is dust.",
       .words = intos },
     { "pieces", &key_integer, AT(pieces), "-", "8", "8", "Number of pieces of a grain, 2 to 64.",
-      .least = 2, .most = FRACTURE_MOST, .read = read_pieces },
+      .least = 2, .most = FRACTURE_MOST },
     { "dust", &key_not_negative, AT(dust), "m", "0", "5e-5",
       "Smaller pieces are removed: their mass is dust." },
     { 0 },
@@ -69,7 +60,6 @@ static const struct key breaks_key[] = {
 static int finish_breaks(jnode o, struct scene *s, void *out)
 {
     struct breakage *b = out;
-    if (!keys_has(&o, "pieces")) b->pieces = 8;
     if (!keys_has(&o, "exponent") && keys_has(&o, "size") && b->modulus > 0)
         b->exponent = s->dim / b->modulus;
     if (b->by != BREAKAGE_ENERGY && (b->damage || keys_has(&o, "least")))
@@ -140,7 +130,7 @@ static int check_grains(const struct packing *p, const struct some_grains *g, do
                            b->into == INTO_BALLS ? "only balls break into balls"
                                                  : "only balls and polyhedra without a round break",
                            g->what, (long long)g->which, s->name);
-    if (d >= b->smallest) *most += pow(d / b->smallest, p->dim) * b->pieces;
+    if (d >= b->smallest) *most += pow(d / b->smallest, p->dim) * (double)b->pieces;
     if (*most <= FRAGMENTS_MOST) return 0;
     return failure_set(
         failure, EX_DATAERR,

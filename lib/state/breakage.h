@@ -41,8 +41,8 @@ struct breakage {
     double gamma;    /* of damage */
     double smallest; /* m: no grain of a smaller diameter breaks */
     double dust;     /* m: pieces of a smaller diameter are dust */
+    int64_t pieces;  /* that a grain breaks into */
     int32_t by, damage, into;
-    int32_t pieces; /* that a grain breaks into */
 };
 
 /* Of the grains of a kind, since the first frame */

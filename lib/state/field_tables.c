@@ -214,7 +214,7 @@ const struct field breakage_fields[] = {
     WORD(by),
     WORD(damage),
     WORD(into),
-    WORD(pieces),
+    FIELD(struct breakage, pieces, I64, 1, "pieces", "1", FIELD_SAME),
     { 0 },
 };
 #undef BREAKS
