@@ -20,6 +20,8 @@ struct small_loaded {
 };
 
 enum { ROUNDS_MOST = 60 };
+/* Layers of grains: a wall of more mass is heavy */
+static const double HEAVY = 2;
 static const double EXACT = 1e-13;          /* of the reactions: what may be missing; */
 static const double EXACT_MEETINGS = 1e-10; /* where points are solved in rounds */
 
@@ -69,6 +71,21 @@ void small_loads_free(struct small_run *r, bool failed)
     free(o->meeting);
     freedoms_free(&o->list);
     *o = (struct small_loads){ 0 };
+}
+
+bool small_loads_heavy(const struct packing *p)
+{
+    double mass = 0, n = 0, levers = 0, most = 0;
+    for (int64_t i = 0; i < p->n; i++)
+        if (p->mass[i] > 0) mass += p->mass[i], n++;
+    for (int32_t w = 0; w < p->walls; w++) {
+        const struct load *l = &p->wall[w].load;
+        if (l->way == LOAD_GLIDES) most = fmax(most, l->mass);
+        if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, &p->wall[w], p->t), 2);
+    }
+    if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3);
+    const double layers = p->dim == 2 ? sqrt(n) : cbrt(n);
+    return n > 0 && most > HEAVY * mass / layers;
 }
 
 double small_loads_energy(const struct packing *p)

@@ -46,6 +46,7 @@ static const double ALLOWED[2] = { 0.67, 0.1 };
 const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
+    if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
     if (packing_has_springs(p)) return "contacts with a stiffness";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";

@@ -255,10 +255,8 @@ ok "which carry p A" near "$(sums '.normal[5]') / 3.969" 1 1e-3
 nsd-step --overlap-rule gap -n 400 --every 400 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "where steps that are made at once leave it" near "$travel / $(load .travel)" 1 0.1
 lid "pressure: 1000, mass: 1"
-small 500 # 80 layers of balls, which falls on them at 0.3 m/s
-ok "so does a lid much heavier than a layer, with overlaps of 0.03 radii" near "$(last .account.overlap.value)" 0 0.03
-nsd-step --small-steps 0.01 -n 100 --every 100 --sums -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"
-ok "and they carry p A" near "$(sums '.normal[5]') / 3.969" 1 1e-3
+nsd-step --small-steps 0.01 -n 2 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+ok "a lid much heavier than a layer is made at once" grep -q "no small steps with a load of more mass" "$tmp/err"
 
 # ---- what has no solution ----
 
