@@ -103,14 +103,14 @@ with nsd.Run.from_document(path("last.h5")) as run:
 # ---- forces that last ----
 
 with nsd.Run.from_document(path("last.h5")) as run:
-    run.set(warm=False)
+    run.set(warm=False, small_steps=0)
     run.force[3] = [1e-4, 0, 2e-5]
     run.push_boundary(5, 1e-3)
     run.save(path("lasting.h5"))
     run.step()
     position = run.position.copy()
 solved = tool("nsd-solve", input=tool("nsd-detect", path("lasting.h5")))
-for name, words in {"nsd-step": ["nsd-step", "--cold", path("lasting.h5")], "detect, solve, move": ["nsd-move"]}.items():
+for name, words in {"nsd-step": ["nsd-step", "--small-steps", "0", "--cold", path("lasting.h5")], "detect, solve, move": ["nsd-move"]}.items():
     with open(path("tools.h5"), "wb") as f:
         f.write(tool(*words, input=solved))
     with nsd.Run.from_document(path("tools.h5")) as after:
@@ -217,7 +217,7 @@ with warnings.catch_warnings():
        "measures have the number of such steps since the last")
 
 space = {"dt": 1e-3, "gravity": [0, 0, 0], "bodies": [{"x": [0, 0, 1], "radius": 1e-3}]}
-for what, act in (("velocity", lambda r: r.apply_force(0, [1e308, 0, 0])), ("angular velocity", lambda r: r.apply_force(0, torque=[1e308, 0, 0])),
+for what, act in (("energy", lambda r: r.apply_force(0, [1e308, 0, 0])), ("angular velocity", lambda r: r.apply_force(0, torque=[1e308, 0, 0])),
                   ("position", lambda r: (r.set_velocity(0, [1e20, 0, 0]), r.set(dt=1e300))), ("energy", lambda r: r.set_velocity(0, [1e160, 0, 0]))):
     fast = nsd.Run.from_scene(space)
     fast.step(2)
