@@ -35,7 +35,7 @@ words_of() # PAGE
     local page=$1
     [ -e "build/$page" ] && page=build/$page
     case $page in
-    *man/*) sed -E 's/^\.\\".*//; s/^\.[A-Z%][A-Za-z0-9]* ?//; s/ (Ns|Pc|Po|Ta|No) / /g; s/\\\(aq/'"'"'/g; s/\\\(ha/^/g; s/\\\(dq/"/g; s/\\&//g; s/\\e/\\/g' "$page" ;;
+    *man/*) sed -E 's/^\.\\".*//; s/^\.[A-Z%][A-Za-z0-9]* ?//; s/ (Ns|Pc|Po|Ta|No)( |$)/ /g; s/^Fl /-/; s/ Ta / /g; s/ Fl / -/g; s/\\\(aq/'"'"'/g; s/\\\(ha/^/g; s/\\\(dq/"/g; s/\\&//g; s/\\e/\\/g' "$page" ;;
     *) cat "$page" ;;
     esac | tr -s '[:space:]' ' ' | sed -E 's/ ([,.;:)])/\1/g; s/\( /(/g'
 }
@@ -60,7 +60,7 @@ claim() # NAME PAGES COMMAND PRINTS, PAGES: PAGE: WORDS, one per line
     *problems*) [ -d "$problems" ] || { skip "$3" "no FCLIB problems"; return; } ;;
     *mpirun*) [ -x "$repository/build/nsd-step-mpi" ] || { skip "$3" "no MPI"; return; } ;;
     esac
-    got=$(cd "$tmp" && timeout 900 bash -o pipefail -c "$3" 2>&1) || true
+    got=$(cd "$tmp" && timeout 900 bash -o pipefail -c "$3" 2>&1 | paste -sd' ') || true
     like "$1: ${3:0:180}" "$got" "$4"
 }
 table() # FILE: claims, separated by empty lines
