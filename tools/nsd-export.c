@@ -39,7 +39,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 'o', "output", &output, "FILE",
       .help = "write a FILE, a series 'f%05d.vtp' or a directory 'DIR/' [stdout]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "export only these walls, parts, groups, kinds [all]" },
+      .help = "export only these walls, parts, groups, materials [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
     { CLI_TEXT, 's', "frames", &steps, "A:B:K",
       .help = "process the frames of steps A to B, every K-th [all]" },

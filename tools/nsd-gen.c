@@ -92,8 +92,8 @@ static void scene_around(struct scene *s, struct packing *p, const char *path)
     json_t *materials = json_object();
     for (int32_t k = 0; k < p->materials && p->materials > 1; k++)
         json_object_set_new(materials, p->material_name[k], json_object());
-    json_t *scene = json_pack("{s:s, s:o, s:[{s:s}]}", "dt", "auto", "kinds", materials, "bodies",
-                              "import", path);
+    json_t *scene = json_pack("{s:s, s:o, s:[{s:s}]}", "dt", "auto", "materials", materials,
+                              "bodies", "import", path);
     char *text = scene ? json_dumps(scene, JSON_COMPACT) : NULL;
     if (!text) die(EX_DATAERR, "%s: a name that is no UTF-8", path);
     if (scene_parse(s, text, strlen(text), NULL, &failure)) die_why(&failure);

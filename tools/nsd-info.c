@@ -23,14 +23,14 @@ static bool shown;              /* whether any frame had what was asked for: con
 static const struct cli_option own[] = {
     { CLI_FLAG, 'p', "particles", &particles, .help = "print one line per body" },
     { CLI_FLAG, 'c', "contacts", &contacts, .help = "print one line per contact" },
-    { CLI_FLAG, 'w', "walls", &walls, .help = "print one line per boundary" },
+    { CLI_FLAG, 'w', "walls", &walls, .help = "print one line per wall" },
     { CLI_FLAG, 0, "history", &history,
       .help = "print one line per sweep, of nsd-solve --history" },
     { CLI_FLAG, 0, "events", &events, .help = "print one line per body that was added or removed" },
     { CLI_FLAG, 0, "scene", &scene,
       .help = "print the scene that restarts from the last frame of FILE" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "print only these walls, parts, groups, kinds; for -p, -w, -c [all]" },
+      .help = "print only these walls, parts, groups, materials (-p, -w, -c) [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
     { CLI_TEXT, 's', "frames", &steps, "A:B:K",
       .help = "process the frames of steps A to B, every K-th [all]" },
@@ -221,7 +221,7 @@ static void show_particles(const struct packing *p)
         json_t *j = json_object();
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "id", json_integer(p->id[i]));
-        json_object_set_new(j, "kind", json_string(p->material_name[p->material[i]]));
+        json_object_set_new(j, "material", json_string(p->material_name[p->material[i]]));
         if (p->group && p->group[i])
             json_object_set_new(j, "group", json_string(p->names.text[p->group[i] - 1]));
         if (p->shape) json_object_set_new(j, "shape", json_string(p->shapes.s[p->shape[i]].name));
@@ -304,7 +304,7 @@ static void show_walls(const struct packing *p)
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "wall", json_integer(i));
         if (name) json_object_set_new(j, "name", json_string(name));
-        json_object_set_new(j, "kind", json_string(p->material_name[w->material]));
+        json_object_set_new(j, "material", json_string(p->material_name[w->material]));
         vec3 x = wall_at(p, w, p->t), spin = wall_spin(p, w);
         json_object_set_new(j, "shape", json_string(wall_shape_name[w->shape]));
         json_object_set_new(j, "point", json_vec(x));
@@ -445,7 +445,7 @@ static json_t *scene_of_parameters(const struct packing *p)
     for (int32_t k = 0; k < p->materials; k++)
         json_object_set_new(materials, p->material_name[k], json_object());
     json_object_set_new(j, "gravity", json_numbers(g, p->dim));
-    json_object_set_new(j, "kinds", materials);
+    json_object_set_new(j, "materials", materials);
     json_object_set_new(j, "pairs", material(p));
     return j;
 }

@@ -48,11 +48,12 @@ static const struct cli_option own[] = {
     { CLI_ABOVE, 0, "distance", &asked.distance, "M",
       .help = "set the largest distance of pairs, m [3 mean diameters]", .max = 1e300 },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "measure only these walls, parts, groups, kinds [all]" },
+      .help = "measure only these walls, parts, groups, materials [all]" },
     { CLI_ABOVE, 0, "wear", &asked.wear, "K",
       .help = "set Archard's coefficient of all walls, 1/Pa [that of the scene]", .max = 1e300 },
     { CLI_TEXT, 0, "tracer", &tracer, "KIND",
-      .help = "measure mixing of this kind, or of large bodies [kind of the first, or large]" },
+      .help =
+          "measure mixing of this material, or of large bodies [material of the first, or large]" },
     { CLI_ABOVE, 0, "sample", &asked.sample, "M",
       .help = "set the edge of the samples of mixing, m [3 mean diameters]", .max = 1e300 },
     { CLI_TEXT, 0, "view", &view, "AXIS",
@@ -286,7 +287,7 @@ static void show(const struct frame *f, const char *where, int64_t k, struct fai
     if (k) s.first = &first, s.before = &before;
     s.unconverged = count_missed(f), s.report = f->reported ? &f->report : NULL;
     if (fields_to && s.only.bodies)
-        die(EX_DATAERR, "--only: fields are of all bodies, not of a group or kind");
+        die(EX_DATAERR, "--only: fields are of all bodies, not of a group or material");
     if (measured_run(t, chosen, &s, failure)) {
         measured_free(t), snapshot_free(&s);
         return;

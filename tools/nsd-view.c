@@ -97,7 +97,7 @@ static const struct cli_option own[] = {
     { CLI_TEXT, 0, "box", &box, "X0,X1,Y0,Y1[,Z0,Z1]",
       .help = "draw only bodies with their centre in this box, m [all]" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "draw only bodies of these groups and kinds [all]" },
+      .help = "draw only bodies of these groups and materials [all]" },
     { CLI_CHOICE, 0, "boundaries", &walls, .choice = walls_choice,
       .help = "draw boundaries in this way [glass]" },
     { CLI_TEXT, 0, "solid", &solid_names, "NAME,...",
@@ -215,7 +215,7 @@ static struct view view_of_options(void)
     if (strlen(background) != 6 || strspn(background, "0123456789abcdefABCDEF") != 6)
         die_usage("--background: '%s' is not RRGGBB", background);
     v.background = rgb_of((unsigned)strtoul(background, NULL, 16));
-    if (range && colour_meaning[colour].classes) die_usage("--range: kind and id have none");
+    if (range && colour_meaning[colour].classes) die_usage("--range: material and id have none");
     if (range && (!numbers(range, 2, x) || !(x[0] < x[1])))
         die_usage("--range: '%s' is not LO,HI, the first below the second", range);
     if (range) v.paint.lo = x[0], v.paint.hi = x[1];
@@ -280,8 +280,7 @@ static void set_solid(struct view *v, const struct frame *f, const char *where)
     double x[2] = { NAN, NAN };
     if (!wants_solid()) return;
     if (f->packing.dim == 2)
-        die_usage(
-            "--solid, --surface: in the plane boundaries are lines, which are drawn as they are");
+        die_usage("--solid, --surface: in the plane walls are lines, which are drawn as they are");
     if (surface_range && (!numbers(surface_range, 2, x) || !(x[0] < x[1])))
         die_usage("--surface-range: '%s' is not LO,HI, the first below the second", surface_range);
     solid_free(&solid);

@@ -115,7 +115,7 @@ def balls_of(document):
     names = frame.file["nsd/material"].attrs["kinds"]
     names = (names.decode() if isinstance(names, bytes) else names).split("\n")
     return {"x": frame.position[:], "v": frame.velocity[:], "radius": frame.radius[:], "mass": frame.mass[:],
-            "kind": np.array([names[k] for k in frame.kind])}
+            "kind": np.array([names[k] for k in frame.material])}
 
 
 def made(folder, out, log, dt, bound):

@@ -19,7 +19,7 @@ BEAD = {"density": 2500, "mu": 0.5, "e_n": 0.5, "gravity": [0, 0, -9.81]}
 # Dosta et al., Comput. Phys. Commun. 296 (2024) 109066: M1 and M2 between steel walls
 DOSTA = {
     "gravity": [0, 0, -9.8],
-    "kinds": {"M1": {"density": 2500}, "M2": {"density": 2000}, "steel": {"density": 7200}},
+    "materials": {"M1": {"density": 2500}, "M2": {"density": 2000}, "steel": {"density": 7200}},
     "pairs": [{"pair": list(pair), "mu": mu, "e_n": e} for *pair, mu, e in (
         ("M1", "M1", 0.3, 0.5), ("M1", "M2", 0.2, 0.45), ("M2", "M2", 0.4, 0.4), ("M1", "wall", 0.2, 0.4),
         ("M2", "wall", 0.2, 0.4), ("M1", "steel", 0.2, 0.4), ("M2", "steel", 0.2, 0.4))],
@@ -92,7 +92,7 @@ def dosta_drum(count, seed):
     large = round(count * 8 / 38)
 
     def group(number, kind, r, low, high):
-        return {"random": {"count": number}, "radius": r, "kind": kind,
+        return {"random": {"count": number}, "radius": r, "material": kind,
                 "box": {"x": [0, length], "y": [-0.8 * radius, 0.8 * radius], "z": [low * radius, high * radius]}}
 
     start = {**DOSTA, "seed": seed, "walls": shapes,
@@ -129,11 +129,11 @@ def penetration(count, seed):
     x, y, floor = 0.049 * scale, 0.03 * scale, -0.0902431
     height = count * 4.18879e-9 / 0.3 / (4 * x * y)
     start = {**DOSTA, "seed": seed, "walls": [{"box": {"x": [-x, x], "y": [-y, y], "z": [floor, None]}}],
-             "bodies": [{"random": {"count": count}, "radius": 1e-3, "kind": "M1",
+             "bodies": [{"random": {"count": count}, "radius": 1e-3, "material": "M1",
                          "box": {"x": [-x, x], "y": [-y, y], "z": [floor, floor + height]}}]}
     top = floor + count * 4.18879e-9 / 0.58 / (4 * x * y)
     flight = 0.06 - (-0.0605 + 0.01)  # m
-    ball = {"x": [0, 0, top + 0.0115], "radius": 0.01, "v": [0, 0, -math.sqrt(5 ** 2 + 2 * 9.8 * flight)], "kind": "steel"}
+    ball = {"x": [0, 0, top + 0.0115], "radius": 0.01, "v": [0, 0, -math.sqrt(5 ** 2 + 2 * 9.8 * flight)], "material": "steel"}
     return start, {"more": [ball]}, {"top": top}
 
 

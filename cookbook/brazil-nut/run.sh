@@ -6,8 +6,8 @@ for mu in 0.8 0; do
         nsd-step -j 1 --overlap-rule gap --until "${UNTIL:-9}" --every 0.07s -o "nut-$mu.h5" &
 done
 wait
-nsd-view -s 1120 -c kind nut-0.8.h5 >start.png
-nsd-view -c kind nut-0.8.h5 >end.png
+nsd-view -s 1120 -c material nut-0.8.h5 >start.png
+nsd-view -c material nut-0.8.h5 >end.png
 heights() { nsd-info -p --only large "$1" | jq -r 'select(.x) | [.step * 2.5e-4, .x[1] / 4e-3] | @tsv'; }
 # each second, the mean of a second: seconds, rough walls, smooth walls
 join -t $'\t' <(heights nut-0.8.h5 | sort) <(heights nut-0.h5 | sort) | sort -n |

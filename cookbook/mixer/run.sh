@@ -14,5 +14,5 @@ awk 'BEGIN {
     print "endsolid blade"
 }' >blade.stl
 nsd-gen scene.json | nsd-step --until "${UNTIL:-0.9}" --every 0.1s -o mixer.h5
-nsd-view -c kind --solid blade mixer.h5 >mixer.png
+nsd-view -c material --solid blade mixer.h5 >mixer.png
 nsd-stat -m mixing --tracer red --sample 0.02 --tsv mixer.h5 | cut -f 2,3,4,8,10

@@ -59,7 +59,7 @@ def bed():
         for u in rise:
             push(u)
             run.step()
-            carried.append(-run.boundary_force[0, 2] / weight)
+            carried.append(-run.wall_force[0, 2] / weight)
         mean = np.convolve(carried, np.ones(50) / 50, "valid")  # the floor carries what the water leaves
         return rise[49 + np.argmax(mean < 0.02)], expected
 

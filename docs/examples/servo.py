@@ -19,12 +19,12 @@ floor, piston = 4, 5
 def stresses(run, servo):
     force, seen = -target / 2, []
     for step in run.steps(4000):
-        missing = target - run.boundary_force[piston, 2]
+        missing = target - run.wall_force[piston, 2]
         if servo:
             force -= 0.02 * missing  # N: it lags behind, and does not ring
-            run.push_boundary(piston, force)
+            run.push_wall(piston, force)
         if step > 3000:
-            seen.append([-run.boundary_force[floor, 2], run.boundary_force[piston, 2]])
+            seen.append([-run.wall_force[floor, 2], run.wall_force[piston, 2]])
     return np.mean(seen, axis=0) / side**2
 
 

@@ -84,7 +84,7 @@ static int32_t *import_file_list_types(const struct imported_ball *ball, int64_t
                                        const char *name, struct failure *failure)
 {
     int32_t *type = malloc((TYPES_MOST + 1) * sizeof *type), last = -1;
-    if (!type) return failure_set(failure, EX_SOFTWARE, "no memory for the kinds"), NULL;
+    if (!type) return failure_set(failure, EX_SOFTWARE, "no memory for the materials"), NULL;
     *types = 0;
     for (int64_t i = 0; i < n; i++) {
         if (ball[i].type == last || (*types && bsearch(&ball[i].type, type, (size_t)*types,
@@ -109,7 +109,7 @@ static int set_materials(struct packing *p, const int32_t *type, int32_t types,
         snprintf(text, sizeof text, "%d", type[k]);
         free(p->material_name[k]);
         if (!(p->material_name[k] = strdup(text)))
-            return failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
+            return failure_set(failure, EX_SOFTWARE, "no memory for the materials");
     }
     return 0;
 }

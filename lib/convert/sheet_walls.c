@@ -27,7 +27,7 @@ static int sheet_walls_add_cell(struct sheet *s, struct owners *o, struct owner 
                                 const vec3 *corner, struct failure *failure)
 {
     if (!array_grow(&o->of, &o->room, s->cells + 1, sizeof *o->of) || !o->of)
-        return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the walls");
     o->of[s->cells] = of;
     return sheet_add(s, corners, corner, failure);
 }
@@ -74,7 +74,7 @@ static int sheet_walls_add_columns(struct sheet *s, const struct owners *o, cons
                                    struct failure *failure)
 {
     int32_t *number = sheet_whole(s, "boundary", "", failure),
-            *material = sheet_whole(s, "kind", "", failure);
+            *material = sheet_whole(s, "material", "", failure);
     double *point = sheet_real(s, "point", "xyz", failure),
            *n = sheet_real(s, "normal", "xyz", failure);
     double *v = sheet_real(s, "velocity", "xyz", failure);
@@ -101,8 +101,7 @@ static int sheet_walls_add_contacts(struct sheet *s, const struct owners *o,
     double *force = sheet_real(s, "contact_force", "xyz", failure);
     vec3 *sum = calloc((size_t)faces->n + 1, sizeof *sum);
     int32_t *pushes = calloc((size_t)faces->n + 1, sizeof *pushes);
-    if (!sum || !pushes)
-        failure_set(failure, EX_SOFTWARE, "no memory for the forces on boundaries");
+    if (!sum || !pushes) failure_set(failure, EX_SOFTWARE, "no memory for the forces on walls");
     for (int64_t i = 0; !failure->status && i < t->n && t->c[i].a < 0; i++) {
         int32_t k = faces->first[-1 - t->c[i].a] + face_of_contact(faces, p, &t->c[i], 0);
         sum[k] = v3_axpy(sum[k], -1 / p->dt, contact_in_space(&t->c[i], t->found[i].r));

@@ -22,7 +22,7 @@ static const char *const path_of[] = { "/VTKHDF/surfaces", "/VTKHDF/boundary" };
 /* Columns that say which grain or wall a cell is of; what else a sheet has is in the grains. */
 static bool vtk_is_wanted(const struct sheet_column *c)
 {
-    static const char *const wanted[] = { "id", "kind", "shape", "boundary" };
+    static const char *const wanted[] = { "id", "material", "shape", "boundary" };
     bool any = false;
     for (size_t k = 0; c->whole && k < sizeof wanted / sizeof *wanted; k++)
         any |= !strcmp(c->name, wanted[k]);

@@ -32,7 +32,7 @@ static int write_xyz(FILE *out, const struct export_frame *m, enum part part, bo
     fprintf(out, "%" PRId64 "\n", p->n);
     xyz_put_cell(out, p);
     fprintf(out,
-            "Properties=species:S:1:pos:R:3:id:I:1:kind:I:1:radius:R:1:mass:R:1:velo:R:3:"
+            "Properties=species:S:1:pos:R:3:id:I:1:material:I:1:radius:R:1:mass:R:1:velo:R:3:"
             "angular_velocity:R:3:orientation:R:4%s Step=%" PRId64 " Time=%.17g\n",
             p->image ? ":image:I:3" : "", p->step, p->t);
     for (int64_t i = 0; i < p->n; i++) {

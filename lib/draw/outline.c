@@ -201,7 +201,7 @@ int outline_init(struct outline *o, const struct packing *p, double reach, struc
     }
     if (good) return 0;
     outline_free(o);
-    return failure_set(failure, EX_SOFTWARE, "no memory for the outlines of the boundaries");
+    return failure_set(failure, EX_SOFTWARE, "no memory for the outlines of the walls");
 }
 
 void outline_free(struct outline *o)

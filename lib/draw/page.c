@@ -5,7 +5,7 @@
  *
  *   fK, frame K    u16[n][4] position and |spin|; i16[n][4] velocity, 0; i8[n][4] orientation;
  *                  i32[c] a; i32[c] b; u16[c] normal force; u16[c] tangential; i8[c][4] normal, status
- *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] kind; i32[n] shape, where not all are balls
+ *   gK, grains     f32[n] radius; f32[n] mass; i32[n] id; i32[n] material; i32[n] shape, where not all are balls
  *   sK, shapes     as draw/page_data.h has them; where not all are balls
  *   bK, walls      u32 triangles, u32 lines; f32 corners [9] each; f32 ends [6] each
  *
@@ -279,7 +279,7 @@ static struct page_moment *page_add_moment(struct page *p)
     return &p->moment[p->frames];
 }
 
-/* The first frame's kinds and dimension are the page's. */
+/* The first frame's materials and dimension are the page's. */
 static int adopt(struct page *p, const struct packing *k, struct failure *failure)
 {
     p->dim = k->dim, p->up = walls_up(k);

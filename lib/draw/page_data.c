@@ -131,7 +131,7 @@ json_t *page_meta(const struct page *p)
         json_t *name = json_string(p->material_name[k]);
         json_array_append_new(list, name ? name : json_string("?"));
     }
-    json_object_set_new(j, "kinds", list);
+    json_object_set_new(j, "materials", list);
     json_object_set_new(j, "frames", list = json_array());
     for (int64_t k = 0; k < p->frames; k++) json_array_append_new(list, moment_json(&p->moment[k]));
     json_object_set_new(j, "range", range_json(p));

@@ -14,7 +14,7 @@
 const struct colour_meaning colour_meaning[COLOUR_COUNT] = {
     [COLOUR_RADIUS] = { .name = "radius", .unit = "m" },
     [COLOUR_SPEED] = { .name = "speed", .unit = "m/s", .from_zero = true },
-    [COLOUR_MATERIAL] = { .name = "kind", .unit = "", .classes = true },
+    [COLOUR_MATERIAL] = { .name = "material", .unit = "", .classes = true },
     [COLOUR_ID] = { .name = "id", .unit = "", .classes = true },
     [COLOUR_SPIN] = { .name = "spin", .unit = "rad/s", .from_zero = true },
     [COLOUR_HEIGHT] = { .name = "height", .unit = "m" },

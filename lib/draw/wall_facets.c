@@ -98,7 +98,7 @@ int solid_init(struct solid_walls *s, const struct packing *p, const struct soli
         failure_set(failure, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
     if (!failure->status && !face_of_init(&s->faces, p, false, failure) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
-        failure_set(failure, EX_SOFTWARE, "no memory for the colours of boundaries");
+        failure_set(failure, EX_SOFTWARE, "no memory for the colours of walls");
     if (!failure->status && by != SURFACE_NAME) set_range(s, p, &c);
     for (int32_t w = 0; !failure->status && w < p->walls; w++)
         for (int32_t k = 0; k < s->faces.first[w + 1] - s->faces.first[w]; k++) {
@@ -160,7 +160,7 @@ int glass_init(struct glass *g, const struct packing *p, const struct glass_opt 
             if (own.r >= 0 || o->glass) wall_facets_add(g, own, x[0], x[1], x[2]);
         }
     } else
-        failure_set(failure, EX_SOFTWARE, "no memory for the facets of the boundaries");
+        failure_set(failure, EX_SOFTWARE, "no memory for the facets of the walls");
     outline_free(&all);
     return failure->status;
 }

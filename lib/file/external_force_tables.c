@@ -51,7 +51,7 @@ static int steered_init(struct steered *y, const struct packing *p, struct failu
     const size_t n = (size_t)p->walls;
     *y = (struct steered){ .g = { p->g.x, p->g.y, p->g.z } };
     y->x = calloc(2 * n + 1, sizeof *y->x), y->push = calloc(n + 1, sizeof *y->push);
-    if (!y->x || !y->push) return failure_set(failure, EX_SOFTWARE, "no memory for the boundaries");
+    if (!y->x || !y->push) return failure_set(failure, EX_SOFTWARE, "no memory for the walls");
     y->v = y->x + n;
     for (size_t w = 0; w < n; w++) {
         y->x[w] = p->wall[w].x, y->v[w] = p->wall[w].v;

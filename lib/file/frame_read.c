@@ -112,12 +112,12 @@ static int frame_read_material(struct source *doc, struct packing *p, struct fai
     if (failure->status) return failure->status;
     if (materials > MATERIALS_MOST) {
         free(names);
-        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: more than %d kinds",
+        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: more than %d materials",
                            MATERIALS_MOST);
     }
     if (!materials) {
         free(names);
-        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: no kinds of material");
+        return failure_set(failure, EX_DATAERR, "/nsd/material@kinds: no materials");
     }
     int e = packing_alloc_materials(p, materials, failure);
     char *name = names;
@@ -125,7 +125,8 @@ static int frame_read_material(struct source *doc, struct packing *p, struct fai
         char *end = strchr(name, '\n');
         free(p->material_name[k]);
         p->material_name[k] = strndup(name, (size_t)(end - name));
-        if (!p->material_name[k]) e = failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
+        if (!p->material_name[k])
+            e = failure_set(failure, EX_SOFTWARE, "no memory for the materials");
         name = end + 1;
     }
     free(names);

@@ -83,7 +83,7 @@ static int write_material(hid_t file, const struct packing *p, struct failure *f
     size_t length = 1;
     for (int32_t k = 0; k < p->materials; k++) length += strlen(p->material_name[k]) + 1;
     char *names = calloc(length, 1);
-    if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the kinds");
+    if (!names) return failure_set(failure, EX_SOFTWARE, "no memory for the materials");
     for (int32_t k = 0; k < p->materials; k++) strcat(strcat(names, p->material_name[k]), "\n");
     int e = h5_attr_text(file, "/nsd/material", "kinds", names, failure);
     free(names);

@@ -35,12 +35,11 @@ static int check_kept(const struct table_write *s, const struct packing *p, stru
     if (p->sums.n && p->sums.since != s->sums_since)
         return failure_set(
             failure, EX_DATAERR,
-            "sums of boundaries that began at %g s, and before at %g s: begin another trajectory",
+            "sums of walls that began at %g s, and before at %g s: begin another trajectory",
             p->sums.since, s->sums_since);
     if (table_write_grows(s, path) == (p->sums.n > 0)) return 0;
-    return failure_set(
-        failure, EX_DATAERR,
-        "sums of boundaries in some frames, and not in others: begin another trajectory");
+    return failure_set(failure, EX_DATAERR,
+                       "sums of walls in some frames, and not in others: begin another trajectory");
 }
 
 int sum_tables_write(struct table_write *s, const struct packing *p, struct failure *failure)

@@ -85,8 +85,8 @@ static int read_signals(struct source *r, const struct signals *of, struct packi
     for (int32_t k = 0; k < d->n; k++) {
         int32_t w = d->drive[k].wall;
         if (w < 0 || w >= p->walls || (k && w < d->drive[k - 1].wall))
-            return failure_set(failure, EX_DATAERR,
-                               "%s/boundary: not in the order of the boundaries", of->group);
+            return failure_set(failure, EX_DATAERR, "%s/boundary: not in the order of the walls",
+                               of->group);
         int32_t *had = (int32_t *)(void *)((char *)&p->wall[w] + of->count);
         if (!(*had)++) *(int32_t *)(void *)((char *)&p->wall[w] + of->first) = k;
     }
@@ -165,7 +165,7 @@ static bool any_may_move(const struct packing *p)
 static struct wall_motion *motions(const struct packing *p, struct failure *failure)
 {
     struct wall_motion *m = calloc((size_t)p->walls + 1, sizeof *m);
-    if (!m) failure_set(failure, EX_SOFTWARE, "no memory for the motion of the boundaries");
+    if (!m) failure_set(failure, EX_SOFTWARE, "no memory for the motion of the walls");
     for (int32_t w = 0; m && w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         vec3 x = wall_at(p, wall, p->t);
@@ -227,7 +227,7 @@ int wall_tables_write(struct table_write *s, const struct packing *p, struct fai
     if (s->at_rest)
         return failure_set(
             failure, EX_DATAERR,
-            "boundaries move, and in the first frame none could: begin another trajectory");
+            "walls move, and in the first frame none could: begin another trajectory");
     struct wall_motion *m = motions(p, failure);
     if (m &&
         !table_write_frame(s, WALLS_HOME, RECORDS(wall_motion_fields, p->walls, m), CHUNK_FRAMES,

@@ -81,7 +81,7 @@ static double line_root(const struct line *l)
 static const struct quantity quantities[] = {
     { "bodies", "1", 1, "number of movable bodies with their centre in the region" },
     { "broken", "1", 1,
-      "fraction of the first grains, of kinds that break, that have broken, by number" },
+      "fraction of the first grains, of materials that break, that have broken, by number" },
     { "fragments", "1", 1, "fraction of the mass in fragments and dust" },
     { "generation", "1", 1, "largest generation" },
     { "dust", "kg", 1, "mass of dust" },

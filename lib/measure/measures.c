@@ -259,8 +259,8 @@ static int set_sample(struct asked *a, const char *name, const char *text, struc
 static int set_tracer(struct asked *a, const char *name, const char *text, struct failure *failure)
 {
     if (!*text || strlen(text) >= sizeof a->tracer)
-        return failure_set(failure, EX_USAGE, "--%s: '%.40s' is not the name of a kind, or large",
-                           name, text);
+        return failure_set(failure, EX_USAGE,
+                           "--%s: '%.40s' is not the name of a material, or large", name, text);
     memcpy(a->tracer, text, strlen(text) + 1);
     return 0;
 }
@@ -408,7 +408,7 @@ static int check_only(const struct measure *const *chosen, const struct snapshot
         const enum keeps_to to = chosen[k]->keeps_to;
         if (to == KEEPS_TO_NOTHING && s->only.bodies)
             return failure_set(failure, EX_DATAERR,
-                               "--only: %s is measured of all bodies, not of a group or kind",
+                               "--only: %s is measured of all bodies, not of a group or material",
                                chosen[k]->name);
         used = used || (to == KEEPS_TO_WALLS && s->only.walls) ||
                (to == KEEPS_TO_BODIES && s->only.bodies);

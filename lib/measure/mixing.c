@@ -311,7 +311,7 @@ static int mixing_rows(struct table *t, const struct snapshot *s, struct failure
 
 const struct measure measure_mixing = {
     .name = "mixing",
-    .help = "mixing of the bodies of one kind, or of large ones, with the others",
+    .help = "mixing of the bodies of one material, or of large ones, with the others",
     .quantity = quantities,
     .rows = mixing_rows,
 };

@@ -177,8 +177,8 @@ static int check_tracer(const struct packing *p, const char *tracer, struct fail
             at += (size_t)snprintf(materials + at, sizeof materials - at, ", %s",
                                    p->material_name[k]);
     }
-    return failure_set(failure, EX_DATAERR, "--tracer: no kind '%s' here, but large%s%s", tracer,
-                       materials, at < sizeof materials ? "" : "...");
+    return failure_set(failure, EX_DATAERR, "--tracer: no material '%s' here, but large%s%s",
+                       tracer, materials, at < sizeof materials ? "" : "...");
 }
 
 int snapshot_init(struct snapshot *s, const struct packing *p, const struct contacts *contacts,

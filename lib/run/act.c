@@ -30,7 +30,7 @@ int nsd_force(struct nsd_run *r, int32_t id, const double force[3], const double
                          (struct wrench){ of(force), of(torque) }, t, failure);
 }
 
-int nsd_boundary_force(struct nsd_run *r, int32_t wall, double force, enum nsd_term term)
+int nsd_wall_force(struct nsd_run *r, int32_t wall, double force, enum nsd_term term)
 {
     struct failure *failure = run_why(r);
     enum control_lasting t = failure ? term_of(term, failure) : CONTROL_TERMS;
@@ -38,7 +38,7 @@ int nsd_boundary_force(struct nsd_run *r, int32_t wall, double force, enum nsd_t
     return control_push(&r->driver.acts, &r->f.packing, wall, force, t, failure);
 }
 
-int nsd_boundary_velocity(struct nsd_run *r, int32_t wall, const double velocity[3])
+int nsd_wall_velocity(struct nsd_run *r, int32_t wall, const double velocity[3])
 {
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
@@ -69,12 +69,12 @@ int nsd_gravity(struct nsd_run *r, const double gravity[3])
     return control_gravity(&r->f.packing, of(gravity), failure);
 }
 
-int nsd_friction(struct nsd_run *r, const char *kind, const char *other, double mu)
+int nsd_friction(struct nsd_run *r, const char *material, const char *other, double mu)
 {
     struct failure *failure = run_why(r);
     if (!failure) return NSD_USAGE;
-    if (!kind || !other) return failure_set(failure, NSD_USAGE, "a kind has a name");
-    return control_friction(&r->f.packing, kind, other, mu, failure);
+    if (!material || !other) return failure_set(failure, NSD_USAGE, "a material has a name");
+    return control_friction(&r->f.packing, material, other, mu, failure);
 }
 
 static vec3 row3(const double *a, int64_t i)
@@ -95,7 +95,7 @@ static void act_set(struct packing *p, int64_t i, const struct nsd_bodies *b, in
                                    .mass = b->mass ? b->mass[k] : 0,
                                    .weighed = b->mass,
                                    .fixed = b->mass && b->mass[k] == 0,
-                                   .material = b->kind ? b->kind[k] : 0 };
+                                   .material = b->material ? b->material[k] : 0 };
     packing_set_body(p, i, &body);
     if (b->inertia) p->inertia[i] = b->inertia[k];
 }

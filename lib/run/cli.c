@@ -22,6 +22,7 @@ enum {
     OF_ALL = 3,       /* options of every tool */
     RENAMED_MOST = 8, /* old names that a tool accepts */
     LEFT = 28,        /* characters of --help's left column */
+    COLUMNS = 96,     /* of its longest words */
     HELP = 1000,      /* what getopt_long returns: beyond all letters */
     VERSION,
     UNPACK,
@@ -153,6 +154,13 @@ static const char *cli_words(const struct cli_option *o)
     return text;
 }
 
+/* How much of a text of words a|b|c fits into n columns */
+static size_t words_fit(const char *text, size_t n)
+{
+    while (n > 1 && text[n - 1] != '|') n--;
+    return n;
+}
+
 /* "  -m, --local a|b|c      help [default]", and a line for each choice that explains itself */
 static void help_option(const struct cli_option *o)
 {
@@ -160,8 +168,10 @@ static void help_option(const struct cli_option *o)
     if (o->letter) snprintf(letter, sizeof letter, "-%c, ", o->letter);
     const char *arg = o->choice ? cli_words(o) : o->arg ? o->arg : "";
     snprintf(left, sizeof left, "%s--%s%s%s", letter, o->name, *arg ? " " : "", arg);
+    const size_t cut = strlen(left) < COLUMNS ? strlen(left) : words_fit(left, COLUMNS);
     if (strlen(left) > LEFT - 1)
-        printf("  %s\n%*s", left, LEFT + 4, "");
+        printf("  %.*s%s%s\n%*s", (int)cut, left, left[cut] ? "\n          " : "", left + cut,
+               LEFT + 4, "");
     else
         printf("  %-*s  ", LEFT, left);
     printf(o->usual ? "%s [%s]\n" : "%s\n", o->help, o->usual ? o->usual(o->to) : "");

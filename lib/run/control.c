@@ -260,7 +260,7 @@ int control_force(struct control *a, const struct packing *p, int32_t id, struct
 static struct wall *wall_of(const struct packing *p, int64_t wall, struct failure *failure)
 {
     if (wall >= 0 && wall < p->walls) return &p->wall[wall];
-    failure_set(failure, EX_DATAERR, "there is no boundary %lld: they are numbered from 0 to %d",
+    failure_set(failure, EX_DATAERR, "there is no wall %lld: walls are numbered from 0 to %d",
                 (long long)wall, p->walls - 1);
     return NULL;
 }
@@ -272,10 +272,10 @@ int control_push(struct control *a, const struct packing *p, int64_t wall, doubl
     if (!w) return failure->status;
     if (w->load.way == LOAD_NONE || (w->load.way == LOAD_ROOM && !(servo_box_mass(p) > 0)))
         return failure_set(failure, EX_DATAERR,
-                           "boundary %lld is not load-controlled: give it a load in the scene",
+                           "wall %lld is not load-controlled: give it a load in the scene",
                            (long long)wall);
     if (!isfinite(force))
-        return failure_set(failure, EX_DATAERR, "the force of boundary %lld is not finite",
+        return failure_set(failure, EX_DATAERR, "the force of wall %lld is not finite",
                            (long long)wall);
     if (!make_push(&a->push[term], p->walls)) return control_no_memory(failure);
     a->push[term][wall] = force;
@@ -300,11 +300,11 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
     struct wall *w = wall_of(p, wall, failure);
     if (!w) return failure->status;
     if (!v3_finite(v) || (p->dim == 2 && v.z != 0))
-        return failure_set(failure, EX_DATAERR, "the velocity of boundary %lld is not finite%s",
+        return failure_set(failure, EX_DATAERR, "the velocity of wall %lld is not finite%s",
                            (long long)wall, p->dim == 2 ? ", or leaves the plane" : "");
     if (turns_across(p, w, v))
         return failure_set(failure, EX_DATAERR,
-                           "boundary %lld rotates, so that its velocity has to be along its axis",
+                           "wall %lld rotates, so that its velocity has to be along its axis",
                            (long long)wall);
     struct wall was = *w;
     w->x = v3_axpy(w->x, p->t, v3_sub(w->v, v)); // x + v t is where it was
@@ -315,7 +315,7 @@ int control_velocity(struct packing *p, int64_t wall, vec3 v, struct failure *fa
             trouble = "would move across a periodic edge of the cell";
     if (trouble) {
         *w = was;
-        return failure_set(failure, EX_DATAERR, "boundary %lld %s", (long long)wall, trouble);
+        return failure_set(failure, EX_DATAERR, "wall %lld %s", (long long)wall, trouble);
     }
     p->outside.steered = true;
     return 0;
@@ -347,7 +347,7 @@ static int32_t control_material_of(const struct packing *p, const char *name,
 {
     for (int32_t k = 0; k < p->materials; k++)
         if (!strcmp(p->material_name[k], name)) return k;
-    failure_set(failure, EX_DATAERR, "there is no kind '%.100s'", name);
+    failure_set(failure, EX_DATAERR, "there is no material '%.100s'", name);
     return -1;
 }
 

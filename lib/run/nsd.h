@@ -70,8 +70,9 @@ struct nsd_bodies {
     const double *angular_velocity; /* [n][3] rad/s */
     const double *mass;             /* [n] kg; 0: fixed; NULL: computed from density */
     const double *inertia;          /* [n] kg m^2; NULL: that of solid balls, in 2D of discs */
-    const int32_t *kind; /* [n] number of the material: 0 "ball", 1 "wall", then as in the scene */
-    double density;      /* kg/m^3, in 2D kg/m^2; required if mass is NULL */
+    const int32_t
+        *material;  /* [n] number of the material: 0 "ball", 1 "wall", then as in the scene */
+    double density; /* kg/m^3, in 2D kg/m^2; required if mass is NULL */
 };
 
 /*
@@ -124,7 +125,7 @@ const char *nsd_array_name(int k);
 /* 1: steps may add and remove bodies, because the scene has inlets or outlets */
 int nsd_resizes(const struct nsd_run *run);
 
-/* *x = a number by its name: "step", "time" (s), "dt" (s), "dim", "bodies", "boundaries", "contacts"; for the last step
+/* *x = a number by its name: "step", "time" (s), "dt" (s), "dim", "bodies", "walls", "contacts"; for the last step
    "sweeps", "converged", "error" (of its criterion), "natural", "max_overlap" (m), "max_penetration" (m/s),
    "kinetic_energy" (J) and "seconds" of its solve, which are nan before the first step. */
 int nsd_number(struct nsd_run *run, const char *name, double *x);
@@ -135,7 +136,7 @@ int nsd_report(struct nsd_run *run, const char **json);
 /* Which of this run's steps failed their account [nsd-step(1)], in words: "2 steps not converged (first step 7, wall 1 and
    body 0)"; "": none. Valid as the text of nsd_report() */
 int nsd_failure(struct nsd_run *run, const char **text);
-/* {"kinds": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...], "named": {NAME: [WALL, ...], ...}}, in
+/* {"materials": [NAME, ...], "shapes": [...], "walls": [NAME or null, ...], "groups": [...], "named": {NAME: [WALL, ...], ...}}, in
    their order; named: the numbers of the walls that have the name, or a part that has it. Valid as the text of nsd_report() */
 int nsd_names(struct nsd_run *run, const char **json);
 /* The measures "A,B,..." or "all" as a line of nsd-stat(1); valid as the text of nsd_report() */
@@ -153,15 +154,15 @@ enum nsd_term {
 int nsd_force(struct nsd_run *run, int32_t id, const double force[3], const double torque[3],
               enum nsd_term term);
 /* Adds a force (N) along the axis of the wall's load, or a torque (N m) about it, to the load */
-int nsd_boundary_force(struct nsd_run *run, int32_t wall, double force, enum nsd_term term);
+int nsd_wall_force(struct nsd_run *run, int32_t wall, double force, enum nsd_term term);
 /* Prescribes the wall's velocity (m/s) from now on */
-int nsd_boundary_velocity(struct nsd_run *run, int32_t wall, const double velocity[3]);
+int nsd_wall_velocity(struct nsd_run *run, int32_t wall, const double velocity[3]);
 /* Sets the velocity (m/s) and the angular velocity (rad/s), in the axes of space, of the body with this id; NULL: unchanged */
 int nsd_velocity(struct nsd_run *run, int32_t id, const double velocity[3],
                  const double angular_velocity[3]);
 int nsd_gravity(struct nsd_run *run, const double gravity[3]); /* m/s^2 */
 /* Sets the coefficient of friction between two materials, by their names */
-int nsd_friction(struct nsd_run *run, const char *kind, const char *other, double mu);
+int nsd_friction(struct nsd_run *run, const char *material, const char *other, double mu);
 /* Adds bodies; id[bodies->n] (NULL: not returned): their new ids. Removes the bodies id[n]. */
 int nsd_add(struct nsd_run *run, const struct nsd_bodies *bodies, int32_t *id);
 int nsd_remove(struct nsd_run *run, int64_t n, const int32_t *id);

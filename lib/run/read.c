@@ -1,4 +1,5 @@
 /* run/read.c: what there is of a run, as arrays, numbers and JSON. */
+#include "base/renamed.h"
 #include "base/text.h"
 #include "file/report_json.h"
 #include "measure/branch.h"
@@ -141,12 +142,12 @@ static const struct read_row table[] = {
     { "contact_force", "N", OF_CONTACTS, 'd', 3, 0, contact_forces },
     { "contact_velocity", "m s-1", OF_CONTACTS, 'd', 3, 0, contact_velocities },
     { "contact_status", "1", OF_CONTACTS, 'b', 1, 0, contact_statuses },
-    { "boundary_position", "m", OF_WALLS, 'd', 3, 0, wall_positions },
-    { "boundary_normal", "1", OF_WALLS, 'd', 3, 0, wall_normals },
-    { "boundary_velocity", "m s-1", OF_WALLS, 'd', 3, 0, wall_velocities },
-    { "boundary_angular_velocity", "rad s-1", OF_WALLS, 'd', 3, 0, wall_spins },
-    { "boundary_force", "N", OF_WALLS, 'd', 3, 0, wall_forces },
-    { "boundary_torque", "N m", OF_WALLS, 'd', 3, 0, wall_torques },
+    { "wall_position", "m", OF_WALLS, 'd', 3, 0, wall_positions },
+    { "wall_normal", "1", OF_WALLS, 'd', 3, 0, wall_normals },
+    { "wall_velocity", "m s-1", OF_WALLS, 'd', 3, 0, wall_velocities },
+    { "wall_angular_velocity", "rad s-1", OF_WALLS, 'd', 3, 0, wall_spins },
+    { "wall_force", "N", OF_WALLS, 'd', 3, 0, wall_forces },
+    { "wall_torque", "N m", OF_WALLS, 'd', 3, 0, wall_torques },
     { "cell_origin", "m", OF_CELL, 'd', 1, 0, cell_origin },
     { "cell_edges", "m", OF_CELL, 'd', 3, 0, cell_edges },
     { "cell_rates", "m s-1", OF_CELL, 'd', 3, 0, cell_rates },
@@ -208,6 +209,9 @@ int nsd_read(struct nsd_run *r, const char *name, struct nsd_array *out)
     if (!out || out->size < sizeof *out)
         return failure_set(failure, NSD_USAGE, "an array's size is not that of struct nsd_array");
     while (nsd_array_name(k) && (!name || strcmp(nsd_array_name(k), name) != 0)) k++;
+    const struct renamed *was = name ? renamed_find("nsd_read", name, strlen(name)) : NULL;
+    if (!nsd_array_name(k) && was)
+        return failure_set(failure, NSD_USAGE, "array '%s': now called %s", was->was, was->is);
     if (!nsd_array_name(k))
         return failure_set(failure, NSD_USAGE, "there is no array '%.60s'", name ? name : "");
     const struct read_row of_bodies = column_as_row(k < BODY_COLUMNS ? k : 0);
@@ -246,7 +250,7 @@ static double read_number(const struct nsd_run *r, const char *name, bool *known
         { "dt", p->dt, false },
         { "dim", p->dim, false },
         { "bodies", (double)p->n, false },
-        { "boundaries", p->walls, false },
+        { "walls", p->walls, false },
         { "contacts", (double)r->f.contacts.n, false },
         { "sweeps", rep->sweeps, true },
         { "small_steps", (double)rep->small, true },
@@ -369,8 +373,8 @@ static json_t *names_of(const struct packing *p)
     for (int32_t w = 0; good && w < p->walls; w++)
         good = read_put_name(walls, names_of_wall(&p->names, w));
     good = good && put_groups(groups, p) && put_named(named, &p->names);
-    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "kinds", materials, "shapes", shapes,
-                            "walls", walls, "groups", groups, "named", named);
+    json_t *all = json_pack("{s:o*, s:o*, s:o*, s:o*, s:o*}", "materials", materials, "shapes",
+                            shapes, "walls", walls, "groups", groups, "named", named);
     if (good) return all;
     json_decref(all);
     return NULL;

@@ -100,7 +100,7 @@ static int check_motion(const struct nsd_run *r, struct failure *failure)
 {
     if (!r->rests || !wall_tables_move(&r->f.packing)) return 0;
     return failure_set(failure, NSD_DATA,
-                       "%.100s: a boundary moves, and in its first frame none could: "
+                       "%.100s: a wall moves, and in its first frame none could: "
                        "nsd_finish() ends it, and another one may begin",
                        r->path);
 }

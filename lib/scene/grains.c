@@ -2,6 +2,7 @@
 
 #include "base/array.h"
 #include "base/json.h"
+#include "base/renamed.h"
 #include "base/text.h"
 
 #include <ctype.h>
@@ -85,12 +86,13 @@ static int grains_add_body(struct grains *out, const struct scene_bodies *b,
     if (g.material < 0 && b->foreign)
         return failure_set(
             failure, EX_DATAERR,
-            "%s: ball %lld is of type %s: which kind is that? \"types\": {\"%s\": NAME}", b->file,
-            (long long)i, p->material_name[p->material[i]], p->material_name[p->material[i]]);
+            "%s: ball %lld is of type %s: which material is that? \"types\": {\"%s\": NAME}",
+            b->file, (long long)i, p->material_name[p->material[i]],
+            p->material_name[p->material[i]]);
     if (g.material < 0)
         return failure_set(failure, EX_DATAERR,
-                           "%s: body %lld is of kind \"%s\": name it under \"kinds\"", b->file,
-                           (long long)i, p->material_name[p->material[i]]);
+                           "%s: body %lld is of material \"%s\": name it under \"materials\"",
+                           b->file, (long long)i, p->material_name[p->material[i]]);
     return grains_add(out, &g, failure);
 }
 
@@ -144,9 +146,10 @@ enum heading {
     FIXED,
     NAMES
 };
-static const char *const column_name[NAMES] = { "x",  "y",  "z",  "r",  "d",    "mass", "density",
-                                                "vx", "vy", "vz", "wx", "wy",   "wz",   "qw",
-                                                "qx", "qy", "qz", "id", "kind", "fixed" };
+static const char *const column_name[NAMES] = { "x",    "y",       "z",  "r",        "d",
+                                                "mass", "density", "vx", "vy",       "vz",
+                                                "wx",   "wy",      "wz", "qw",       "qx",
+                                                "qy",   "qz",      "id", "material", "fixed" };
 
 struct grains_table {
     const char *path;
@@ -183,7 +186,8 @@ static int name_index(const char *word)
 {
     for (int k = 0; k < NAMES; k++)
         if (!strcmp(column_name[k], word)) return k;
-    return -1;
+    const struct renamed *r = renamed_find("column", word, strlen(word));
+    return r ? name_index(r->is) : -1;
 }
 
 static bool of_space(enum heading c)
@@ -268,7 +272,7 @@ static int grains_read_material(const struct grains_table *t, const char *word, 
         *material = k;
         return 0;
     }
-    return grains_fault(t, failure, "the scene names no kind", word);
+    return grains_fault(t, failure, "the scene names no material", word);
 }
 
 static int make_grain(const struct grains_table *t, const double *x, struct grain *g,

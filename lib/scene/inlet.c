@@ -53,8 +53,9 @@ int flow_read(struct flow *f, const struct packing *p, struct failure *failure)
         !find_groups(&f->scene, p))
         return 0;
     flow_free(f);
-    return failure_set(failure, EX_DATAERR,
-                       "the scene's pours, removals, kinds, shapes or names are not the packing's");
+    return failure_set(
+        failure, EX_DATAERR,
+        "the scene's pours, removals, materials, shapes or names are not the packing's");
 }
 
 void flow_free(struct flow *f)

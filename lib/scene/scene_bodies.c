@@ -51,8 +51,8 @@ static int fill_cell(jnode o, const struct scene_cell *of, struct scene_bodies *
 static const struct key group_key[] = {
     { "v", &key_vector, AT(v), "m/s", "0", "[0, 0, -1]", "Velocity." },
     { "w", &key_spin, AT(w), "rad/s", "0", "3", "Angular velocity." },
-    { "kind", &key_material, AT(material), "-", "\"ball\"", "\"steel\"", "Kind of material." },
-    { "density", &key_positive, AT(density), "kg/m^3", "of the kind", "2600",
+    { "material", &key_material, AT(material), "-", "\"ball\"", "\"steel\"", "Material." },
+    { "density", &key_positive, AT(density), "kg/m^3", "of the material", "2600",
       "Density; in 2D in kg/m^2." },
     { "mass", &key_positive, AT(mass), "kg", "by density", "1e-3", "Mass, instead of density.",
       .without = "density", .why = "density is given too" },
@@ -68,7 +68,7 @@ static int finish_group(jnode o, struct scene *s, void *out)
 {
     struct scene_bodies *b = out;
     b->has_v = keys_has(&o, "v"), b->has_w = keys_has(&o, "w");
-    b->has_material = keys_has(&o, "kind"), b->has_fixed = keys_has(&o, "fixed");
+    b->has_material = keys_has(&o, "material"), b->has_fixed = keys_has(&o, "fixed");
     b->has_density = keys_has(&o, "density");
     if (!b->has_density) b->density = s->material[b->material].density;
     return 0;
@@ -236,7 +236,7 @@ static const struct keys table_keys = { "table", table_key, .finish = finish_tab
 static const struct key document_key[] = {
     { "document", &key_file, AT(file), "-", REQUIRED, "\"settled.h5\"",
       "Document (nsd-format(5)) whose bodies are taken with their motion, radii, masses, ids and "
-      "the names of their kinds, which the scene must define, too." },
+      "the names of their materials, which the scene must define, too." },
     { FRAME },
     { AT_REST },
     { "", &key_include, 0, .object = &group_keys },
@@ -283,7 +283,7 @@ static const struct key import_key[] = {
     { FRAME },
     { AT_REST },
     { "types", &key_types, 0, "-", "by name", "{\"1\": \"glass\"}",
-      "Kind for each type of the file. Default: the kind of the same name; ball where the file "
+      "Material for each type of the file. Default: that of the same name; ball where the file "
       "has one type.",
       .read = read_types },
     { "repeats", &key_repeats, AT(repeats), "-", "of the file", "[true, true, false]",

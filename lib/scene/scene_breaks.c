@@ -1,4 +1,4 @@
-/* scene/scene_breaks.c: how the grains of a kind break, from its JSON, and whether they can [state/breakage.h]. */
+/* scene/scene_breaks.c: how the grains of a material break, from its JSON, and whether they can [state/breakage.h]. */
 #include "scene/scene_breaks.h"
 
 #include "scene/scene_read.h"
@@ -105,7 +105,7 @@ int scene_breaks_set(struct packing *p, const struct scene *s, struct failure *f
     return 0;
 }
 
-/* Grains of one kind, shape and size */
+/* Grains of one material, shape and size */
 struct some_grains {
     int32_t material, shape;
     double radius; /* m */
@@ -123,18 +123,19 @@ static int check_grains(const struct packing *p, const struct some_grains *g, do
     const double d = breakage_diameter_of(p->dim, s, g->radius);
     if (!(b->strength > 0)) return 0;
     if (s && (b->into == INTO_BALLS || !fracture_cuts(s)))
-        return failure_set(failure, EX_DATAERR,
-                           "kinds.%s.breaks: %s, and %s %lld has the shape \"%s\": give it another "
-                           "kind",
-                           kind,
-                           b->into == INTO_BALLS ? "only balls break into balls"
-                                                 : "only balls and polyhedra without a round break",
-                           g->what, (long long)g->which, s->name);
+        return failure_set(
+            failure, EX_DATAERR,
+            "materials.%s.breaks: %s, and %s %lld has the shape \"%s\": give it another "
+            "material",
+            kind,
+            b->into == INTO_BALLS ? "only balls break into balls"
+                                  : "only balls and polyhedra without a round break",
+            g->what, (long long)g->which, s->name);
     if (d >= b->smallest) *most += pow(d / b->smallest, p->dim) * (double)b->pieces;
     if (*most <= FRAGMENTS_MOST) return 0;
     return failure_set(
         failure, EX_DATAERR,
-        "kinds.%s.breaks.smallest: grains of %.3g m that break down to %.3g m may make more "
+        "materials.%s.breaks.smallest: grains of %.3g m that break down to %.3g m may make more "
         "than %d fragments: give a larger one",
         kind, d, b->smallest, FRAGMENTS_MOST);
 }

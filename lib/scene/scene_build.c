@@ -103,7 +103,7 @@ static int check_names(const struct packing *p, const struct scene *s, struct fa
         for (int32_t material = 0; material < p->materials; material++)
             if (!strcmp(p->names.text[k], p->material_name[material]))
                 return failure_set(failure, EX_DATAERR,
-                                   "\"%s\" is a kind: walls and groups have other names",
+                                   "\"%s\" is a material: walls and groups have other names",
                                    p->names.text[k]);
     bool of_bodies[NAMES_MOST + 1] = { false };
     for (int64_t i = 0; p->group && i < p->n; i++) of_bodies[p->group[i]] = p->group[i] > 0;

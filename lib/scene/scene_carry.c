@@ -238,8 +238,8 @@ static int take_walls(struct packing *p, const struct scene *s, const struct sce
         w->material = grains_material(s, b, from->wall[i].material);
         if (w->material < 0)
             return failure_set(failure, EX_DATAERR,
-                               "%s: wall %d is of kind \"%s\": name it under \"kinds\"", b->file, i,
-                               from->material_name[from->wall[i].material]);
+                               "%s: wall %d is of material \"%s\": name it under \"materials\"",
+                               b->file, i, from->material_name[from->wall[i].material]);
     }
     if (drives_copy(&p->drives, &from->drives, failure) ||
         drives_copy(&p->pushes, &from->pushes, failure) ||

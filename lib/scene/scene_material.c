@@ -20,32 +20,34 @@ static int scene_material_read(jnode n, const struct key *k, struct scene *s, vo
     (void)k;
     if (json_node_text(n, &name)) return 1;
     *material = find_material(s, name);
-    return *material < 0 ? json_node_fault(n, "no kind \"%s\"; name it under \"kinds\"", name) : 0;
+    return *material < 0
+               ? json_node_fault(n, "no material \"%s\"; name it under \"materials\"", name)
+               : 0;
 }
 
 const struct key_type key_material = { "string", "{'type': 'string'}", scene_material_read, NULL };
 
-/* "kinds" */
+/* "materials" */
 
 #define AT(member) offsetof(struct scene_material, member)
 
 static const struct key scene_material_key[] = {
     { "density", &key_positive, AT(density), "kg/m^3", "of the scene", "7800",
-      "Density of the kind; in 2D in kg/m^2." },
-    { "breaks", &key_object, AT(breaks), "-", "none", "see below", "How grains of the kind break.",
-      .object = &scene_breaks_keys },
+      "Density of the material; in 2D in kg/m^2." },
+    { "breaks", &key_object, AT(breaks), "-", "none", "see below",
+      "How grains of the material break.", .object = &scene_breaks_keys },
     { 0 },
 };
 #undef AT
-const struct keys scene_material_keys = { "kind", scene_material_key };
+const struct keys scene_material_keys = { "material", scene_material_key };
 
 static int add_material(jnode n, struct scene *s, const char *name, double density)
 {
     const char *trouble = name_trouble_of_material(name, strlen(name));
-    if (trouble) return json_node_fault(n, "the name of a kind %s", trouble);
+    if (trouble) return json_node_fault(n, "the name of a material %s", trouble);
     s->material[s->materials] = (struct scene_material){ strdup(name), density, { 0 } };
     if (!s->material[s->materials].name)
-        return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a kind");
+        return failure_set(n.in->failure, EX_SOFTWARE, "no memory for a material");
     s->materials++;
     return 0;
 }
@@ -57,7 +59,7 @@ int scene_read_materials(jnode o, struct scene *s, void *out)
     size_t most = 1000, count = json_object_size(o.json);
     (void)out;
     if (o.json && !json_is_object(o.json)) return json_node_fault(o, "needs an object {...}");
-    if (count > most) return json_node_fault(o, "more than %zu kinds", most);
+    if (count > most) return json_node_fault(o, "more than %zu materials", most);
     if (!(s->material = scene_alloc(o, count + 2, sizeof *s->material))) return 1;
     if (add_material(o, s, "ball", s->density) || add_material(o, s, "wall", s->density)) return 1;
     json_object_foreach(o.json, name, value)
@@ -225,7 +227,7 @@ static const struct key_type key_stiffness = {
 };
 
 /* Unit, default, example and help of the numbers of state/pair_columns.h */
-#define TEXT_mu "-", "0", "0.4", "Coulomb friction coefficient of every pair of kinds."
+#define TEXT_mu "-", "0", "0.4", "Coulomb friction coefficient of every pair of materials."
 #define TEXT_en "-", "0", "0.3", "Normal restitution coefficient of every pair."
 #define TEXT_et "-", "0", "0", "Tangential restitution coefficient of every pair."
 #define TEXT_mu_s                                                                                  \
@@ -286,12 +288,12 @@ struct pair_read {
 #undef AT
 #define AT(member) offsetof(struct pair_read, member)
 
-static const struct key_type key_two_materials = { ARRAY("two kinds", &key_material, 2,
+static const struct key_type key_two_materials = { ARRAY("two materials", &key_material, 2,
                                                          sizeof(int32_t)) };
 
 static const struct key pair_key[] = {
     { "pair", &key_two_materials, AT(material), "-", REQUIRED, "[\"steel\", \"ball\"]",
-      "The two kinds." },
+      "The two materials." },
     { "acts", &key_bool, AT(acts), "-", "true", "false",
       "false: the pair has no contacts, and no other key." },
     { "", &key_include, AT(law), .object = &scene_law_keys },
@@ -348,7 +350,8 @@ static int read_name(jnode n, const struct key *k, struct scene *s, void *member
     if (trouble) return json_node_fault(n, "a name %s", trouble);
     for (int32_t i = 0; i < s->materials; i++)
         if (!strcmp(s->material[i].name, *out))
-            return json_node_fault(n, "\"%s\" is a kind: walls and groups have other names", *out);
+            return json_node_fault(n, "\"%s\" is a material: walls and groups have other names",
+                                   *out);
     return 0;
 }
 

@@ -90,12 +90,12 @@ static const struct key scene_key[] = {
     { "seed", &key_integer, AT(seed), "-", "1", "7", "Seed of the random numbers.",
       .most = UINT32_MAX },
     { "density", &key_positive, AT(density), "kg/m^3", "2500", "2600",
-      "Density of every kind without its own; in 2D in kg/m^2." },
+      "Density of every material without its own; in 2D in kg/m^2." },
     { "", &key_include, AT(common), .object = &scene_law_keys },
-    { "kinds", &key_map, 0, "-", "none", "{\"steel\": {}}",
-      "Kinds of material by name. The kinds ball and wall always exist.",
+    { "materials", &key_map, 0, "-", "none", "{\"steel\": {}}",
+      "Materials by name. The materials ball and wall always exist.",
       .object = &scene_material_keys, .always = true, .read = scene_read_materials },
-    { LIST(pairs, pair, "Exceptions for pairs of kinds.") },
+    { LIST(pairs, pair, "Exceptions for pairs of materials.") },
     { "allow_overlap", &key_bool, AT(allow_overlap), "-", "false", "true",
       "Allow bodies to overlap at the start. Otherwise an overlap of more than a millionth of "
       "the smaller radius is an error; of a tenth for bodies that come from a document or a "

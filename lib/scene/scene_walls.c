@@ -157,8 +157,8 @@ struct material_read {
 static const struct key material_key[] = {
     { "faces", &key_faces, AT(face), "-", REQUIRED, "[0, 11]",
       "Range of triangles or segments, counted as for parts; ranges must not overlap." },
-    { "kind", &key_material, AT(material), "-", "of the wall", "\"rubber\"",
-      "Kind of material of these faces." },
+    { "material", &key_material, AT(material), "-", "of the wall", "\"rubber\"",
+      "Material of these faces." },
     { "belt", &key_vector, AT(belt), "m/s", "of the wall", "[0.5, 0, 0]", "Belt of these faces." },
     { 0 },
 };
@@ -181,7 +181,7 @@ static int scene_walls_read_materials(jnode a, struct scene *s, void *out)
     const struct wall *w = out;
     if (w->load.way)
         return json_node_fault(
-            a, "a surface with a load has one kind: its parts would move by themselves");
+            a, "a surface with a load has one material: its parts would move by themselves");
     return keys_each(a, s, out, read_material);
 }
 
@@ -228,7 +228,7 @@ static const struct key wall_key[] = {
       "Velocity with which the surface moves along itself while its shape stays: a conveyor "
       "belt. It rotates with the wall. Its component normal to the surface at a contact has no "
       "effect." },
-    { "kind", &key_material, AT(w.material), "-", "\"wall\"", "\"steel\"", "Kind of material." },
+    { "material", &key_material, AT(w.material), "-", "\"wall\"", "\"steel\"", "Material." },
     { "drives", &key_drives, 0, "-", "none", "see below",
       "Prescribed motions, applied one after the other." },
     { "until", &key_number, AT(w.until), "s", "never", "0.4",
@@ -247,7 +247,7 @@ static const struct key wall_key[] = {
     { "materials", &key_list, AT(w), "-", "none", "see below",
       "Kinds and belts of parts of a mesh or of a polygon; not with a load.",
       .with = "mesh polygon",
-      .why = "only a mesh or a polygon has faces; other walls have one kind",
+      .why = "only a mesh or a polygon has faces; other walls have one material",
       .object = &material_keys, .read = scene_walls_read_materials },
     { 0 },
 };

@@ -48,8 +48,8 @@ static const char *table_trouble(const struct drives *d, const struct drive *k)
 static const char *drive_trouble(const struct drives *d, int32_t k, int32_t walls, int dim)
 {
     const struct drive *s = &d->drive[k];
-    if (s->wall < 0 || s->wall >= walls) return "its boundary does not exist";
-    if (k && s->wall < s[-1].wall) return "drives are not in the order of the boundaries";
+    if (s->wall < 0 || s->wall >= walls) return "its wall does not exist";
+    if (k && s->wall < s[-1].wall) return "drives are not in the order of the walls";
     if (s->turns != 0 && s->turns != 1) return "it neither rotates nor translates";
     if (s->signal < 0 || s->signal >= DRIVE_SIGNALS) return "no such signal";
     if (!(fabs(v3_dot(s->axis, s->axis) - 1) < 1e-6)) return "its axis is not a unit vector";
@@ -72,7 +72,7 @@ int drives_check(const struct drives *d, int32_t walls, int dim, const char *wha
         const struct drive *s = &d->drive[k];
         of_one = k && s->wall == s[-1].wall ? of_one + 1 : 1;
         rows += s->signal == DRIVE_TABLE && s->rows > 0 ? s->rows : 0;
-        const char *trouble = of_one > DRIVES_MOST ? "more than a boundary may have"
+        const char *trouble = of_one > DRIVES_MOST ? "more than a wall may have"
                               : rows > d->rows     ? "its table is missing or another drive's"
                                                    : drive_trouble(d, k, walls, dim);
         if (trouble) return failure_set(failure, EX_DATAERR, "%s %d: %s", what, k, trouble);

@@ -13,7 +13,7 @@ int breakage_alloc(struct packing *p, struct failure *failure)
     free(p->breakage), free(p->broken);
     p->breakage = calloc(n + 1, sizeof *p->breakage), p->broken = calloc(n + 1, sizeof *p->broken);
     if (!p->breakage || !p->broken)
-        return failure_set(failure, EX_SOFTWARE, "no memory for the breakage of %d kinds",
+        return failure_set(failure, EX_SOFTWARE, "no memory for the breakage of %d materials",
                            p->materials);
     for (int k = 0; k < 4; k++)
         if (packing_alloc_column(p, columns[k], failure)) return failure->status;

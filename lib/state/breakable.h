@@ -12,9 +12,9 @@ int breakage_alloc(struct packing *p, struct failure *failure);
 /* m: the diameter of the ball or disc of the volume of a body of this shape (NULL: a ball) and radius; that of body i */
 double breakage_diameter_of(int dim, const struct shape *s, double radius);
 double breakage_diameter(const struct packing *p, int64_t i);
-/* How body i breaks; NULL: it does not, for it is held, too small, or of a kind or shape that does not break */
+/* How body i breaks; NULL: it does not, for it is held, too small, or of a material or shape that does not break */
 const struct breakage *breakage_of(const struct packing *p, int64_t i);
 /* Pa, J/kg: the strength of body i of this diameter; *scale: (d / size)^-e */
 double breakage_strength(const struct packing *p, int64_t i, double d, double *scale);
-/* Of all kinds */
+/* Of all materials */
 struct broken breakage_total(const struct packing *p);

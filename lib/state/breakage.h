@@ -1,5 +1,5 @@
 /*
- * state/breakage.h: how the grains of a kind break, and the account of those that have broken.
+ * state/breakage.h: how the grains of a material break, and the account of those that have broken.
  *
  * A grain of diameter d, that of the ball (disc) of its volume, has the strength
  *
@@ -31,7 +31,7 @@ enum breakage_by { BREAKAGE_FORCE, BREAKAGE_STRESS, BREAKAGE_SHEAR, BREAKAGE_ENE
 enum breakage_damage { DAMAGE_NONE, DAMAGE_LINEAR, DAMAGE_TAVARES, DAMAGES };
 enum breakage_into { INTO_PIECES, INTO_BALLS, INTOS };
 
-/* Of a kind */
+/* Of a material */
 struct breakage {
     double strength; /* Pa; by energy J/kg; 0: its grains do not break */
     double size;     /* m: the diameter at which they have it; 0: at any */
@@ -45,7 +45,7 @@ struct breakage {
     int32_t by, damage, into;
 };
 
-/* Of the grains of a kind, since the first frame */
+/* Of the grains of a material, since the first frame */
 struct broken {
     int64_t grains, originals; /* that have broken, and those of generation 0 */
     int64_t fragments;         /* into which */

@@ -31,7 +31,8 @@ static void *array(int64_t n, size_t size)
 
 #define ROW(ctype, member, type, width, name, unit, bounds, ...)                                   \
     FIELD(struct packing, member, type, width, name, unit, __VA_ARGS__, .range = FIELD_##bounds,   \
-          .key = BODY_##member == BODY_material ? "kind" : NULL), /* "species" is H5MD's word */
+          .key =                                                                                   \
+              BODY_##member == BODY_material ? "material" : NULL), /* "species" is H5MD's word */
 const struct field body_columns[] = { EACH_BODY_COLUMN(ROW){ 0 } };
 #undef ROW
 
@@ -127,7 +128,7 @@ int packing_alloc_materials(struct packing *p, int32_t k, struct failure *failur
         snprintf(name, sizeof name, "%d", p->materials);
         allocated = (p->material_name[p->materials] = strdup(name));
     }
-    return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", k);
+    return allocated ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d materials", k);
 }
 
 bool packing_has_springs(const struct packing *p)
@@ -158,7 +159,8 @@ int packing_alloc_laws(struct packing *p, struct failure *failure)
 {
     free(p->law);
     p->law = array((int64_t)p->materials * p->materials, sizeof *p->law);
-    return p->law ? 0 : failure_set(failure, EX_SOFTWARE, "no memory for %d kinds", p->materials);
+    return p->law ? 0
+                  : failure_set(failure, EX_SOFTWARE, "no memory for %d materials", p->materials);
 }
 
 bool packing_sticks(const struct packing *p)
@@ -307,7 +309,7 @@ static const char *body_trouble(const struct packing *p, int64_t i)
     if (p->shape && (p->shape[i] < 0 || p->shape[i] >= p->shapes.n)) return "has no such shape";
     if (p->dim == 2 && packing_shape(p, i) && (q.x != 0 || q.y != 0))
         return "rotates out of the plane, and dim is 2";
-    if (p->material[i] < 0 || p->material[i] >= p->materials) return "kind has no material";
+    if (p->material[i] < 0 || p->material[i] >= p->materials) return "material that is not there";
     if (p->group && (p->group[i] < 0 || p->group[i] > p->names.n)) return "group has no name";
     return NULL;
 }
@@ -338,7 +340,7 @@ static const char *packing_load_trouble(const struct packing *p, const struct wa
     if (l->spread < 0 || l->spread > 1 || (l->spread && (turns || w->shape != WALL_PLANE)))
         return "its pressure is not on a plane that translates";
     if (l->spread && p->walls > SPREAD_MOST)
-        return "its pressure is on one of more than 1000 boundaries: give a force";
+        return "its pressure is on one of more than 1000 walls: give a force";
     if (l->spread && room && !(wall_face(p, w, p->t) > 0))
         return "its servo needs planes on all sides of its face, or a periodic cell";
     if (l->spread && !(wall_face(p, w, p->t) > 0))
@@ -393,7 +395,7 @@ static const char *wall_trouble(const struct packing *p, const struct wall *w)
     if (mesh && (w->first_element < 0 || w->first_element > p->mesh.elements ||
                  w->elements > p->mesh.elements - w->first_element))
         return "its mesh is missing";
-    if (w->material < 0 || w->material >= p->materials) return "kind has no material";
+    if (w->material < 0 || w->material >= p->materials) return "material that is not there";
     if (p->dim == 2 && w->belt.z != 0) return "belt leaves the plane, and dim is 2";
     return packing_load_trouble(p, w);
 }
@@ -484,16 +486,16 @@ static int check_pair(const struct packing *p, int32_t i, struct failure *failur
     if (!bad && p->law) trouble = pair_law_trouble(&p->law[i]);
     if (!trouble && p->inert[i] != 0 && p->inert[i] != 1) trouble = "inert is neither 0 nor 1";
     if (!trouble) return 0;
-    return failure_set(failure, EX_DATAERR, "the material of kinds %s and %s: %s%s%s",
+    return failure_set(failure, EX_DATAERR, "the law of materials %s and %s: %s%s%s",
                        p->material_name[i / p->materials], p->material_name[i % p->materials],
                        bad ? bad->name : "", bad ? " " : "", trouble);
 }
 
-/* Do its kinds break in a way that there is? */
+/* Do its materials break in a way that there is? */
 static int check_breakage(const struct packing *p, struct failure *failure)
 {
     if (!p->breakage) return 0;
-    if (records_check(RECORDS(breakage_fields, p->materials, p->breakage), "breakage of kind",
+    if (records_check(RECORDS(breakage_fields, p->materials, p->breakage), "breakage of material",
                       failure))
         return failure->status;
     if (!p->broken || !p->damage || !p->parent || !p->generation || !p->born)
@@ -503,12 +505,13 @@ static int check_breakage(const struct packing *p, struct failure *failure)
         const struct breakage *b = &p->breakage[k];
         const char *trouble = breakage_trouble(b);
         if (trouble)
-            return failure_set(failure, EX_DATAERR, "breakage of kind %s: %s", p->material_name[k],
-                               trouble);
+            return failure_set(failure, EX_DATAERR, "breakage of material %s: %s",
+                               p->material_name[k], trouble);
         if (b->strength > 0 && b->into == INTO_PIECES && !p->shape)
-            return failure_set(failure, EX_DATAERR,
-                               "breakage of kind %s: into pieces, and there is no table of shapes",
-                               p->material_name[k]);
+            return failure_set(
+                failure, EX_DATAERR,
+                "breakage of material %s: into pieces, and there is no table of shapes",
+                p->material_name[k]);
     }
     return 0;
 }
@@ -533,7 +536,7 @@ int packing_check(const struct packing *p, struct failure *failure)
     if (p->walls > WALLS_BODY && (p->walls - WALLS_BODY) * p->n > WALLS_LEAST)
         return failure_set(
             failure, EX_DATAERR,
-            "%lld bodies and %d boundaries: more than %d for each body: make a mesh of them",
+            "%lld bodies and %d walls: more than %d for each body: make a mesh of them",
             (long long)p->n, p->walls, WALLS_BODY);
     if (drives_check(&p->drives, p->walls, p->dim, "drive", failure) ||
         drives_check(&p->pushes, p->walls, p->dim, "push", failure))
@@ -550,8 +553,7 @@ int packing_check(const struct packing *p, struct failure *failure)
         return failure->status;
     for (int32_t i = 0; i < p->pushes.n; i++)
         if (!p->wall[p->pushes.drive[i].wall].load.way)
-            return failure_set(failure, EX_DATAERR, "push %d: its boundary is not load-controlled",
-                               i);
+            return failure_set(failure, EX_DATAERR, "push %d: its wall is not load-controlled", i);
     if (pulls_check(&p->pulls, p->pulls_most, p->dim, failure)) return failure->status;
     if (mesh_check(&p->mesh, p->dim, failure)) return failure->status;
     if (bonds_check(&p->bonds, p->dim, p->n, p->walls, failure)) return failure->status;

@@ -44,18 +44,18 @@
 #define STEERED(member)                                                                            \
     (offsetof(struct packing, member) == offsetof(struct packing, mu) ? FIELD_STEERED : 0)
 #define PAIR(member, name, unit, ...)                                                              \
-    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, member, PART_SQUARE, materials, 0,      \
-          ALONE(F64, 1, name, unit, FIELD_SAME | STEERED(member))),
+    ARRAY("pair of materials", "pairs of materials", PART_SETTING, member, PART_SQUARE, materials, \
+          0, ALONE(F64, 1, name, unit, FIELD_SAME | STEERED(member))),
 
 const struct part packing_parts[] = {
     EACH_BODY_COLUMN(BODY) // rows of macros end with commas
-    TEXTS("kind", "kinds", PART_SETTING, material_name, PART_I32, materials),
+    TEXTS("material", "materials", PART_SETTING, material_name, PART_I32, materials),
     EVERY_PAIR_COLUMN(PAIR) // these, too
-    ARRAY("pair of kinds", "pairs of kinds", PART_SETTING, law, PART_SQUARE, materials, 0,
+    ARRAY("pair of materials", "pairs of materials", PART_SETTING, law, PART_SQUARE, materials, 0,
           law_fields),
-    ARRAY("breakage of kind", "kinds that break", PART_SETTING, breakage, PART_I32, materials, 0,
-          breakage_fields),
-    ARRAY("kind", "kinds", 0, broken, PART_I32, materials, 0, broken_fields),
+    ARRAY("breakage of material", "materials that break", PART_SETTING, breakage, PART_I32,
+          materials, 0, breakage_fields),
+    ARRAY("material", "materials", 0, broken, PART_I32, materials, 0, broken_fields),
     SETTING("wall", "walls", wall, walls, wall_fields),
     ARRAY("load", "walls", PART_SETTING | PART_AGAIN, wall, PART_I32, walls, 0, load_fields),
     SETTING("drive", "drives", drives.drive, drives.n, drive_fields),
@@ -204,11 +204,11 @@ static int same_fields(const struct field *fields, const char *row, const void *
     return 0;
 }
 
-/* "wall 2: ", "kinds ball and wall: " */
+/* "wall 2: ", "materials ball and wall: " */
 static void name_of_row(const struct part *a, const struct packing *p, int64_t i, char text[200])
 {
     if (a->how == PART_SQUARE)
-        snprintf(text, 200, "kinds %.80s and %.80s: ", p->material_name[i / p->materials],
+        snprintf(text, 200, "materials %.80s and %.80s: ", p->material_name[i / p->materials],
                  p->material_name[i % p->materials]);
     else
         snprintf(text, 200, "%s %lld: ", a->name, (long long)i);

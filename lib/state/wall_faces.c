@@ -22,7 +22,7 @@ int wall_faces_init(struct wall_faces *f, int32_t walls, const struct wall *wall
     bool finds = mesh && mesh->elements;
     if (finds) f->surface = calloc((size_t)walls + 1, sizeof *f->surface);
     if (!f->first || (finds && !f->surface))
-        failure_set(failure, EX_SOFTWARE, "no memory for the faces of boundaries");
+        failure_set(failure, EX_SOFTWARE, "no memory for the faces of walls");
     for (int32_t w = 0; !failure->status && w < walls; w++) {
         int32_t faces = is_mesh(&wall[w]) ? wall[w].elements : 1;
         if (faces < 0 || faces > INT32_MAX - f->n) {

@@ -75,7 +75,7 @@ class Contacts:
 
 
 # Names of version 1, for programs that have them
-_BEFORE = {"x": "position", "v": "velocity", "w": "angular_velocity", "q": "orientation"}
+_BEFORE = {"x": "position", "v": "velocity", "w": "angular_velocity", "q": "orientation", "kind": "material", "kind_names": "material_names"}
 
 
 class Frame:
@@ -127,11 +127,11 @@ class Frame:
         moves = isinstance(self._all["id"], Group)
         return self._moving("id") if moves else self._fixed("id")
 
-    kind = cached_property(lambda self: self._fixed("species"))
+    material = cached_property(lambda self: self._fixed("species"))
 
     @cached_property
-    def kind_names(self):
-        """The name of each kind: kind_names[kind[i]] is that of grain i."""
+    def material_names(self):
+        """The name of each material: material_names[material[i]] is that of grain i."""
         return _lines(self.file["nsd/material"].attrs["kinds"])
 
     @cached_property

@@ -16,7 +16,7 @@ from pathlib import Path
 class Bodies(ctypes.Structure):
     _fields_ = [("size", c_size_t), ("n", c_int64), ("position", c_void_p), ("radius", c_void_p),
                 ("orientation", c_void_p), ("velocity", c_void_p), ("angular_velocity", c_void_p),
-                ("mass", c_void_p), ("inertia", c_void_p), ("kind", c_void_p), ("density", c_double)]
+                ("mass", c_void_p), ("inertia", c_void_p), ("material", c_void_p), ("density", c_double)]
 
 
 class Array(ctypes.Structure):
@@ -43,8 +43,8 @@ _functions = {  # name: what it takes; each returns a status but for those below
     "nsd_names": (RUN, POINTER(c_char_p)),
     "nsd_measure": (RUN, c_char_p, POINTER(c_char_p)),
     "nsd_force": (RUN, c_int32, VECTOR, VECTOR, c_int),
-    "nsd_boundary_force": (RUN, c_int32, c_double, c_int),
-    "nsd_boundary_velocity": (RUN, c_int32, VECTOR),
+    "nsd_wall_force": (RUN, c_int32, c_double, c_int),
+    "nsd_wall_velocity": (RUN, c_int32, VECTOR),
     "nsd_velocity": (RUN, c_int32, VECTOR, VECTOR),
     "nsd_gravity": (RUN, VECTOR),
     "nsd_friction": (RUN, c_char_p, c_char_p, c_double),

@@ -132,7 +132,7 @@ def _vector(x: ArrayLike | None, name: str) -> Any:
 
 
 _WIDTHS = {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3,
-           "radius": 1, "mass": 1, "inertia": 1, "kind": 1}
+           "radius": 1, "mass": 1, "inertia": 1, "material": 1}
 
 
 def _bodies(columns: Mapping[str, ArrayLike | None], density: float | None) -> tuple[Bodies, list]:
@@ -143,7 +143,7 @@ def _bodies(columns: Mapping[str, ArrayLike | None], density: float | None) -> t
         if x is None:
             continue
         width = _WIDTHS[name]
-        a = (check.integers if name == "kind" else check.numbers)(x, name)
+        a = (check.integers if name == "material" else check.numbers)(x, name)
         n = len(a) if n is None and a.ndim else n
         shape = (n,) if width == 1 else (n, width)
         if a.shape != shape:
@@ -184,7 +184,7 @@ class Run:
     mass: NDArray[np.float64]
     inertia: NDArray[np.float64]
     id: NDArray[np.int32]
-    kind: NDArray[np.int32]
+    material: NDArray[np.int32]
     shape: NDArray[np.int32]
     group: NDArray[np.int32]
     image: NDArray[np.int32]
@@ -200,12 +200,12 @@ class Run:
     contact_force: NDArray[np.float64]
     contact_velocity: NDArray[np.float64]
     contact_status: NDArray[np.int8]
-    boundary_position: NDArray[np.float64]
-    boundary_normal: NDArray[np.float64]
-    boundary_velocity: NDArray[np.float64]
-    boundary_angular_velocity: NDArray[np.float64]
-    boundary_force: NDArray[np.float64]
-    boundary_torque: NDArray[np.float64]
+    wall_position: NDArray[np.float64]
+    wall_normal: NDArray[np.float64]
+    wall_velocity: NDArray[np.float64]
+    wall_angular_velocity: NDArray[np.float64]
+    wall_force: NDArray[np.float64]
+    wall_torque: NDArray[np.float64]
     cell_origin: NDArray[np.float64]
     cell_edges: NDArray[np.float64]
     cell_rates: NDArray[np.float64]
@@ -258,14 +258,14 @@ class Run:
     def from_arrays(cls, scene: Path | Mapping[str, Any], *, position: ArrayLike, radius: ArrayLike,
                     orientation: ArrayLike | None = None, velocity: ArrayLike | None = None,
                     angular_velocity: ArrayLike | None = None, mass: ArrayLike | None = None,
-                    inertia: ArrayLike | None = None, kind: ArrayLike | None = None,
+                    inertia: ArrayLike | None = None, material: ArrayLike | None = None,
                     density: float | None = None, folder: Path | None = None) -> "Run":
         """A run from a scene without bodies, to which these are added: see add()."""
         run = cls.from_scene(scene, folder)
         if run.number("bodies"):
             raise ValueError("the scene has bodies of its own: arrays are for one without")
         run.add(position=position, radius=radius, orientation=orientation, velocity=velocity,
-                angular_velocity=angular_velocity, mass=mass, inertia=inertia, kind=kind, density=density)
+                angular_velocity=angular_velocity, mass=mass, inertia=inertia, material=material, density=density)
         return run
 
     @property
@@ -435,24 +435,25 @@ class Run:
 
     @property
     def names(self) -> dict[str, Any]:
-        """{"kinds": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...], "named": {name: [wall, ...]}}: walls are in their
+        """{"materials": [...], "shapes": [...], "walls": [name or None, ...], "groups": [...], "named": {name: [wall, ...]}}: walls are in their
         order; named: the walls that have a name, or a part that has it."""
-        return self._handle.text("nsd_names")
+        names = self._handle.text("nsd_names")
+        return {**names, "kinds": names["materials"]}  # "kinds": of version 1
 
     def walls(self, name: int | str) -> list[int]:
         """The numbers of the walls that have this name, or of which a part has it, in order; a number stands for that wall.
         Raises KeyError, which is a ValueError too."""
-        return _walls(name, int(self.number("boundaries")), self.names["named"])
+        return _walls(name, int(self.number("walls")), self.names["named"])
 
-    def _whole_walls(self, boundary: int | str) -> list[int]:
+    def _whole_walls(self, wall: int | str) -> list[int]:
         """Those that something is done to: a part cannot move without its wall"""
-        if not isinstance(boundary, str):
-            return [check.whole(boundary, "boundary")]
+        if not isinstance(wall, str):
+            return [check.whole(wall, "wall")]
         names = self.names
-        found = [k for k, own in enumerate(names["walls"]) if own == boundary]
-        if not found and boundary in names["named"]:
-            raise ValueError(f"'{boundary}' is a part of wall {names['named'][boundary][0]}, which moves as a whole: use its number")
-        return found or self.walls(boundary)
+        found = [k for k, own in enumerate(names["walls"]) if own == wall]
+        if not found and wall in names["named"]:
+            raise ValueError(f"'{wall}' is a part of wall {names['named'][wall][0]}, which moves as a whole: use its number")
+        return found or self.walls(wall)
 
     def measure(self, *names: str) -> dict[str, Any]:
         """Measures of nsd-stat(1), in SI units: one line of that program as a dict, with the keys "step", "time" (s), "bodies",
@@ -472,49 +473,50 @@ class Run:
         self._call("nsd_force", check.whole(id, "id"), _vector(force, "force"), _vector(torque, "torque"),
                    _ONCE if once else _LASTING)
 
-    def push_boundary(self, boundary: int | str, force: float, *, once: bool = False) -> None:
-        """Adds a force (N) along the axis of the boundary's load, or a torque (N m) about it, to the load. A name stands for each
-        wall that has it. Raises Error (status 65) if the boundary has no load."""
+    def push_wall(self, wall: int | str, force: float, *, once: bool = False) -> None:
+        """Adds a force (N) along the axis of the wall's load, or a torque (N m) about it, to the load. A name stands for each
+        wall that has it. Raises Error (status 65) if the wall has no load."""
         force = check.real(force, "force")
-        for wall in self._whole_walls(boundary):
-            self._call("nsd_boundary_force", wall, force, _ONCE if once else _LASTING)
+        for number in self._whole_walls(wall):
+            self._call("nsd_wall_force", number, force, _ONCE if once else _LASTING)
 
-    def move_boundary(self, boundary: int | str, velocity: ArrayLike) -> None:
-        """Prescribes the boundary's velocity [3] (m/s) from now on; a name stands for each wall that has it. Raises Error
-        (status 65) if there is no such boundary, or if it rotates."""
+    def move_wall(self, wall: int | str, velocity: ArrayLike) -> None:
+        """Prescribes the wall's velocity [3] (m/s) from now on; a name stands for each wall that has it. Raises Error
+        (status 65) if there is no such wall, or if it rotates."""
         vector = _vector(velocity, "velocity")
-        for wall in self._whole_walls(boundary):
-            self._call("nsd_boundary_velocity", wall, vector)
+        for number in self._whole_walls(wall):
+            self._call("nsd_wall_velocity", number, vector)
 
     def set_velocity(self, id: int, velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None) -> None:
         """Gives the body with this id a velocity [3] (m/s) and an angular velocity [3] (rad/s), in the axes of space; None: unchanged."""
         self._call("nsd_velocity", check.whole(id, "id"), _vector(velocity, "velocity"),
                    _vector(angular_velocity, "angular_velocity"))
 
-    push, throw = apply_force, set_velocity  # names of version 1, for programs that have them
+    # names of version 1, for programs that have them
+    push, throw, push_boundary, move_boundary = apply_force, set_velocity, push_wall, move_wall
 
     def gravity(self, g: ArrayLike) -> None:
         """Sets gravity, [3] m/s^2."""
         self._call("nsd_gravity", _vector(g, "g"))
 
-    def friction(self, kind: str, other: str, mu: float) -> None:
-        """Sets the coefficient of friction, at least 0, between two kinds of material, by their names."""
-        self._call("nsd_friction", check.text(kind, "kind"), check.text(other, "other"), check.real(mu, "mu"))
+    def friction(self, material: str, other: str, mu: float) -> None:
+        """Sets the coefficient of friction, at least 0, between two materials, by their names."""
+        self._call("nsd_friction", check.text(material, "material"), check.text(other, "other"), check.real(mu, "mu"))
 
     def add(self, *, position: ArrayLike, radius: ArrayLike, orientation: ArrayLike | None = None,
             velocity: ArrayLike | None = None, angular_velocity: ArrayLike | None = None,
             mass: ArrayLike | None = None, inertia: ArrayLike | None = None,
-            kind: ArrayLike | None = None, density: float | None = None) -> NDArray[np.int32]:
+            material: ArrayLike | None = None, density: float | None = None) -> NDArray[np.int32]:
         """Adds n balls, in 2D discs; returns their ids [n].
 
         position [n, 3] m, radius [n] m, orientation [n, 4] unit quaternions (w, x, y, z), velocity [n, 3] m/s,
         angular_velocity [n, 3] rad/s, mass [n] kg (0: fixed) or one density (kg/m^3, in 2D kg/m^2), inertia [n]
-        kg m^2 [that of solid balls], kind [n] number of the kind of material [0].
+        kg m^2 [that of solid balls], material [n] number of the material [0].
 
         Raises BufferError while an array of bodies is in use, Error (status 65) if a number is out of range.
         """
         columns = {"position": position, "radius": radius, "orientation": orientation, "velocity": velocity,
-                   "angular_velocity": angular_velocity, "mass": mass, "inertia": inertia, "kind": kind}
+                   "angular_velocity": angular_velocity, "mass": mass, "inertia": inertia, "material": material}
         bodies, _kept = _bodies(columns, density)
         ids = np.empty(bodies.n, np.int32)
         handle = self._handle
@@ -589,20 +591,22 @@ def _view(name: str, text: str, writable: bool = False) -> property:
 for _name, _text in {
     "position": "[n, 3] m: of the bodies' centres", "orientation": "[n, 4] unit quaternions (w, x, y, z)",
     "velocity": "[n, 3] m/s", "angular_velocity": "[n, 3] rad/s", "radius": "[n] m: of the circumscribed ball",
-    "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "kind": "[n] number of the kind of material",
+    "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "material": "[n] number of the material",
     "shape": "[n] number of the shape, 0: a ball", "group": "[n] 1 + number of the group's name, 0: none",
     "image": "[n, 3] edges of the periodic cell to add to position",
     "contact_body": "[c, 2] ids of bodies a and b; -1-w: boundary w", "contact_point": "[c, 3] m",
     "contact_normal": "[c, 3] unit vectors from a to b", "contact_gap": "[c] m; negative: overlap",
     "contact_friction": "[c] coefficients", "contact_force": "[c, 3] N: on b",
     "contact_velocity": "[c, 3] m/s: of b relative to a, as it enters the contact law", "contact_status": "[c] 0 free, 1 stick, 2 slide",
-    "boundary_position": "[b, 3] m", "boundary_normal": "[b, 3] unit normals or axes", "boundary_velocity": "[b, 3] m/s",
-    "boundary_angular_velocity": "[b, 3] rad/s", "boundary_force": "[b, 3] N: force of the bodies on the boundary",
-    "boundary_torque": "[b, 3] N m: torque of the same about boundary_position, rolling and pivoting included",
+    "wall_position": "[b, 3] m", "wall_normal": "[b, 3] unit normals or axes", "wall_velocity": "[b, 3] m/s",
+    "wall_angular_velocity": "[b, 3] rad/s", "wall_force": "[b, 3] N: force of the bodies on the boundary",
+    "wall_torque": "[b, 3] N m: torque of the same about wall_position, rolling and pivoting included",
     "cell_origin": "[3] m: of the periodic cell, see cell; [0]: none", "cell_edges": "[3, 3] m: one per row; [0, 3]: none",
     "cell_rates": "[3, 3] m/s: velocities of the edges; [0, 3]: none", "cell_periodic": "[3] 1: periodic along this edge; [0]: none",
 }.items():
     setattr(Run, _name, _view(_name, _text))
+    if _name.startswith("wall_") or _name == "material":  # and by their names of version 1
+        setattr(Run, _name.replace("wall_", "boundary_").replace("material", "kind"), getattr(Run, _name))
 for _name, _text in {
     "force": "[n, 3] N: on each body, until changed", "torque": "[n, 3] N m: on each body, until changed",
     "force_once": "[n, 3] N: in the next step", "torque_once": "[n, 3] N m: in the next step",

@@ -73,7 +73,7 @@ def _bodies(f: Frame, shapes: dict[str, Any]):
     inertia = np.zeros((len(r), 9))
     inertia[:, ::4] = f.inertia[:, None] * (moment / moment.mean(1)[:, None])[row]
     kind, ball, own = what[row], row == 0, np.where(row > 0, 1, np.nan)
-    rows = [_rows(len(r), x=f.position, body_id=f.id, shape_type=kind, material_id=np.where(kind == CLUMP, -1, f.kind),
+    rows = [_rows(len(r), x=f.position, body_id=f.id, shape_type=kind, material_id=np.where(kind == CLUMP, -1, f.material),
                   velocity=f.velocity, angular_velocity=f.angular_velocity, orientation=f.orientation, mass=f.mass,
                   volume=volume[row] * r ** 3, inertia=inertia, blocked_dofs=fixed,
                   radius=np.where(ball, r, np.nan), dimensions=sides[row] * r[:, None], nsd_shape=np.where(ball, -1, row),
@@ -83,7 +83,7 @@ def _bodies(f: Frame, shapes: dict[str, Any]):
         at, n = corners[row[i]] * r[i], len(corners[row[i]])
         away = _turn(f.orientation[i], at)
         rows.append(_rows(n, x=f.position[i] + away, body_id=np.arange(start, start + n), shape_type=SPHERE,
-                          material_id=f.kind[i], clump_id=f.id[i],
+                          material_id=f.material[i], clump_id=f.id[i],
                           velocity=f.velocity[i] + np.cross(f.angular_velocity[i], away), angular_velocity=f.angular_velocity[i],
                           orientation=f.orientation[i], blocked_dofs=fixed[i],
                           radius=r[i] * np.split(shapes["ball"], ends[:-1])[row[i] - 1], clump_relative_position=at,
@@ -155,7 +155,7 @@ def _put_scene(to, f: Frame, rows):
     nsd.attrs["dim"] = np.int32(3)
     for name in LAWS:
         nsd["material/" + name] = law[name][()]
-    for k, label in enumerate(f.kind_names):
+    for k, label in enumerate(f.material_names):
         heavy = (rows["material_id"] == k) & (rows["mass"] > 0)
         volume = rows["volume"][heavy].sum()
         m = to.create_group(f"ONDEM/Materials/{k}")

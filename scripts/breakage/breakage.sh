@@ -13,8 +13,8 @@ plates() {
     for modulus in '' ', "modulus": 3'; do
         for seed in 1 2 3 4; do
             jq -n --argjson seed $seed '{ dt: 1e-4, gravity: [0, 0, 0], density: 2600, seed: $seed, mu: 0.4,
-                kinds: { grain: { breaks: { by: "force", strength: 1e6, smallest: 3e-3 '"$modulus"' } } },
-                bodies: [{ x: [0, 0, 2e-3], radius: 2e-3, kind: "grain" }],
+                materials: { grain: { breaks: { by: "force", strength: 1e6, smallest: 3e-3 '"$modulus"' } } },
+                bodies: [{ x: [0, 0, 2e-3], radius: 2e-3, material: "grain" }],
                 walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 4e-3], normal: [0, 0, -1],
                           load: { along: [0, 0, -1], mass: 1e-4, force: { table: [[0, 0], [0.2, 64]] } } }] }' |
                 nsd-gen - | step --small-steps 0 -n 2000 --every 1 | nsd-stat -m breakage |
@@ -28,8 +28,8 @@ plates() {
 # Weibull distribution put in: strength 1 MPa, 4 N, modulus 3
 weibull() {
     jq -n '{ dt: 1e-3, gravity: [0, 0, 0], density: 2600, seed: 8,
-        kinds: { grain: { breaks: { by: "force", strength: 1e6, size: 2e-3, modulus: 3, smallest: 1e-3, into: "balls", dust: 1 } } },
-        bodies: [{ count: 1000, radius: 1e-3, kind: "grain", jitter: 0, box: { x: [0, 0.1], y: [0, 0.1], z: [0, 2.1e-3] } }],
+        materials: { grain: { breaks: { by: "force", strength: 1e6, size: 2e-3, modulus: 3, smallest: 1e-3, into: "balls", dust: 1 } } },
+        bodies: [{ count: 1000, radius: 1e-3, material: "grain", jitter: 0, box: { x: [0, 0.1], y: [0, 0.1], z: [0, 2.1e-3] } }],
         forces: [{ bodies: [range(1000)], along: [0, 0, -1], force: { table: [[0, 0], [1, 8]] } }],
         walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - |
         step --small-steps 0 --until 0.9 --every 0.02s | nsd-stat -m breakage |

@@ -59,7 +59,7 @@ jq -n '{ dt: 1e-3, shapes: [range(20000) | { key: "shape \(.)", value: { points:
     bodies: [range(20000) | { x: [3 * ., 0, 0], radius: 1, shape: "shape \(.)" }] }' >shapes.json
 refuses 65 "20 000 shapes" ends nsd-gen shapes.json
 like "says that their names are too long" "$(cat err)" "/nsd/shape@names: .* bytes"
-jq -n '{ dt: 1e-3, kinds: [range(1001) | { key: "k\(.)", value: { density: 1 } }] | from_entries, bodies: [] }' >kinds.json
+jq -n '{ dt: 1e-3, materials: [range(1001) | { key: "k\(.)", value: { density: 1 } }] | from_entries, bodies: [] }' >kinds.json
 refuses 65 "1001 kinds" ends nsd-gen kinds.json
 jq -n '{ dt: 1e-3, shapes: { round: { points: [range(4500) | (1 - (2 * . + 1) / 4500) as $z | (2.39996 * .) as $a |
     (1 - $z * $z | sqrt) as $r | [$r * ($a | cos), $r * ($a | sin), $z]] } }, bodies: [{ x: [0, 0, 0], radius: 1, shape: "round" }] }' >round.json
@@ -173,7 +173,7 @@ drives(1001, 1)
 rows = np.zeros((1001, 2), 'i4'); rows[:, 0] = np.arange(1001); rows[:, 1] = 1; put('$drive' + 'rows', rows)
 put('$drive' + 'row', np.zeros((1001, 2), 'i1'))"
 refused "1001 drives of one boundary"
-like "says so" "$(cat err)" "more than a boundary may have"
+like "says so" "$(cat err)" "more than a wall may have"
 
 make bad.h5 base.h5 "
 put('/nsd/shape/corner', np.tile(np.arange(3, dtype='i4'), 2000000))
@@ -226,7 +226,7 @@ refused "65 536 shapes"
 make bad.h5 base.h5 "
 f['/nsd/material'].attrs['kinds'] = ''.join('k%d\n' % k for k in range(4097))"
 refused "4097 kinds"
-like "says so" "$(cat err)" "more than 4096 kinds"
+like "says so" "$(cat err)" "more than 4096 materials"
 make bad.h5 base.h5 "
 def more(path, axis, n):
     a = np.repeat(f[path][()], n, axis); at = dict(f[path].attrs); put(path, a)
@@ -240,7 +240,7 @@ def each(group, n):
 each('/particles/all', 20000); each('/particles/boundary', 20000)
 put('/particles/all/id', np.arange(20000))"
 refused "20 000 bodies in 20 000 boundaries"
-like "says so" "$(cat err)" "20000 boundaries: more than 4096 for each body"
+like "says so" "$(cat err)" "20000 walls: more than 4096 for each body"
 
 make steps.h5 frames.h5 "
 F = 30000

@@ -17,9 +17,9 @@ nsd-step -m sbp -n 3 --contacts "$tmp/solved.h5" >"$tmp/run.h5" 2>/dev/null
 tail -c +513 "$tmp/run.h5" >"$tmp/foreign.h5"
 echo '1 2 3 0.5' >"$tmp/table"
 cat >"$tmp/scene.json" <<'EOF'
-{ "dt": 1e-4, "title": "a scene", "mu": 0.3, "kinds": { "heavy": { "density": 7800 } },
+{ "dt": 1e-4, "title": "a scene", "mu": 0.3, "materials": { "heavy": { "density": 7800 } },
   "pairs": [{ "pair": ["ball", "heavy"], "mu": 0.1, "e_n": 0.5 }],
-  "bodies": [{ "file": "table" }, { "radius": 0.1, "x": [5, 5, 5], "kind": "heavy", "fixed": true },
+  "bodies": [{ "file": "table" }, { "radius": 0.1, "x": [5, 5, 5], "material": "heavy", "fixed": true },
              { "count": 20, "radius": { "uniform": [0.1, 0.2] }, "thermal": 0.1, "box": { "x": [-1, 1], "y": [-1, 1], "z": [6, null] } }],
   "walls": [{ "point": [0, 0, -2], "normal": [0, 0, 1] }, { "box": { "x": [-20, 20], "y": [-20, 20], "z": [-1, null] } }] }
 EOF

@@ -346,7 +346,7 @@ apart "a wall that is driven" "the number of drives is 1, and the trajectory's i
 apart "a wall with a name" "the number of names is 1, and the trajectory's is 0" '.walls[0].name = "floor"'
 apart "two gravities" "gravity differs from the trajectory's" '.gravity = [0, 0, -1]'
 apart "two densities" "other bodies than the trajectory's: their mass differs" '.density = 7'
-apart "pairs that stick together and others" "pairs of kinds have laws .* in the frame alone" '.cohesion = {"force": 1, "range": 0.1}'
+apart "pairs that stick together and others" "pairs of materials have laws .* in the frame alone" '.cohesion = {"force": 1, "range": 0.1}'
 apart "two seeds" "seed differs from the trajectory's" '.seed = 7'
 apart "two scenes" "the scene differs from the trajectory's" '.title = "another"'
 apart "a step twice" "step 0 after step 0: a trajectory's steps increase" '.'
@@ -399,7 +399,7 @@ bad_scene "a radius so large that its mass is infinite" '{"dt": 1, "bodies": [{"
 bad_scene "a negative mass" "{\"dt\": 1, \"bodies\": [{$ball, \"mass\": -1}]}" '1:54: bodies\[0\].mass: '
 bad_scene "a negative density" '{"dt": 1, "density": -1}' '1:11: density: '
 bad_scene "a place in the plane, and dim is 3" '{"dt": 1, "bodies": [{"x": [0, 0], "radius": 1}]}' '1:23: bodies\[0\].x: needs \[x, y, z\]'
-bad_scene "an unknown kind" "{\"dt\": 1, \"bodies\": [{$ball, \"kind\": \"jelly\"}]}" '1:54: bodies\[0\].kind: no kind'
+bad_scene "an unknown kind" "{\"dt\": 1, \"bodies\": [{$ball, \"material\": \"jelly\"}]}" '1:54: bodies\[0\].material: no material'
 bad_scene "a normal of zero" '{"dt": 1, "walls": [{"point": [0, 0, 0], "normal": [0, 0, 0]}]}' '1:42: walls\[0\].normal: must not be zero'
 bad_scene "radii the wrong way round" '{"dt": 1, "bodies": [{"count": 1, "radius": {"uniform": [2, 1]}, "box": {"x": [0, 9], "y": [0, 9], "z": [0, 9]}}]}' \
     '1:[0-9]+: bodies\[0\].radius.uniform: '
@@ -525,7 +525,7 @@ ok "here, too" cmp "$tmp/kept2.h5" "$tmp/contacts.h5"
 refuses 64 "nsd-step --log of its -o" nsd-step --log "$tmp/both.h5" -o "$tmp/both.h5" "$tmp/kept.h5"
 status 0 "nsd-solve --log /dev/null > /dev/null" bash -c "nsd-solve --log /dev/null '$tmp/contacts.h5' >/dev/null"
 
-kinds() { printf '{"dt": 1, "kinds": {"%s": {"density": 1}}, "bodies": []}' "$1" | nsd-gen -; }
+kinds() { printf '{"dt": 1, "materials": {"%s": {"density": 1}}, "bodies": []}' "$1" | nsd-gen -; }
 refuses 65 "nsd-gen: a kind's name of two lines" kinds 'a\nb'
 refuses 65 "nsd-gen: a kind without a name" kinds ''
 far() { echo '{"dt": 1, "bodies": [{"x": [1e308, 0, 0], "radius": 1, "v": [1e308, 0, 0]}]}' | nsd-gen - | nsd-step; }

@@ -10,8 +10,8 @@ nsd_add
 nsd_append
 nsd_array_name
 nsd_attributes
-nsd_boundary_force
-nsd_boundary_velocity
+nsd_wall_force
+nsd_wall_velocity
 nsd_close
 nsd_error
 nsd_failure

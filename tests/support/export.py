@@ -40,7 +40,7 @@ def same(a, b):
 def check_grains(path, frame):
     x, cells, data, _, field = vtk_read(path)
     same(x, frame.position), same(cells, np.arange(len(x))[:, None])
-    for name, value in dict(id=frame.id, kind=frame.kind, radius=frame.radius, mass=frame.mass,
+    for name, value in dict(id=frame.id, material=frame.material, radius=frame.radius, mass=frame.mass,
                             velocity=frame.velocity, angular_velocity=frame.angular_velocity, orientation=frame.orientation).items():
         same(data[name], value)
     same(field["step"], [frame.step]), same(field["TimeValue"], [frame.time])

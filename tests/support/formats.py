@@ -46,7 +46,7 @@ def gsd(document, path):
             assert s.configuration.step == f.step and p.N == len(f.id)
             assert s.log["configuration/time"][0] == f.time
             assert np.array_equal(s.log["particles/nsd_id"], f.id)
-            assert np.array_equal(p.typeid[p.typeid < 2], f.kind[p.typeid < 2])
+            assert np.array_equal(p.typeid[p.typeid < 2], f.material[p.typeid < 2])
             near(p.mass, f.mass), near(p.diameter, 2 * f.radius), near(p.velocity, f.velocity), near(p.orientation, f.orientation)
             edges, image = gsd_edges(s.configuration.box), np.asarray(p.image, float)
             if "image" in a:
@@ -173,7 +173,7 @@ def check_grains(block, frames):
         assert block["Steps/Values"][f] == frame.time
         same(s["points"], frame.position)
         same(np.concatenate(s.get("Vertices", [np.zeros(0)])), np.arange(len(frame.id)))
-        for name, value in dict(radius=frame.radius, mass=frame.mass, id=frame.id, kind=frame.kind, velocity=frame.velocity,
+        for name, value in dict(radius=frame.radius, mass=frame.mass, id=frame.id, material=frame.material, velocity=frame.velocity,
                                 angular_velocity=frame.angular_velocity, orientation=frame.orientation).items():
             same(s[name], value)
 
@@ -191,7 +191,7 @@ def not_stored_twice(document):
     """Where bodies stay: hard links and virtual datasets in this very file."""
     import h5py
     with h5py.File(document) as f:
-        for name, other in dict(radius="radius", mass="mass", id="id", kind="species").items():
+        for name, other in dict(radius="radius", mass="mass", id="id", material="species").items():
             assert f["VTKHDF/PointData/" + name] == f["particles/all/" + other]
         for name in "Points", "PointData/velocity", "PointData/orientation", "PointData/angular_velocity":
             set_ = f["VTKHDF/" + name]

@@ -105,7 +105,7 @@ with nsd.Run.from_document(path("last.h5")) as run:
 with nsd.Run.from_document(path("last.h5")) as run:
     run.set(warm=False, small_steps=0)
     run.force[3] = [1e-4, 0, 2e-5]
-    run.push_boundary(5, 1e-3)
+    run.push_wall(5, 1e-3)
     run.save(path("lasting.h5"))
     run.step()
     position = run.position.copy()
@@ -127,7 +127,7 @@ ok(raises(ValueError, "read-only", lambda: x.__setitem__((0, 0), 1.0)), "what is
 run.step(30)
 ok((x[:, 2] != z).any(), "they show what there is after a step")
 w = run.mass.sum() * 9.81
-ok(abs(-run.boundary_force[4, 2] / (w + 0.02) - 1) < 0.05, "the floor carries the grains and the load")
+ok(abs(-run.wall_force[4, 2] / (w + 0.02) - 1) < 0.05, "the floor carries the grains and the load")
 f = run.contact_force
 total = np.zeros((len(run.id), 3))
 a, b = run.contact_body.T
@@ -162,7 +162,7 @@ for kind, words, call in (
         (ValueError, "shape", lambda: run.add(position=[[0, 0, 0]], radius=[1, 2], density=1)),
         (nsd.Error, "density", lambda: run.add(position=[[0, 0, 0]], radius=[1e-3])),
         (nsd.Error, "radius", lambda: run.add(position=[[0, 0, 0]], radius=[-1], density=1)),
-        (nsd.Error, "kind", lambda: run.add(position=[[0, 0, 0]], radius=[1e-3], density=1, kind=[9])),
+        (nsd.Error, "material", lambda: run.add(position=[[0, 0, 0]], radius=[1e-3], density=1, material=[9])),
         (nsd.Error, "no array", lambda: run.array("speed")),
         (nsd.Error, "no number", lambda: run.number("speed")),
         (nsd.Error, "measures", lambda: run.measure("beauty")),
@@ -171,8 +171,8 @@ for kind, words, call in (
         (nsd.Error, "global: now called solver", lambda: run.set(**{"global": "auto"})),
         (nsd.Error, "overlap: now called overlap-rule", lambda: run.set(overlap="keep")),
         (nsd.Error, "did you mean pixels?", lambda: run.set(pixel=3)),
-        (nsd.Error, "not load-controlled", lambda: run.push_boundary(0, 1)),
-        (nsd.Error, "no boundary", lambda: run.move_boundary(17, [0, 0, 1])),
+        (nsd.Error, "not load-controlled", lambda: run.push_wall(0, 1)),
+        (nsd.Error, "no wall", lambda: run.move_wall(17, [0, 0, 1])),
         (nsd.Error, "no kind", lambda: run.friction("ball", "cheese", 1)),
         (nsd.Error, "steps cannot", lambda: run.step(-1)),
         (nsd.Error, "", lambda: run.save("/nowhere/a.h5")),
@@ -300,12 +300,12 @@ before = run.position.copy(), run.force.copy()
 a_ball = dict(position=[[2.5e-3, 2.5e-3, 7e-3]], radius=[2e-4], density=2500)
 for name, call in {
         "n": lambda x: run.step(x), "ids": lambda x: run.remove(x), "id": lambda x: run.apply_force(x, [0, 0, 1]),
-        "boundary": lambda x: run.move_boundary(x, [0, 0, 1]), "kind": lambda x: run.add(**a_ball, kind=[x])}.items():
+        "wall": lambda x: run.move_wall(x, [0, 0, 1]), "material": lambda x: run.add(**a_ball, material=[x])}.items():
     for x in 1.5, float("nan"), float("inf"), True, None, "1", 1 << 70, -1 << 70, 1 + 2j, b"1":
         if name == "boundary" and x == "1":
             continue  # a name
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r} is refused by name")
-for name, call in {"time": run.until, "force": lambda x: run.push_boundary(5, x), "mu": lambda x: run.friction("ball", "wall", x),
+for name, call in {"time": run.until, "force": lambda x: run.push_wall(5, x), "mu": lambda x: run.friction("ball", "wall", x),
                    "density": lambda x: run.add(position=[[0, 0, 1]], radius=[1e-4], density=x)}.items():
     for x in True, "1", b"1", [1], 1j:
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r} is refused by name")

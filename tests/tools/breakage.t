@@ -19,7 +19,7 @@ same() {
 scene() {
     local still=', "gravity": [0, 0, 0]'
     [[ ${3-} != *gravity* ]] || still=
-    echo '{ "dt": 1e-4'"$still"', "density": 2600, "seed": 5, "kinds": { "g": { "breaks": '"$1"' } },
+    echo '{ "dt": 1e-4'"$still"', "density": 2600, "seed": 5, "materials": { "g": { "breaks": '"$1"' } },
             "bodies": '"$2${3+, $3} }"
 }
 damage() { nsd-info --last -p "$1" | jq -c 'select(.damage != null).damage'; }
@@ -27,7 +27,7 @@ damage() { nsd-info --last -p "$1" | jq -c 'select(.damage != null).damage'; }
 # ---- loads, by closed forms ----
 
 floor='"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }]'
-ball='[{ "x": [0, 0, 1e-3], "radius": 1e-3, "kind": "g" }]'
+ball='[{ "x": [0, 0, 1e-3], "radius": 1e-3, "material": "g" }]'
 near() { holds -n "if ($2) == 0 then ($1) == 0 else ($1) / ($2) - 1 | fabs < ${3-1e-9} end"; }
 mass=$(jq -n '2600 * 4 / 3 * 3.14159265358979312 * 1e-9')
 
@@ -39,13 +39,13 @@ load() {
 load "a ball at rest has the load m g / d^2 over its strength" '{ "by": "force", "strength": 1e3, "smallest": 1e-3 }' \
     "$mass * 9.81 / 4e-6 / 1e3" "$floor, \"gravity\": [0, 0, -9.81]"
 load "a ball that falls at v has that of v^2 / 2" '{ "by": "energy", "strength": 10, "smallest": 1e-3 }' \
-    '9 / 2 / 10' "$floor" '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "kind": "g" }]'
+    '9 / 2 / 10' "$floor" '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "material": "g" }]'
 load "with restitution, too, and less what does no damage" \
     '{ "by": "energy", "strength": 10, "least": 1, "smallest": 1e-3 }' '(9 / 2 - 1) / 10' "$floor, \"e_n\": 0.5" \
-    '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "kind": "g" }]'
+    '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "material": "g" }]'
 load "each of two equal balls that meet at 2 v has that of v^2 / 2" '{ "by": "energy", "strength": 10, "smallest": 1e-3 }' \
-    '9 / 2 / 10' '"walls": []' '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "kind": "g" },
-                  { "x": [0, 0, -1e-3], "v": [0, 0, 3], "radius": 1e-3, "kind": "g" }]'
+    '9 / 2 / 10' '"walls": []' '[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "material": "g" },
+                  { "x": [0, 0, -1e-3], "v": [0, 0, 3], "radius": 1e-3, "material": "g" }]'
 load "a ball at rest under a heavy lid has none" '{ "by": "energy", "strength": 1e-9, "smallest": 1e-3 }' 0 \
     "\"walls\": [{ \"point\": [0, 0, 0], \"normal\": [0, 0, 1] }, { \"point\": [0, 0, 2e-3], \"normal\": [0, 0, -1],
         \"load\": { \"along\": [0, 0, -1], \"force\": 500, \"mass\": 1e-6 } }]"
@@ -62,7 +62,7 @@ load "strength goes with size to the power of -3/m" \
     "$mass * 9.81 / 4e-6 / 1e3 / pow(2; 1.5)" "$floor, \"gravity\": [0, 0, -9.81]"
 
 # impacts that add up: a ball that is thrown again and again; [Tavares 2009] by its equation, solved by bisection
-hits='[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "kind": "g" }]'
+hits='[{ "x": [0, 0, 1e-3], "v": [0, 0, -3], "radius": 1e-3, "material": "g" }]'
 for law in linear tavares; do
     scene '{ "by": "energy", "strength": 10, "smallest": 1e-3, "damage": "'$law'" }' "$hits" "$floor" | nsd-gen - >"$tmp/hit.h5"
     for _ in 1 2; do
@@ -97,7 +97,7 @@ ok "by Tavares to what his equation gives" py "$tmp/tavares.py" "$(tail -n 1 "$t
 # ---- strengths of 1000 grains are the Weibull distribution put in: Kolmogorov and Smirnov, 1 % ----
 
 scene '{ "by": "force", "strength": 1e3, "modulus": 3, "size": 2e-3, "smallest": 1e-3 }' \
-    '[{ "count": 1000, "radius": 1e-3, "kind": "g", "jitter": 0, "box": { "x": [0, 0.1], "y": [0, 0.1], "z": [0, 2.2e-3] } }]' \
+    '[{ "count": 1000, "radius": 1e-3, "material": "g", "jitter": 0, "box": { "x": [0, 0.1], "y": [0, 0.1], "z": [0, 2.2e-3] } }]' \
     '"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }], "gravity": [0, 0, -9.81]' | nsd-gen - >"$tmp/grains.h5"
 step -n 300 "$tmp/grains.h5" --every 300 >"$tmp/loaded.h5"
 cat >"$tmp/weibull.py" <<'END'
@@ -117,9 +117,9 @@ ok "the strengths of 1000 grains are Weibull's, by Kolmogorov and Smirnov" \
 # ---- what is kept when a grain becomes fragments ----
 
 solids='"shapes": { "brick": { "box": [3e-3, 2e-3, 1e-3] } }'
-two='[{ "x": [0.01, 0.02, 0.03], "v": [1, 2, 3], "w": [40, -50, 60], "kind": "g", "radius": 1e-3 },
-      { "x": [0.03, -0.02, 0.01], "v": [-1, 2, -3], "w": [-30, 40, 70], "kind": "g", "shape": "brick" }]'
-flat='[{ "x": [0.01, 0.02], "v": [1, 2], "w": 40, "kind": "g", "radius": 1e-3 }]'
+two='[{ "x": [0.01, 0.02, 0.03], "v": [1, 2, 3], "w": [40, -50, 60], "material": "g", "radius": 1e-3 },
+      { "x": [0.03, -0.02, 0.01], "v": [-1, 2, -3], "w": [-30, 40, 70], "material": "g", "shape": "brick" }]'
+flat='[{ "x": [0.01, 0.02], "v": [1, 2], "w": 40, "material": "g", "radius": 1e-3 }]'
 cat >"$tmp/due.py" <<'END'
 import sys, h5py
 with h5py.File(sys.argv[1], 'r+') as f:
@@ -181,12 +181,12 @@ kept "a disc in pieces" '{ "by": "force", "strength": 1e3, "smallest": 1e-4 }' "
 
 cat >"$tmp/rain.json" <<'END'
 { "dt": 2e-4, "gravity": [0, 0, -9.81], "density": 2600, "seed": 3, "mu": 0.4,
-  "kinds": { "grain": { "breaks": { "by": "force", "strength": 4e2, "size": 4e-3, "modulus": 3, "smallest": 2.6e-3, "pieces": 4 } },
+  "materials": { "grain": { "breaks": { "by": "force", "strength": 4e2, "size": 4e-3, "modulus": 3, "smallest": 2.6e-3, "pieces": 4 } },
              "soft": { "breaks": { "by": "energy", "strength": 0.05, "smallest": 2.6e-3, "into": "balls", "damage": "linear" } } },
-  "bodies": [{ "count": 8, "radius": { "uniform": [1.5e-3, 2e-3] }, "kind": "grain", "v": [0, 0, -1],
+  "bodies": [{ "count": 8, "radius": { "uniform": [1.5e-3, 2e-3] }, "material": "grain", "v": [0, 0, -1],
                "box": { "x": [0, 0.02], "y": [0, 0.02], "z": [0, 0.02] } }],
   "pour": [{ "rate": 300, "opening": { "box": { "x": [0.005, 0.015], "y": [0.005, 0.015], "z": [0.03, 0.04] } },
-             "radius": 2e-3, "v": [0, 0, -1], "kind": "soft", "count": 10 }],
+             "radius": 2e-3, "v": [0, 0, -1], "material": "soft", "count": 10 }],
   "walls": [{ "box": { "x": [0, 0.02], "y": [0, 0.02], "z": [0, null] } }] }
 END
 nsd-gen "$tmp/rain.json" >"$tmp/rain.h5"
@@ -194,7 +194,7 @@ run() { nsd-step --small-steps 0 --every 20 --contacts "$@"; }
 run -n 160 -o "$tmp/out.h5" "$tmp/rain.h5" 2>"$tmp/said"
 like "what has broken is said at the end" "$(cat "$tmp/said")" 'grains have broken into [0-9]+ fragments and [0-9.e-]+ kg of dust'
 ok "grains of both kinds have broken, some twice" \
-    holds -s '[.[] | select(.generation > 0)] | map(.kind) | unique == ["grain", "soft"]' < <(nsd-info --last -p "$tmp/out.h5")
+    holds -s '[.[] | select(.generation > 0)] | map(.material) | unique == ["grain", "soft"]' < <(nsd-info --last -p "$tmp/out.h5")
 total=$(nsd-info -p "$tmp/rain.h5" | jq -s 'map(.mass // 0) | add')
 ok "mass is that of the start, of pours and of dust" py - "$tmp/out.h5" "$total" <<'END'
 import sys, h5py, numpy as np
@@ -268,7 +268,7 @@ like "exports have the family and the damage" "$(head -n 3 "$tmp"/x*.csv | tr '\
 # ---- the bound of a step ----
 
 scene '{ "by": "force", "strength": 1e3, "smallest": 1e-3, "into": "balls", "dust": 1 }' \
-    '[{ "count": 1100, "radius": 1e-3, "kind": "g", "box": { "x": [0, 0.03], "y": [0, 0.03], "z": [0, null] } }]' | nsd-gen - >"$tmp/all.h5"
+    '[{ "count": 1100, "radius": 1e-3, "material": "g", "box": { "x": [0, 0.03], "y": [0, 0.03], "z": [0, null] } }]' | nsd-gen - >"$tmp/all.h5"
 due "$tmp/all.h5"
 nsd-step -n 1 "$tmp/due.h5" 2>"$tmp/said" >"$tmp/some.h5"
 like "1100 grains are due: 1000 break in a step, which is said" "$(cat "$tmp/said")" '100 grains that are due to break wait: 1000 break in a step'
@@ -283,25 +283,25 @@ breaks() { # NAME PATTERN BREAKS [BODIES [MORE]]
     like "with its place" "$(cat "$tmp/err")" "$2"
 }
 for strength in 0 -1 '"nan"' null; do
-    breaks "a strength of $strength" 'bad.json:.*kinds.g.breaks.strength' '{ "by": "force", "strength": '"$strength"', "smallest": 1e-3 }'
+    breaks "a strength of $strength" 'bad.json:.*materials.g.breaks.strength' '{ "by": "force", "strength": '"$strength"', "smallest": 1e-3 }'
 done
-breaks "no strength" 'kinds.g.breaks.strength: is missing' '{ "by": "force", "smallest": 1e-3 }'
-breaks "no smallest size" 'kinds.g.breaks.smallest: is missing' '{ "by": "force", "strength": 1 }'
-breaks "no such criterion" 'kinds.g.breaks.by' '{ "by": "will", "strength": 1, "smallest": 1e-3 }'
-breaks "more fragments than there is room for" 'kinds.g.breaks.smallest: .*more than 16777216 fragments' \
+breaks "no strength" 'materials.g.breaks.strength: is missing' '{ "by": "force", "smallest": 1e-3 }'
+breaks "no smallest size" 'materials.g.breaks.smallest: is missing' '{ "by": "force", "strength": 1 }'
+breaks "no such criterion" 'materials.g.breaks.by' '{ "by": "will", "strength": 1, "smallest": 1e-3 }'
+breaks "more fragments than there is room for" 'materials.g.breaks.smallest: .*more than 16777216 fragments' \
     '{ "by": "force", "strength": 1, "smallest": 1e-6 }'
 for pieces in 1 65 2.5 -3; do
-    breaks "$pieces pieces" 'kinds.g.breaks.pieces' '{ "by": "force", "strength": 1, "smallest": 1e-3, "pieces": '$pieces' }'
+    breaks "$pieces pieces" 'materials.g.breaks.pieces' '{ "by": "force", "strength": 1, "smallest": 1e-3, "pieces": '$pieces' }'
 done
-breaks "a modulus of 0" 'kinds.g.breaks.modulus' '{ "by": "force", "strength": 1, "smallest": 1e-3, "modulus": 0 }'
-breaks "an exponent without a size" 'kinds.g.breaks.size: is missing' '{ "by": "force", "strength": 1, "smallest": 1e-3, "exponent": 1 }'
-breaks "damage by force" 'kinds.g.breaks.damage: goes with "by": "energy"' \
+breaks "a modulus of 0" 'materials.g.breaks.modulus' '{ "by": "force", "strength": 1, "smallest": 1e-3, "modulus": 0 }'
+breaks "an exponent without a size" 'materials.g.breaks.size: is missing' '{ "by": "force", "strength": 1, "smallest": 1e-3, "exponent": 1 }'
+breaks "damage by force" 'materials.g.breaks.damage: goes with "by": "energy"' \
     '{ "by": "force", "strength": 1, "smallest": 1e-3, "damage": "linear" }'
-breaks "a rounded brick" 'kinds.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "brick"' \
-    '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "kind": "g", "shape": "brick" }]' \
+breaks "a rounded brick" 'materials.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "brick"' \
+    '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' \
     '"shapes": { "brick": { "box": [3e-3, 2e-3, 1e-3], "round": 1e-4 } }'
-breaks "a brick into balls" 'kinds.g.breaks: only balls break into balls' \
-    '{ "by": "force", "strength": 1, "smallest": 1e-3, "into": "balls" }' '[{ "x": [0, 0, 0.1], "kind": "g", "shape": "brick" }]' "$solids"
+breaks "a brick into balls" 'materials.g.breaks: only balls break into balls' \
+    '{ "by": "force", "strength": 1, "smallest": 1e-3, "into": "balls" }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' "$solids"
 
 # documents that are meant to harm
 foreign "$tmp/out.h5" "$tmp/whole.h5"
@@ -314,8 +314,8 @@ END
     refuses 65 "a document with $1 is refused" nsd-step -n 1 -o "$tmp/never.h5" "$tmp/bad.h5"
     like "with its place" "$(cat "$tmp/err")" "$2"
 }
-crafted "a strength that is no number" 'breakage of kind 2: strength' "f['/nsd/breakage/strength'][2] = float('nan')"
-crafted "another criterion" 'breakage of kind grain: by is no criterion' "f['/nsd/breakage/by'][2] = 7"
+crafted "a strength that is no number" 'breakage of material 2: strength' "f['/nsd/breakage/strength'][2] = float('nan')"
+crafted "another criterion" 'breakage of material grain: by is no criterion' "f['/nsd/breakage/by'][2] = 7"
 crafted "a damage of 2" 'damage must lie in' "f['/particles/all/damage/value'][-1, :] = 2"
 crafted "more shapes in a frame than there are" '/nsd/shape/count/value' "f['/nsd/shape/count/value'][-1] = 1000000"
 crafted "a shape without a name" '/nsd/shape@names: fewer names' "f['/nsd/shape/fragment'][-1] = -5"

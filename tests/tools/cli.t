@@ -142,7 +142,7 @@ nsd-info --last .
 nsd-cat --frames \[all\]
 nsd-cat --last .
 nsd-view --step \[last frame\]
-nsd-view --colour radius|speed|kind|id.*\[radius\]
+nsd-view --colour radius|speed|material|id.*\[radius\]
 nsd-view --camera \[30,15\]
 nsd-view --samples \[3\]
 nsd-view --plain .

@@ -86,7 +86,7 @@ if has h5py; then
     ok "inertia and shapes, too" h5diff "$tmp/mixed.h5" "$tmp/mixed.back.h5" /particles
     ok "and the table of shapes" h5diff "$tmp/mixed.h5" "$tmp/mixed.back.h5" /nsd/shape
     py tests/support/formats.py ondem_foreign "$tmp/foreign.vtkhdf"
-    is "a file of another program: spheres, a box, walls, its kinds" "$(ondem read "$tmp/foreign.vtkhdf" | nsd-info -p | jq -c '[.id, .kind, .shape, .mass, .v[0]]')" \
+    is "a file of another program: spheres, a box, walls, its kinds" "$(ondem read "$tmp/foreign.vtkhdf" | nsd-info -p | jq -c '[.id, .material, .shape, .mass, .v[0]]')" \
         '[2,"rock9","ball",2,1]
 [3,"rock4","box 1",2,1]
 [5,"rock4","ball",2,1]'
@@ -143,11 +143,11 @@ nsd-gen --from "$tmp/heap.data" >"$tmp/data.h5"
 like_heap() { nsd-info -p "$1" | jq -cs --argjson d "$2" 'map([.id + $d, .radius, .x, .v, .w])'; }
 is "our own data file comes back: place, radius, velocities, bit by bit" "$(like_heap "$tmp/data.h5" 0)" "$(nsd-cat --last "$tmp/heap.h5" | like_heap - 1)"
 nsd-export -o "$tmp/sheared.lammpstrj" "$tmp/sheared.h5"
-jq -n --arg f "$tmp/sheared.lammpstrj" '{dim: 2, dt: 1e-4, kinds: {rock: {}}, bodies: [{import: $f, frame: 1, types: {"1": "rock"}, density: 2600}]}' | nsd-gen - >"$tmp/cell.h5"
+jq -n --arg f "$tmp/sheared.lammpstrj" '{dim: 2, dt: 1e-4, materials: {rock: {}}, bodies: [{import: $f, frame: 1, types: {"1": "rock"}, density: 2600}]}' | nsd-gen - >"$tmp/cell.h5"
 jq -n --arg f "$tmp/sheared.h5" '{dim: 2, dt: 1e-4, bodies: [{document: $f, frame: 1}]}' | nsd-gen - >"$tmp/same.h5"
 ok "our own dump of a sheared cell, its second frame: places as from the document" h5diff "$tmp/cell.h5" "$tmp/same.h5" /particles/all/position/value
 ok "the tilted box" h5diff -d 1e-15 "$tmp/cell.h5" "$tmp/same.h5" /particles/all/box/edges/value
-is "and the kind that the type is" "$(nsd-info -p "$tmp/cell.h5" | jq -r .kind | sort | uniq -c | xargs)" "400 rock"
+is "and the kind that the type is" "$(nsd-info -p "$tmp/cell.h5" | jq -r .material | sort | uniq -c | xargs)" "400 rock"
 
 cat >"$tmp/in.liggghts" <<EOF
 atom_style granular
@@ -191,7 +191,7 @@ printf '#format x_y_z_r_matId\n0\t0\t0\t0.5\t0\n2\t0\t0.1\t0.25\t1\n' >"$tmp/y2.
 printf '#format id_x_y_z_r_matId\n# hello\n0\t0\t0\t0\t0.5\t0\n7\t2\t0\t0.1\t0.25\t1\n' >"$tmp/y3.txt"
 printf '#format x_y_z_r_attrs\n# x y z r vx vy vz mass\n0\t0\t0\t0.5\t0\t0\t0\t1361.36\n2\t0\t0.1\t0.25\t1\t2\t3\t130.9\n' >"$tmp/y4.txt"
 printf '#format x_y_z_r_clumpId\n4\t0\t0\t0.5\t4\n4.5\t0\t0\t0.4\t4\n' >"$tmp/y5.txt"
-second() { nsd-gen --from "$tmp/$1.txt" | nsd-info -p | jq -c 'select(.x[0] == 2) | [.id, .kind, .radius, .v, (.mass * 10 | round)]'; }
+second() { nsd-gen --from "$tmp/$1.txt" | nsd-info -p | jq -c 'select(.x[0] == 2) | [.id, .material, .radius, .v, (.mass * 10 | round)]'; }
 is "Yade's balls" "$(second y1)" '[1,"ball",0.25,[0,0,0],1636]'
 is "with their materials" "$(second y2)" '[1,"1",0.25,[0,0,0],1636]'
 is "and ids" "$(second y3)" '[7,"1",0.25,[0,0,0],1636]'

@@ -94,7 +94,7 @@ nsd-gen - <<<"$by_mass" | nsd-step -n 800 --every 100 2>/dev/null >mass.h5
 ok "a pour by mass brings its rate, to a grain, from its beginning to its end" \
     every_frame mass.h5 '.[0].bodies <= 1 and (.[-1].poured[0].mass - 4e-4 | fabs < 2.3e-6) and .[-1].bodies == .[-3].bodies'
 count='{"dt": 1e-4, "dim": 2, "pour": [{"rate": 1e5, "count": 40, "opening": {"disc": {"center": [0, 0], "normal": [0, 1], "radius": 0.05}},
-    "radius": 1e-3, "kind": "ball"}], "remove": [{"below": {"point": [0, -0.1], "normal": [0, 1]}}, {"inside": {"x": [0, 1], "y": [-0.01, -0.005]}, "kind": "ball"}]}'
+    "radius": 1e-3, "material": "ball"}], "remove": [{"below": {"point": [0, -0.1], "normal": [0, 1]}}, {"inside": {"x": [0, 1], "y": [-0.01, -0.005]}, "material": "ball"}]}'
 nsd-gen - <<<"$count" | nsd-step -n 2000 --every 500 2>/dev/null >count.h5
 ok "a count ends a pour; each removal has its own account; discs, too" \
     every_frame count.h5 '.[-1] | .poured[0].bodies == 40 and .removed[0].bodies + .removed[1].bodies == 40 and .bodies == 0 and (.removed | all(.bodies > 5))'
@@ -126,9 +126,9 @@ ok "a run that goes on from the scene is the run, bit for bit, from r = 0: conta
         cmp <(particles --last new.h5) <(particles --last old.h5)'
 ok "jq changes what it likes: friction, gravity, the walls, bodies at rest and of one kind" \
     eval 'nsd-info --scene piston.h5 | jq ".mu = 0.7 | .gravity = [1, 0, -9] | .walls = [] |
-            .kinds = {steel: {density: 7800}} | .bodies[0] += {at_rest: true, kind: \"steel\", density: 7800}" | nsd-gen - >changed.h5 &&
+            .materials = {steel: {density: 7800}} | .bodies[0] += {at_rest: true, material: \"steel\", density: 7800}" | nsd-gen - >changed.h5 &&
         nsd-info changed.h5 | jq -s -e ".[0] | .walls == 0 and .gravity == [1, 0, -9] and (.material | all(.mu == 0.7))" &&
-        nsd-info -p changed.h5 | jq -s -e "all(.v == [0, 0, 0] and .w == [0, 0, 0] and .kind == \"steel\")"'
+        nsd-info -p changed.h5 | jq -s -e "all(.v == [0, 0, 0] and .w == [0, 0, 0] and .material == \"steel\")"'
 ok "any frame may be taken, also counted from the end" \
     eval 'nsd-gen - <<<"{\"dt\": 1e-4, \"bodies\": [{\"document\": \"piston.h5\", \"frame\": 9}]}" >nine.h5 &&
         nsd-gen - <<<"{\"dt\": 1e-4, \"bodies\": [{\"document\": \"piston.h5\", \"frame\": -41}]}" >ninth.h5 &&
@@ -144,10 +144,10 @@ refuses 65 "a new body must not overlap" nsd-gen - \
 
 # ---- tables with named columns ----
 
-scene='{"dt": 1, "kinds": {"steel": {"density": 7800}}, "bodies": [{"file": "table.txt"}]}'
+scene='{"dt": 1, "materials": {"steel": {"density": 7800}}, "bodies": [{"file": "table.txt"}]}'
 printf '%s\n' '# id kind vz d x y z  wx' '7 steel 0.5 2e-3 1 2 3 9 # the first' '' '3 ball 0 4e-3 4 5 6 0' >table.txt
 ok "a table's first line names its columns" \
-    eval 'nsd-gen - <<<"$scene" | nsd-info -p | jq -s -e "map([.id, .kind, .radius, .x, .v, .w]) == [[7, \"steel\", 1e-3, [1, 2, 3], [0, 0, 0.5], [9, 0, 0]], [3, \"ball\", 2e-3, [4, 5, 6], [0, 0, 0], [0, 0, 0]]]"'
+    eval 'nsd-gen - <<<"$scene" | nsd-info -p | jq -s -e "map([.id, .material, .radius, .x, .v, .w]) == [[7, \"steel\", 1e-3, [1, 2, 3], [0, 0, 0.5], [9, 0, 0]], [3, \"ball\", 2e-3, [4, 5, 6], [0, 0, 0], [0, 0, 0]]]"'
 ok "masses follow the kinds' densities" \
     eval 'nsd-gen - <<<"$scene" | nsd-info -p | jq -s -e "(.[0].mass / 7800 * 8) / (.[1].mass / 2500) - 1 | fabs < 1e-12"'
 bad_table() # WHAT REGEX LINE ...
@@ -162,7 +162,7 @@ bad_table "no radius" 'table.txt:1: there is no column "r"' '# x y z kind' '1 2 
 bad_table "too few words" 'table.txt:3: not as many words as columns' '# x y z r' '1 2 3 4' '1 2 3'
 bad_table "too many" 'table.txt:2: not as many words as columns' '# x y z r' '1 2 3 4 5'
 bad_table "no number" 'table.txt:2: r: not a number: "four"' '# x y z r' '1 2 3 four'
-bad_table "no kind" 'table.txt:2: the scene names no kind "wood"' '# x y z r kind' '1 2 3 4 wood'
+bad_table "no kind" 'table.txt:2: the scene names no material "wood"' '# x y z r kind' '1 2 3 4 wood'
 bad_table "one number for two" 'body 1: another one has its id, 5' '# x y z r id' '1 2 3 1 5' '4 5 6 1 5'
 bad_table "a number that is none of bodies" 'table.txt:2: an id must be a whole number: "0.5"' '# x y z r id' '1 2 3 1 0.5'
 bad_table "neither fixed nor free" 'table.txt:2: fixed must be 0 or 1: "2"' '# x y z r fixed' '1 2 3 1 2'

@@ -5,11 +5,11 @@
 . tests/support/tap.sh
 
 # A heap of two groups, one of steel, on a floor, and a pour with a name; its frames come and go
-jq -n '{ dim: 2, dt: 5e-4, mu: 0.4, seed: 4, kinds: { steel: { density: 7800 } },
+jq -n '{ dim: 2, dt: 5e-4, mu: 0.4, seed: 4, materials: { steel: { density: 7800 } },
     walls: [{ segment: [[-0.06, 0], [0.06, 0]], name: "floor" }, { segment: [[-0.06, 0.5], [-0.06, 0]], name: "side" },
             { segment: [[0.06, 0], [0.06, 0.5]], name: "side" }],
     bodies: [{ count: 60, radius: { uniform: [3e-3, 4e-3] }, box: { x: [-0.06, 0.06], y: [0, null] }, name: "charge" },
-             { x: [0, 0.15], radius: 0.01, kind: "steel", name: "intruder", v: [0, -1] }],
+             { x: [0, 0.15], radius: 0.01, material: "steel", name: "intruder", v: [0, -1] }],
     pour: [{ rate: 100, radius: 3e-3, opening: { box: { x: [-0.03, 0.03], y: [0.2, 0.25] } }, v: [0, -1], name: "rain", until: 0.2 }],
     remove: [{ name: "rain", below: { point: [0, 0.06], normal: [0, 1] } }] }' >"$tmp/scene.json"
 nsd-gen "$tmp/scene.json" >"$tmp/start.h5"
@@ -79,10 +79,10 @@ nsd-gen - <<<"$(jq '.bodies |= .[1:] | del(.pour, .remove)' "$tmp/scene.json")" 
 jq '.bodies[0].count = 20 | .bodies[1].x = [0, 0.05] | .bodies[0].box.y = [0.1, null] | del(.pour, .remove)' "$tmp/scene.json" | nsd-gen - >"$tmp/both.h5"
 box=-0.06,0.06,0,0.12
 nsd-gen - <<<"$(jq '.bodies |= .[1:] | .bodies[0].x = [0, 0.05] | del(.pour, .remove)' "$tmp/scene.json")" >"$tmp/alone.h5"
-for file in alone both; do nsd-view -c kind --box $box --only intruder -o "$tmp/$file.png" "$tmp/$file.h5" 2>/dev/null; done
+for file in alone both; do nsd-view -c material --box $box --only intruder -o "$tmp/$file.png" "$tmp/$file.h5" 2>/dev/null; done
 ok "a picture of a group is that of a packing without the others" cmp "$tmp/alone.png" "$tmp/both.png"
-nsd-view -c kind --box $box -o "$tmp/all.png" "$tmp/both.h5" 2>/dev/null
-nsd-view -c kind --only charge -o "$tmp/charge.svg" --svg "$tmp/both.h5" 2>/dev/null
+nsd-view -c material --box $box -o "$tmp/all.png" "$tmp/both.h5" 2>/dev/null
+nsd-view -c material --only charge -o "$tmp/charge.svg" --svg "$tmp/both.h5" 2>/dev/null
 ok "one of all is another" eval '! cmp -s "$tmp/alone.png" "$tmp/all.png"'
 is "triangles of STL: of the bodies that are chosen, and of walls that are named" \
     "$(nsd-export -l --to stl --only intruder "$tmp/run.h5" | od -An -tu4 -j80 -N4 | tr -d ' ')" \

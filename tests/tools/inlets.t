@@ -11,13 +11,13 @@ holds() { jq -e "$@" >/dev/null; }
 
 cat >"$tmp/rain.json" <<'END'
 { "dt": 5e-4, "mu": 0.3, "gravity": [0, 0, -9.81], "seed": 3,
-  "kinds": { "sand": {}, "iron": { "density": 7800 } },
+  "materials": { "sand": {}, "iron": { "density": 7800 } },
   "cell": { "lengths": [0.03, 0.03, 1], "repeats": [true, true, false], "gradient": [[0, 0.5, 0], [0, 0, 0], [0, 0, 0]] },
-  "bodies": [{ "random": { "phi": 0.002 }, "radius": 1.5e-3, "kind": "iron" }],
+  "bodies": [{ "random": { "phi": 0.002 }, "radius": 1.5e-3, "material": "iron" }],
   "pour": [{ "rate": 2000, "opening": { "box": { "x": [-0.01, 0.04], "y": [0, 0.03], "z": [0.5, 0.52] } },
-             "radius": { "uniform": [1e-3, 2e-3] }, "v": [0, 0, -1], "kind": "sand", "until": 0.15 }],
-  "remove": [{ "below": { "point": [0, 0, 0.35], "normal": [0, 0, 1] }, "kind": "sand" },
-             { "inside": { "x": [0, 0.01] }, "kind": "sand", "from": 0.1, "until": 0.1024 }] }
+             "radius": { "uniform": [1e-3, 2e-3] }, "v": [0, 0, -1], "material": "sand", "until": 0.15 }],
+  "remove": [{ "below": { "point": [0, 0, 0.35], "normal": [0, 0, 1] }, "material": "sand" },
+             { "inside": { "x": [0, 0.01] }, "material": "sand", "from": 0.1, "until": 0.1024 }] }
 END
 nsd-gen "$tmp/rain.json" >"$tmp/rain.h5"
 step -n 400 --every 40 -o "$tmp/out.h5" "$tmp/rain.h5"
@@ -52,17 +52,17 @@ is "nothing comes in where the image of a grain is" "$(cat "$tmp/poured")" 0
 
 # ---- removal by id, by kind, in time ----
 
-jq -n '{ dim: 2, dt: 1, gravity: [0, 0], kinds: { a: {}, b: {} }, bodies: [range(6) | { x: [., 0], radius: 0.1, kind: (if . % 2 == 0 then "a" else "b" end) }] }' >"$tmp/six.json"
+jq -n '{ dim: 2, dt: 1, gravity: [0, 0], materials: { a: {}, b: {} }, bodies: [range(6) | { x: [., 0], radius: 0.1, material: (if . % 2 == 0 then "a" else "b" end) }] }' >"$tmp/six.json"
 left() # REMOVALS STEPS: ids that are left
 {
     jq --argjson r "$1" '.remove = $r' "$tmp/six.json" | nsd-gen - | step -n "$2" --every "$2" | nsd-info --last -p - | jq -s -c 'map(select(.id != null).id)'
 }
 is "by id, one" "$(left '[{"id": 3}]' 1)" '[0,1,2,4,5]'
 is "several, and one that is not there" "$(left '[{"id": [5, 0, 77]}]' 1)" '[1,2,3,4]'
-is "by kind" "$(left '[{"kind": "a"}]' 1)" '[1,3,5]'
-is "by kind, id and place together" "$(left '[{"kind": "a", "id": [0, 1, 4], "inside": {"x": [1, 9]}}]' 1)" '[0,1,2,3,5]'
-is "not before its time" "$(left '[{"kind": "a", "from": 3}]' 3)" '[0,1,2,3,4,5]'
-is "from its time on" "$(left '[{"kind": "a", "from": 3}]' 4)" '[1,3,5]'
+is "by kind" "$(left '[{"material": "a"}]' 1)" '[1,3,5]'
+is "by kind, id and place together" "$(left '[{"material": "a", "id": [0, 1, 4], "inside": {"x": [1, 9]}}]' 1)" '[0,1,2,3,5]'
+is "not before its time" "$(left '[{"material": "a", "from": 3}]' 3)" '[0,1,2,3,4,5]'
+is "from its time on" "$(left '[{"material": "a", "from": 3}]' 4)" '[1,3,5]'
 is "not after its end" "$(left '[{"id": 1, "from": 2, "until": 2.5}, {"id": 2, "from": 2.2, "until": 2.5}]' 6)" '[0,2,3,4,5]'
 
 bad() # "what is true" FILE FILTER REGEX
@@ -71,7 +71,7 @@ bad() # "what is true" FILE FILTER REGEX
     refuses 65 "$1" nsd-gen "$tmp/bad.json"
     like "and where, and the cure" "$(cat "$tmp/err")" "$4"
 }
-bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: needs at least one of the keys outside inside below kind id name'
+bad "a removal of nothing said is refused" six '.remove = [{}]' 'remove\[0\]: needs at least one of the keys outside inside below material id name'
 bad "an id that is a word is refused" six '.remove = [{id: "x"}]' 'remove\[0\].id: '
 bad "no ids are refused" six '.remove = [{id: []}]' 'remove\[0\].id: needs the numbers'
 bad "an end before the beginning is refused" six '.remove = [{id: 1, from: 2, until: 1}]' 'remove\[0\].until: must not lie before'
@@ -133,7 +133,7 @@ jq -n --arg d "$tmp/named_half.h5" '{ dt: 5e-4, walls: [{ point: [0, 0, 0], norm
 is "a removal names groups of a document, one without a body left" "$(nsd-gen "$tmp/taken.json" | step -n 1 | nsd-info --last -p - | jq -s 'map(select(.group == "new")) | length')" 0
 bad "a removal of an unknown name" named '.remove[0].name = "newer"' 'remove\[0\].name: no group of bodies and no pour has the name "newer"'
 bad "a removal by the name of a wall" named '.remove[0].name = "tray"' 'remove\[0\].name: no group of bodies and no pour has the name "tray"'
-bad "a removal by a name that is a kind" named '.remove[0].name = "ball"' 'remove\[0\].name: "ball" is a kind'
+bad "a removal by a name that is a kind" named '.remove[0].name = "ball"' 'remove\[0\].name: "ball" is a material'
 bad "a pour with the name of a wall" named '.pour[0].name = "tray"' '"tray" is the name of a wall and of a group'
 bad "a pour with a name that is none" named '.pour[0].name = "1"' 'pour\[0\].name: a name is a number'
 

@@ -79,28 +79,28 @@ jq -n '{ dt: 1e-3, gravity: [0, 0, -10], mu: 0.5, walls: [{ point: [0, 0, 0], no
     bodies: [{ x: [0, 0, 0.05], shape: "block", size: 1 }] }' | nsd-gen - | step -n 100 --every 100 >"$tmp/block.h5"
 ok "a belt turns with its boundary" near "$(last "$tmp/block.h5" '.[0].v[1]')" 0.5 1e-6
 is "a belt is in the document and nsd-info" "$(nsd-info --walls "$tmp/belt.h5" | jq -c .belt)" '[1,0,5]'
-jq '.walls[0].belt = [0.3, 0, 0] | .walls[0].kind = "wall" | .pour[0].count = 60' scenes/pour.json >"$tmp/poured.json"
+jq '.walls[0].belt = [0.3, 0, 0] | .walls[0].material = "wall" | .pour[0].count = 60' scenes/pour.json >"$tmp/poured.json"
 ok "belts: the same bytes however the run is made" every_way "$tmp/poured.json"
 
 # ---- a surface of several materials: a strip of 8 squares, the second half ice ----
 
 awk 'BEGIN { for (i = 0; i <= 8; i++) for (y = -1; y <= 1; y += 2) print "v", i, y, 0
     for (i = 0; i < 8; i++) print "f", 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2 }' >"$tmp/strip.obj"
-strip() { jq -n --argjson m "$1" '{ dt: 1e-3, gravity: [0, 0, -10], mu: 0.3, kinds: { ice: {} }, pairs: [{ pair: ["ball", "ice"], mu: 0 }],
+strip() { jq -n --argjson m "$1" '{ dt: 1e-3, gravity: [0, 0, -10], mu: 0.3, materials: { ice: {} }, pairs: [{ pair: ["ball", "ice"], mu: 0 }],
     walls: [{ mesh: { file: "strip.obj" }, materials: $m }], shapes: { block: { box: [0.1, 0.1, 0.1] } },
     bodies: [{ x: [3.5, 0, 0.05], shape: "block", size: 1, v: [2.5, 0, 0] }] }' >"$tmp/strip.json"; }
-strip '[{ "faces": [8, 15], "kind": "ice" }]'
+strip '[{ "faces": [8, 15], "material": "ice" }]'
 nsd-gen "$tmp/strip.json" >"$tmp/strip.h5"
 step -n 900 --every 900 "$tmp/strip.h5" >"$tmp/slid.h5"
 # 0.5 m with mu g, then none: v^2 = 2.5^2 - 2 mu g s; while it crosses, the part of its length that is on ice has none
 ok "a block slides onto ice and keeps its speed" near "$(last "$tmp/slid.h5" '.[0].v[0]')" "$(jq -n '6.25 - 2 * 3 * 0.5 | sqrt')" 5e-2
 is "as fast as when it left the rest" "$(step -n 600 --every 600 "$tmp/strip.h5" | nsd-info -p | jq '.v[0] * 1e6 | round')" "$(last "$tmp/slid.h5" '.[0].v[0] * 1e6 | round')"
-is "the part is a wall of its own" "$(nsd-info --walls "$tmp/strip.h5" | jq -sc 'map(.kind)')" '["wall","ice"]'
+is "the part is a wall of its own" "$(nsd-info --walls "$tmp/strip.h5" | jq -sc 'map(.material)')" '["wall","ice"]'
 strip '[{ "faces": [0, 15], "belt": [1, 0, 0] }]'
 jq '.bodies[0].v = [0, 0, 0]' "$tmp/strip.json" >"$tmp/moved.json"
 ok "a part with a belt: v = mu g t" near "$(nsd-gen "$tmp/moved.json" | step -n 200 --every 200 | nsd-info -p | jq '.v[0]')" 0.6 1e-5
 # a seam between two materials is no step: a ball rolls over it as over one surface
-strip '[{ "faces": [8, 15], "kind": "wall" }]'
+strip '[{ "faces": [8, 15], "material": "wall" }]'
 roll() { jq '.bodies = [{ x: [3.5, 0.3, 0.05], radius: 0.05, v: [1, 0, 0], w: [0, 20, 0] }]' "$1" >"$tmp/roll.json" && nsd-gen "$tmp/roll.json" |
     step --solver auto -n 900 --every 900 | nsd-info -p | jq -c '[.x[0], .v[2]] | map(. * 1e6 | round | fabs)'; }
 is "a ball rolls over the seam" "$(roll "$tmp/strip.json")" '[4400000,0]'
@@ -109,36 +109,36 @@ ok "a face that is not there" says . 'no face 16: the surface has 16'
 ok "a face of two parts" says '.walls[0].materials = [{ faces: [0, 3] }, { faces: [3, 5] }]' 'face 3 is named twice'
 ok "faces of a plane" says '.walls[0] = { point: [0, 0, 0], normal: [0, 0, 1], materials: [] }' 'materials'
 ok "a load" says '.walls[0].load = { along: [0, 0, 1], mass: 1 }' 'its parts would move by themselves'
-jq -n '{ dim: 2, dt: 1e-3, gravity: [0, -10], mu: 0.3, kinds: { ice: {} }, pairs: [{ pair: ["ball", "ice"], mu: 0 }],
-    walls: [{ polygon: { points: [[0, 0], [4, 0], [8, 0]], closed: false }, materials: [{ faces: [0, 0], kind: "ice" }] }],
+jq -n '{ dim: 2, dt: 1e-3, gravity: [0, -10], mu: 0.3, materials: { ice: {} }, pairs: [{ pair: ["ball", "ice"], mu: 0 }],
+    walls: [{ polygon: { points: [[0, 0], [4, 0], [8, 0]], closed: false }, materials: [{ faces: [0, 0], material: "ice" }] }],
     bodies: [{ x: [0.5, 0.1], radius: 0.1, v: [1, 0] }] }' | nsd-gen - | step -n 300 --every 300 >"$tmp/disc.h5"
 ok "in the plane, too: on ice a disc does not begin to roll" near "$(last "$tmp/disc.h5" '.[0].w[2]')" 0 1e-9
 
 # ---- inert pairs: a net that stops gravel and lets sand through ----
 
-net='{ dt: 1e-3, gravity: [0, 0, -10], kinds: { sand: {}, gravel: {}, net: {} }, pairs: [{ pair: ["sand", "net"], acts: false }],
-    walls: [{ rectangle: { center: [0, 0, 1], normal: [0, 0, 1], sides: [2, 2] }, kind: "net" }, { point: [0, 0, -9], normal: [0, 0, 1], kind: "net" }],
+net='{ dt: 1e-3, gravity: [0, 0, -10], materials: { sand: {}, gravel: {}, net: {} }, pairs: [{ pair: ["sand", "net"], acts: false }],
+    walls: [{ rectangle: { center: [0, 0, 1], normal: [0, 0, 1], sides: [2, 2] }, material: "net" }, { point: [0, 0, -9], normal: [0, 0, 1], material: "net" }],
     shapes: { cube: { box: [1, 1, 1] } },
-    bodies: [{ x: [0, 0, 1.2], radius: 0.1, kind: "sand" }, { x: [0.5, 0, 1.2], radius: 0.1, kind: "gravel" }, { x: [-0.5, 0, 1.2], radius: 0.1, kind: "sand", shape: "cube" },
-        { x: [-0.5, 0.5, 1.2], radius: 0.1, kind: "gravel", shape: "cube" }] }'
+    bodies: [{ x: [0, 0, 1.2], radius: 0.1, material: "sand" }, { x: [0.5, 0, 1.2], radius: 0.1, material: "gravel" }, { x: [-0.5, 0, 1.2], radius: 0.1, material: "sand", shape: "cube" },
+        { x: [-0.5, 0.5, 1.2], radius: 0.1, material: "gravel", shape: "cube" }] }'
 jq -n "$net" >"$tmp/net.json"
 nsd-gen "$tmp/net.json" | step -n 1000 --every 1000 -o "$tmp/net.h5"
 is "sand falls through net as if nothing were there, h = g t^2/2; gravel stays" \
     "$(last "$tmp/net.h5" '[.[] | .x[2] * 1000 | round] | [.[0], .[1], .[2], (.[3] < 1200 and .[3] > 1040)]' | jq -c .)" '[-3800,1100,-3800,true]'
 # two balls that meet, and an image across the border of a periodic cell; without the pair they would rebound or stop
-meet='{ dt: 1e-2, gravity: [0, 0, 0], e_n: 0.5, cell: { lengths: [4, 4, 4] }, kinds: { a: {}, b: {} }, pairs: [{ pair: ["a", "b"], acts: false }],
+meet='{ dt: 1e-2, gravity: [0, 0, 0], e_n: 0.5, cell: { lengths: [4, 4, 4] }, materials: { a: {}, b: {} }, pairs: [{ pair: ["a", "b"], acts: false }],
     shapes: { cube: { box: [1, 1, 1] } },
-    bodies: [{ x: [1, 2, 2], radius: 0.2, kind: "a", v: [1, 0, 0] }, { x: [2, 2, 2], radius: 0.2, kind: "b", v: [-1, 0, 0] },
-        { x: [0.5, 1, 2], radius: 0.2, kind: "b", v: [-1, 0, 0], shape: "cube" }, { x: [3.5, 1, 2], radius: 0.2, kind: "a", v: [1, 0, 0] }] }'
+    bodies: [{ x: [1, 2, 2], radius: 0.2, material: "a", v: [1, 0, 0] }, { x: [2, 2, 2], radius: 0.2, material: "b", v: [-1, 0, 0] },
+        { x: [0.5, 1, 2], radius: 0.2, material: "b", v: [-1, 0, 0], shape: "cube" }, { x: [3.5, 1, 2], radius: 0.2, material: "a", v: [1, 0, 0] }] }'
 speeds() { nsd-gen <(jq -n "$meet | $1") | step "${@:2}" | nsd-info --last -p | jq -sc 'map(.v[0])'; }
 is "inert grains go through one another, across the border of a cell, too" "$(speeds . -n 100)" '[1,-1,-1,1]'
 is "without the key they rebound" "$(speeds 'del(.pairs)' -n 100 | jq -c 'map(. * 1000 | round) | .[:2]')" '[-500,500]'
 is "and fast ones are neither stopped on their ways nor said to go through" \
     "$(nsd-gen <(jq -n "$meet | .bodies[].v[0] *= 90") | nsd-step -n 3 --log "$tmp/fast.log" 2>"$tmp/err" | nsd-info --last -p | jq -sc 'map(.v[0])') $(grep -c 'NOT\|[1-9][0-9]* tunnelled through' "$tmp/err" || true)" '[90,-90,-90,90] 0'
-is "a kind may be inert to itself" "$(speeds '.pairs = [{ pair: ["a", "a"], acts: false }] | .bodies[].kind = "a"' -n 100)" '[1,-1,-1,1]'
+is "a kind may be inert to itself" "$(speeds '.pairs = [{ pair: ["a", "a"], acts: false }] | .bodies[].material = "a"' -n 100)" '[1,-1,-1,1]'
 is "bodies of an inert pair may overlap at the start" "$(nsd-gen <(jq -n "$meet | .bodies[1].x[0] = 1.1") | nsd-detect | nsd-info | jq -s 'map(.contacts | select(. != null))' | jq -c .)" '[0]'
-jq -n "$net"' | del(.shapes) | .seed = 4 | .walls += [{ box: { x: [-1, 1], y: [-1, 1], z: [-2, null] }, kind: "wall" }] |
-    .bodies = (["sand", "gravel"] | map({ count: 60, kind: ., radius: 0.1, box: { x: [-1, 1], y: [-1, 1], z: [(if . == "sand" then 1.2 else 2.2 end), null] }, v: [0, 0, -4] }))' >"$tmp/sieve.json"
+jq -n "$net"' | del(.shapes) | .seed = 4 | .walls += [{ box: { x: [-1, 1], y: [-1, 1], z: [-2, null] }, material: "wall" }] |
+    .bodies = (["sand", "gravel"] | map({ count: 60, material: ., radius: 0.1, box: { x: [-1, 1], y: [-1, 1], z: [(if . == "sand" then 1.2 else 2.2 end), null] }, v: [0, 0, -4] }))' >"$tmp/sieve.json"
 ok "inert pairs: the same bytes however the run is made" every_way "$tmp/sieve.json"
 cp "$tmp/net.json" "$tmp/refused.json"
 ok "an inert pair with a law" says '.pairs[0].mu = 0.3' 'no other key'

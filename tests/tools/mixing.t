@@ -10,12 +10,12 @@ step() { nsd-step "$@" 2>/dev/null; }
 
 # ---- lattices: N a side, of kinds that an expression of jq gives ----
 
-cubic() { jq -n "{ dt: 1, overlap: true, gravity: [0, 0, -1], kinds: { sand: { density: 1 }, clay: { density: 1 } },
+cubic() { jq -n "{ dt: 1, overlap: true, gravity: [0, 0, -1], materials: { sand: { density: 1 }, clay: { density: 1 } },
     cell: { lengths: [12, 12, 12] }, bodies: [range(6) as \$i | range(6) as \$j | range(6) as \$k |
-        { x: ([\$i, \$j, \$k] | map(2 * . + 1)), radius: 0.9, kind: ($1) }] }" | nsd-gen -; }
-fcc() { jq -n "{ dt: 1, overlap: true, gravity: [0, 0, -1], kinds: { sand: { density: 1 }, clay: { density: 1 } },
+        { x: ([\$i, \$j, \$k] | map(2 * . + 1)), radius: 0.9, material: ($1) }] }" | nsd-gen -; }
+fcc() { jq -n "{ dt: 1, overlap: true, gravity: [0, 0, -1], materials: { sand: { density: 1 }, clay: { density: 1 } },
     cell: { lengths: [6, 6, 6] }, bodies: [range(6) as \$i | range(6) as \$j | range(6) as \$k | select((\$i + \$j + \$k) % 2 == 0) |
-        { x: ([\$i, \$j, \$k] | map(. + 0.5)), radius: 0.6, kind: ($1) }] }" | nsd-gen -; }
+        { x: ([\$i, \$j, \$k] | map(. + 0.5)), radius: 0.6, material: ($1) }] }" | nsd-gen -; }
 
 cubic 'if ($i + $j + $k) % 2 == 0 then "sand" else "clay" end' >"$tmp/checker.h5"
 ok "a checkerboard: the same share in all samples of 8, unlike half of 12 neighbours" truth lattice "$tmp/checker.h5" 4 \
@@ -30,26 +30,26 @@ ok "halves of one: 4 of 12 at the two borders" truth lattice "$tmp/halves.h5" 2 
 py -c '
 import json, random
 random.seed(6)
-print(json.dumps({ "dt": 1, "kinds": { "a": {}, "b": {} }, "gravity": [0, 0, -1],
-    "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 0.01, "kind": random.choice("ab") } for _ in range(4000)], "allow_overlap": True }))' |
+print(json.dumps({ "dt": 1, "materials": { "a": {}, "b": {} }, "gravity": [0, 0, -1],
+    "bodies": [{ "x": [random.random() for _ in "xyz"], "radius": 0.01, "material": random.choice("ab") } for _ in range(4000)], "allow_overlap": True }))' |
     nsd-gen - >"$tmp/random.h5"
 ok "at random: 1" truth at_random "$tmp/random.h5"
 py -c '
 import json, random
 random.seed(7)
-print(json.dumps({ "dim": 2, "dt": 1, "kinds": { "a": {}, "b": {}, "c": {} }, "gravity": [0, -1], "allow_overlap": True,
+print(json.dumps({ "dim": 2, "dt": 1, "materials": { "a": {}, "b": {}, "c": {} }, "gravity": [0, -1], "allow_overlap": True,
     "cell": { "edges": [[10, 0], [3, 8]] },
     "bodies": [{ "x": [9 * random.random(), 7 * random.random()], "radius": random.choice([0.1, 0.2, 0.25]),
-        "kind": random.choice("aab") } for _ in range(300)] }))' | nsd-gen - >"$tmp/oblique.h5"
+        "material": random.choice("aab") } for _ in range(300)] }))' | nsd-gen - >"$tmp/oblique.h5"
 ok "discs in an oblique cell: as numpy counts" truth same_as_numpy "$tmp/oblique.h5" 1.3 a
 ok "large ones among small ones" truth same_as_numpy "$tmp/oblique.h5" 2 large
-jq -n '{ dt: 1e-4, density: 1000, seed: 2, kinds: { a: { density: 1000 }, b: { density: 2000 } }, walls: [{ box: { x: [0, 0.1], y: [0, 0.1], z: [0, 0.3] } }], 
-    bodies: [{ count: 150, kind: "a", radius: { uniform: [0.004, 0.008] }, box: { x: [0, 0.1], y: [0, 0.1], z: [0, null] } }, { count: 150, kind: "b", radius: 0.005, box: { x: [0, 0.1], y: [0, 0.1], z: [0.2, null] } }] }' |
+jq -n '{ dt: 1e-4, density: 1000, seed: 2, materials: { a: { density: 1000 }, b: { density: 2000 } }, walls: [{ box: { x: [0, 0.1], y: [0, 0.1], z: [0, 0.3] } }], 
+    bodies: [{ count: 150, material: "a", radius: { uniform: [0.004, 0.008] }, box: { x: [0, 0.1], y: [0, 0.1], z: [0, null] } }, { count: 150, material: "b", radius: 0.005, box: { x: [0, 0.1], y: [0, 0.1], z: [0.2, null] } }] }' |
     nsd-gen - | step -n 1000 --every 1000 >"$tmp/box.h5"
 ok "balls in a box" truth same_as_numpy "$tmp/box.h5" 0.03 b
 mixing() { nsd-stat -m mixing "$@" 2>/dev/null | jq -c "${what:-.why.mixing}"; }
 refuses 65 "a tracer that is no kind" nsd-stat -m mixing --tracer gravel "$tmp/checker.h5"
-like "names the kinds" "$(cat "$tmp/err")" "no kind 'gravel' here, but large, ball, wall"
+like "names the kinds" "$(cat "$tmp/err")" "no material 'gravel' here, but large, ball, wall"
 is "bodies of one size" "$(mixing --tracer large "$tmp/checker.h5")" '"all bodies are of one sort: --tracer KIND, or large"'
 is "samples of one body" "$(mixing --sample 2 "$tmp/checker.h5")" '"no sample holds two bodies: --sample is too small"'
 is "too many samples" "$(mixing --sample 1e-9 "$tmp/checker.h5")" '"--sample makes more than 1e8 samples"'

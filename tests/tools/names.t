@@ -23,12 +23,12 @@ f 2 3 4
 g default
 f 3 4 5 6
 END
-jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, kinds: { steel: {} },
+jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, materials: { steel: {} },
     walls: [{ mesh: { file: $file, parts: "groups" }, name: "tray" },
             { point: [-2, 0, 0], normal: [1, 0, 0], name: "side" }, { point: [2, 0, 0], normal: [-1, 0, 0], name: "side" },
-            { point: [0, 0, -5], normal: [0, 0, 1], kind: "steel" }],
+            { point: [0, 0, -5], normal: [0, 0, 1], material: "steel" }],
     bodies: [{ x: [-0.5, -0.5, 0.1], radius: 0.1, name: "first" }, { x: [0.5, 0.5, 0.2], radius: 0.2, name: "second" },
-             { x: [-1.9, 0, 0.6], radius: 0.1, v: [-1, 0, 0], name: "first" }, { x: [1.9, 0, 0.6], radius: 0.1, v: [2, 0, 0], kind: "steel" }] }' \
+             { x: [-1.9, 0, 0.6], radius: 0.1, v: [-1, 0, 0], name: "first" }, { x: [1.9, 0, 0.6], radius: 0.1, v: [2, 0, 0], material: "steel" }] }' \
     >"$tmp/scene.json"
 nsd-gen "$tmp/scene.json" >"$tmp/start.h5"
 step -n 4 --contacts -o "$tmp/run.h5" "$tmp/start.h5"
@@ -75,7 +75,7 @@ is "nsd-cat keeps them" "$(names "$tmp/last.h5")" "$(names "$tmp/start.h5")"
 nsd-info --scene "$tmp/run.h5" | nsd-gen - 2>/dev/null >"$tmp/again.h5"
 is "a scene that goes on from a document has them, and groups" \
     "$(nsd-info -w -p "$tmp/again.h5" | jq -c '[.name, .parts, .group]')" "$(nsd-info --last -w -p "$tmp/run.h5" | jq -c '[.name, .parts, .group]')"
-jq -n --arg d "$tmp/run.h5" '{ dt: 1e-3, kinds: { steel: {} }, bodies: [{ document: $d }] }' | nsd-gen - >"$tmp/taken.h5"
+jq -n --arg d "$tmp/run.h5" '{ dt: 1e-3, materials: { steel: {} }, bodies: [{ document: $d }] }' | nsd-gen - >"$tmp/taken.h5"
 is "walls and bodies that are taken out of a document bring theirs" \
     "$(nsd-info -w -p "$tmp/taken.h5" | jq -c '[.name, .parts, .group]')" "$(nsd-info --last -w -p "$tmp/run.h5" | jq -c '[.name, .parts, .group]')"
 jq '.remove = [{ below: { point: [0, 0, 0.3], normal: [0, 0, 1] } }] | .gravity = [0, 0, 0]' "$tmp/scene.json" | nsd-gen - |
@@ -100,7 +100,7 @@ for doc in without unwalled empty bare; do
     done >"$tmp/taken"
     is "nsd-stat --only, $doc: every measure" "$(cat "$tmp/taken")" ""
     refuses 65 "--tracer, $doc" nsd-stat -m fraction --tracer gravel "$tmp/$doc.h5"
-    like "and the kinds are named" "$(cat "$tmp/err")" "no kind 'gravel' here, but large, ball, wall"
+    like "and the materials are named" "$(cat "$tmp/err")" "no material 'gravel' here, but large, ball, wall"
     for part in -p -w -c; do refuses 65 "nsd-info $part --only, $doc" nsd-info "$part" --only NOSUCH "$tmp/$doc.h5"; done
     refuses 65 "nsd-export --only, $doc" nsd-export --to csv --part boundary --only NOSUCH "$tmp/$doc.h5"
     like "and names are named" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"

@@ -5,10 +5,10 @@
 if ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then echo "1..0 # SKIP no numpy"; exit; fi
 export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
 
-jq -n '{ dt: 1e-3, gravity: [0, 0, 0], kinds: { steel: {} }, shapes: { cube: { box: [0.2, 0.2, 0.2] } },
+jq -n '{ dt: 1e-3, gravity: [0, 0, 0], materials: { steel: {} }, shapes: { cube: { box: [0.2, 0.2, 0.2] } },
     walls: [{ point: [0, 0, -1], normal: [0, 0, 1], name: "floor" }, { point: [-1, 0, 0], normal: [1, 0, 0], name: "side" },
             { point: [1, 0, 0], normal: [-1, 0, 0], name: "side" }, { point: [0, 0, 1], normal: [0, 0, -1] }],
-    bodies: [{ x: [0, 0, 0], shape: "cube", size: 1, kind: "steel", orientation: [0, 0, 0.785398163397448], name: "first" },
+    bodies: [{ x: [0, 0, 0], shape: "cube", size: 1, material: "steel", orientation: [0, 0, 0.785398163397448], name: "first" },
              { x: [0.5, 0, 0], radius: 0.1 }] }' >"$tmp/scene.json"
 nsd-gen "$tmp/scene.json" >"$tmp/a.h5"
 
@@ -19,7 +19,7 @@ import sys
 import numpy as np
 import nsd
 f = nsd.last(sys.argv[1])
-assert [f.kind_names[k] for k in f.kind] == ["steel", "ball"], f.kind_names
+assert [f.material_names[k] for k in f.material] == ["steel", "ball"], f.material_names
 assert [f.shape_names[k] for k in f.shape] == ["cube", "ball"], f.shape_names
 assert list(f.group) == ["first", None], f.group
 assert f.wall_names == ["floor", "side", "side", None], f.wall_names
@@ -49,10 +49,10 @@ run()
 import sys
 import nsd
 with nsd.Run.from_scene(sys.argv[1]) as run:
-    assert run.names == {"kinds": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
+    assert run.names == {"materials": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
                          "walls": ["floor", "side", "side", None], "groups": ["first"], "named": {"floor": [0], "side": [1, 2]}}, run.names
-    run.move_boundary("side", [0, 0, 0.25])
-    assert [list(v) for v in run.boundary_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
+    run.move_wall("side", [0, 0, 0.25])
+    assert [list(v) for v in run.wall_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
     run.set(only="side", contacts=True)
     run.step(2)
     assert run.measure("boundaries")["boundaries"]["boundary"] == [1, 2]
@@ -65,7 +65,7 @@ with nsd.Run.from_scene(sys.argv[1]) as run:
             assert str(e).startswith(heard), e
         run.set(**{key: "side" if key == "only" else "steel"})
     try:
-        run.move_boundary("lid", [0, 0, 1])
+        run.move_wall("lid", [0, 0, 1])
         assert False
     except ValueError as e:
         assert "floor, side" in str(e)
@@ -94,10 +94,10 @@ for name in "lid", 2, -1:
             assert False, name
         except KeyError as e:
             assert isinstance(e, ValueError) and "no wall" in str(e), e
-run.move_boundary("floor", [0, 0, 1])
-assert [v[2] for v in run.boundary_velocity] == [1, 0]
+run.move_wall("floor", [0, 0, 1])
+assert [v[2] for v in run.wall_velocity] == [1, 0]
 try:
-    run.move_boundary("half", [0, 0, 1])
+    run.move_wall("half", [0, 0, 1])
     assert False
 except ValueError as e:
     assert "part of wall 1" in str(e), e

@@ -16,10 +16,10 @@ f 1 2 4
 g right
 f 2 3 4
 END
-jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, kinds: { steel: {}, glass: {} },
+jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, materials: { steel: {}, glass: {} },
     walls: [{ mesh: { file: $file, parts: "groups" }, name: "floor", wear: 1e-12 },
             { disc: { center: [0, 0, 2], normal: [0, 0, -1], radius: 0.4 }, name: "lid" }],
-    bodies: [{ x: [-0.5, -0.5, 0.1], radius: 0.1, kind: "steel" }, { x: [0.5, 0.5, 0.2], radius: 0.2, kind: "glass" }] }' |
+    bodies: [{ x: [-0.5, -0.5, 0.1], radius: 0.1, material: "steel" }, { x: [0.5, 0.5, 0.2], radius: 0.2, material: "glass" }] }' |
     nsd-gen - | nsd-step -n 20 --sums --contacts --tolerance 1e-12 -o "$tmp/run.h5" 2>/dev/null
 
 # ---- pictures: the colours of points whose faces are known ----
@@ -68,8 +68,8 @@ ok "without them pictures are as before: glass" eval '! cmp -s "$tmp/glass.png" 
 ok "threads do not change a picture" cmp "$tmp/floor.png" <(view "${look[@]}" -j 2 --solid floor "$tmp/run.h5")
 ok "--boundaries lines leaves solid ones" eval 'view "${look[@]}" --boundaries lines --solid left "$tmp/run.h5" >"$tmp/lines.png" && read -r g1 _ g3 < <(pixel "$tmp/lines.png" 20 150) && [ "$g1" -gt "$((g3 + 30))" ]'
 height() { od -An -j 20 -N 4 -t u1 --endian=big "$1" | awk '{ print $3 * 256 + $4 }'; }
-view --size 400x400 -c kind "$tmp/run.h5" >"$tmp/kinds.png"
-view --size 400x400 -c kind --solid floor "$tmp/run.h5" >"$tmp/both.png"
+view --size 400x400 -c material "$tmp/run.h5" >"$tmp/kinds.png"
+view --size 400x400 -c material --solid floor "$tmp/run.h5" >"$tmp/both.png"
 is "pictures have the size that is asked for, with one row of legend or two" "$(height "$tmp/kinds.png") $(height "$tmp/both.png")" '400 400'
 jq -n '{ dt: 1e-3, bodies: [{ x: [-0.5, 0, 0], radius: 0.4, name: "a" }, { x: [0.5, 0, 0], radius: 0.4, name: "b" }, { x: [0, 0, 0.8], radius: 0.3 }] }' | nsd-gen - >"$tmp/groups.h5"
 view --bare --plain -c group --camera 0,90 --box -1,1,-1,1,-1,1 --size 200x200 "$tmp/groups.h5" >"$tmp/groups.png"

@@ -73,7 +73,7 @@ if /usr/bin/python3 -c 'import numpy' 2>/dev/null; then
     ok "and the same torque in a program" env PYTHONPATH=python NSD_LIBRARY="$PWD/build/libnsd.so" /usr/bin/python3 -c 'import nsd, sys
 r = nsd.Run.from_scene(open(sys.argv[1]).read()).set(small_steps=0)
 r.step(20)
-assert abs(r.boundary_torque[0][2] / -float(sys.argv[2]) - 1) < 1e-6, r.boundary_torque' "$tmp/table.json" "$moment"
+assert abs(r.wall_torque[0][2] / -float(sys.argv[2]) - 1) < 1e-6, r.wall_torque' "$tmp/table.json" "$moment"
 fi
 
 # ---- a heap: the walls carry its weight; spans of one step are the forces of its contacts ----

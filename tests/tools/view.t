@@ -91,13 +91,13 @@ ln -s file.png "$tmp/link.png"
 view -o "$tmp/link.png" "$tmp/ball.h5"
 ok "a link stays one" test -L "$tmp/link.png"
 ok "and what it leads to is the picture" cmp "$tmp/file.png" <(view "$tmp/ball.h5")
-for option in '-c speed' '-c kind' '-c id' --plain '--camera 10,20' '--range 0,1' '--background 000000' '--samples 1'; do
+for option in '-c speed' '-c material' '-c id' --plain '--camera 10,20' '--range 0,1' '--background 000000' '--samples 1'; do
     # shellcheck disable=SC2086 # words
     ok "$option changes the picture" differs "$tmp/last.png" <(view $option "$tmp/out.h5")
 done
 status 0 "colours of radii, without words in the picture" nsd-view --bare "$tmp/out.h5"
 like "are explained" "$(cat "$tmp/err")" '^nsd-view: radius 0\.[0-9]+ \(violet\) to 0\.[0-9]+ \(yellow\) m$'
-status 0 "colours of kinds" nsd-view --bare -c kind "$tmp/out.h5"
+status 0 "colours of kinds" nsd-view --bare -c material "$tmp/out.h5"
 is "need no word" "$(cat "$tmp/err")" ""
 
 # ---- over the bodies ----
@@ -255,7 +255,7 @@ for option in '--every 0' '--every -1' '--every 1.5' '-s -1' '-s x' '--every 1' 
     '--size -100x100' '--size 1e2x100' '--size 99999999999999999999x100' '--size=' '--camera 30' '--camera 30,' \
     '--camera 30,91' '--camera nan,0' '--camera 30,15,0' '--camera 1e9,0' '--camera=,' '-c red' '-c=' \
     '--background fff' '--background #ffffff' '--background gggggg' '--background=' '--range 1' '--range 1,1' \
-    '--range 2,1' '--range inf,inf' '--range 0,1 -c kind' '--box 0,1' '--box 0,1,0,1,0' '--box 0,1,0,1,1,0' \
+    '--range 2,1' '--range inf,inf' '--range 0,1 -c material' '--box 0,1' '--box 0,1,0,1,0' '--box 0,1,0,1,1,0' \
     '--box 1,0,0,1,0,1' '--box 0,0,0,1,0,1' '--box 0,1e200,0,1,0,1' '--box 0,1,0,1,0,1,' '--samples 0' \
     '--samples 9' '-j 0' '-j x' '--perspective' '--perspective 130' '--clip 0,0,0,1' '--clip 1,0,0' '--clip x' '--pale 2' \
     '--follow x' '--force 0' '-c value' '--column a' '--rate 0'; do

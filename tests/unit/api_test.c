@@ -144,10 +144,10 @@ static void test_walls(void)
               "{\"point\":[0,0,9],\"normal\":[0,0,-1],\"load\":{\"along\":[0,0,1],\"mass\":2,"
               "\"force\":1}}]}");
     const double v[3] = { 0, 0, -0.25 };
-    must(nsd_step(r, 100) || nsd_boundary_velocity(r, 0, v) ||
-             nsd_boundary_force(r, 1, 3, NSD_LASTING) || nsd_step(r, 100),
+    must(nsd_step(r, 100) || nsd_wall_velocity(r, 0, v) || nsd_wall_force(r, 1, 3, NSD_LASTING) ||
+             nsd_step(r, 100),
          r);
-    const double *x = array(r, "boundary_position", NULL), *u = array(r, "boundary_velocity", NULL);
+    const double *x = array(r, "wall_position", NULL), *u = array(r, "wall_velocity", NULL);
     ok(close_to(x[2], 0.5 * 0.1 - 0.25 * 0.1) && close_to(u[2], -0.25),
        "a boundary goes on from where it is with another velocity");
     ok(close_to(u[5], (1 * 0.2 + 3 * 0.1) / 2), "a force on a boundary adds to that of its load");
@@ -198,7 +198,7 @@ static int act(struct nsd_run *r, int n)
         double *f = a.data;
         for (int64_t i = 0; i < 3 * bodies; i++) f[i] = -1e-4 * v[i] * (1 + sin(step));
         const double g[3] = { sin(0.1 * step), 0, -9.81 }, up[3] = { 0, 0, 0.01 * cos(step) };
-        if (nsd_gravity(r, g) || nsd_boundary_velocity(r, 5, up) ||
+        if (nsd_gravity(r, g) || nsd_wall_velocity(r, 5, up) ||
             nsd_friction(r, "ball", "wall", step < 20 ? 0.3 : 0.1) || nsd_step(r, 1))
             return 1;
     }
@@ -207,9 +207,8 @@ static int act(struct nsd_run *r, int n)
 
 static bool same(struct nsd_run *a, struct nsd_run *b)
 {
-    static const char *const names[] = { "position",          "velocity",
-                                         "orientation",       "angular_velocity",
-                                         "boundary_position", "boundary_velocity" };
+    static const char *const names[] = { "position",         "velocity",      "orientation",
+                                         "angular_velocity", "wall_position", "wall_velocity" };
     bool equal = number(a, "time") == number(b, "time");
     for (int k = 0; k < 6; k++) {
         int64_t n, m;
@@ -274,21 +273,21 @@ static void test_lasting(void)
     struct nsd_run *r = scene(light), *twin = scene(light), *rest;
     const char *path = path_of("lasting.h5"), *a = path_of("all.h5"), *b = path_of("rest.h5");
     must(nsd_append(r, path) || nsd_force(r, 1, f, torque, NSD_LASTING) ||
-             nsd_boundary_force(r, 0, -4, NSD_LASTING) || nsd_step(r, 10) ||
+             nsd_wall_force(r, 0, -4, NSD_LASTING) || nsd_step(r, 10) ||
              nsd_force(r, 0, f, torque, NSD_ONCE) || nsd_append(r, path) || nsd_finish(r),
          r);
     must(nsd_from_document(&rest, path) || nsd_step(rest, 10) || nsd_save(rest, b), rest);
     must(nsd_force(r, 0, none, none, NSD_ONCE) || nsd_step(r, 10) || nsd_save(r, a), r);
     const double *m = array(rest, "mass", NULL), *v = array(rest, "velocity", NULL);
-    const double *u = array(rest, "boundary_velocity", NULL);
+    const double *u = array(rest, "wall_velocity", NULL);
     ok(close_to(v[3], f[0] / m[1] * 0.02) && close_to(v[5], f[2] / m[1] * 0.02) && v[0] == 0 &&
            close_to(u[2], -4 * 0.02 / 2),
        "a run that is resumed goes on with the forces that last: v = F t/m");
     ok(same(r, rest), "and that is what the run itself does, bit for bit");
     nsd_close(&rest);
     must(nsd_from_document(&rest, a), NULL);
-    must(nsd_force(rest, 1, none, none, NSD_LASTING) ||
-             nsd_boundary_force(rest, 0, 0, NSD_LASTING) || nsd_save(rest, b),
+    must(nsd_force(rest, 1, none, none, NSD_LASTING) || nsd_wall_force(rest, 0, 0, NSD_LASTING) ||
+             nsd_save(rest, b),
          rest);
     nsd_close(&rest), nsd_close(&r);
     must(nsd_from_document(&rest, b), NULL);
@@ -636,9 +635,9 @@ static void test_errors(void)
         { nsd_force(r, 0, bad, NULL, NSD_ONCE), NSD_DATA, "a force that is nan" },
         { nsd_force(r, 0, f, NULL, (enum nsd_term)7), NSD_USAGE, "a force of no term" },
         { nsd_gravity(r, bad), NSD_DATA, "gravity that is nan" },
-        { nsd_boundary_force(r, 0, 1, NSD_ONCE), NSD_DATA, "a boundary without a load" },
-        { nsd_boundary_force(r, 77, 1, NSD_ONCE), NSD_DATA, "no boundary" },
-        { nsd_boundary_velocity(r, -1, f), NSD_DATA, "a negative boundary" },
+        { nsd_wall_force(r, 0, 1, NSD_ONCE), NSD_DATA, "a boundary without a load" },
+        { nsd_wall_force(r, 77, 1, NSD_ONCE), NSD_DATA, "no boundary" },
+        { nsd_wall_velocity(r, -1, f), NSD_DATA, "a negative boundary" },
         { nsd_friction(r, "ball", "cheese", 0.1), NSD_DATA, "no kind" },
         { nsd_friction(r, "ball", "wall", -1), NSD_DATA, "negative friction" },
         { nsd_add(r, &b, NULL), NSD_USAGE, "bodies without a place" },
@@ -686,48 +685,14 @@ static double some(void)
     return draw(20) ? 1e-3 * ((double)draw(2001) - 1000) : odd[draw(8)];
 }
 
-static const char *const words[] = { "tolerance",
-                                     "local",
-                                     "threads",
-                                     "warm",
-                                     "dt",
-                                     "contacts",
-                                     "forces",
-                                     "layers",
-                                     "box",
-                                     "overlap-rule",
-                                     "theta",
-                                     "1e-6",
-                                     "sbp",
-                                     "2",
-                                     "true",
-                                     "false",
-                                     "1e-3",
-                                     "auto:0.01",
-                                     "z:3",
-                                     "0,1,0,1",
-                                     "gap",
-                                     "keep",
-                                     "project",
-                                     "0.5",
-                                     "position",
-                                     "force",
-                                     "force_once",
-                                     "torque",
-                                     "contact_force",
-                                     "boundary_force",
-                                     "contact_body",
-                                     "id",
-                                     "ball",
-                                     "wall",
-                                     "stress",
-                                     "energy",
-                                     "all",
-                                     "displacement",
-                                     "step",
-                                     "natural",
-                                     "",
-                                     NULL };
+static const char *const words[] = {
+    "tolerance",     "local",      "threads",      "warm",      "dt",      "contacts",   "forces",
+    "layers",        "box",        "overlap-rule", "theta",     "1e-6",    "sbp",        "2",
+    "true",          "false",      "1e-3",         "auto:0.01", "z:3",     "0,1,0,1",    "gap",
+    "keep",          "project",    "0.5",          "position",  "force",   "force_once", "torque",
+    "contact_force", "wall_force", "contact_body", "id",        "ball",    "wall",       "stress",
+    "energy",        "all",        "displacement", "step",      "natural", "",           NULL
+};
 enum { WORDS = sizeof words / sizeof words[0] };
 
 static const char *const scenes[] = {
@@ -762,7 +727,7 @@ static void call(struct nsd_run **run)
                             .velocity = draw(2) ? x + 3 : NULL,
                             .mass = draw(3) ? NULL : x + 2,
                             .density = some(),
-                            .kind = draw(3) ? NULL : id };
+                            .material = draw(3) ? NULL : id };
     switch (draw(21)) {
     case 19:
         nsd_velocity(r, id[0], draw(3) ? x : NULL, draw(3) ? x + 3 : NULL);
@@ -784,10 +749,10 @@ static void call(struct nsd_run **run)
         nsd_force(r, id[0], x, draw(2) ? x + 3 : NULL, (enum nsd_term)draw(3));
         break;
     case 5:
-        nsd_boundary_force(r, id[0], x[0], (enum nsd_term)draw(3));
+        nsd_wall_force(r, id[0], x[0], (enum nsd_term)draw(3));
         break;
     case 6:
-        nsd_boundary_velocity(r, id[0], x);
+        nsd_wall_velocity(r, id[0], x);
         break;
     case 7:
         nsd_gravity(r, draw(9) ? x : NULL);
@@ -888,8 +853,8 @@ static void test_missing(void)
         { nsd_names(NULL, &json), NSD_USAGE, "no run: nsd_names" },
         { nsd_measure(NULL, "all", &json), NSD_USAGE, "no run: nsd_measure" },
         { nsd_force(NULL, 0, x, x, NSD_ONCE), NSD_USAGE, "no run: nsd_force" },
-        { nsd_boundary_force(NULL, 0, 1, NSD_ONCE), NSD_USAGE, "no run: nsd_boundary_force" },
-        { nsd_boundary_velocity(NULL, 0, x), NSD_USAGE, "no run: nsd_boundary_velocity" },
+        { nsd_wall_force(NULL, 0, 1, NSD_ONCE), NSD_USAGE, "no run: nsd_wall_force" },
+        { nsd_wall_velocity(NULL, 0, x), NSD_USAGE, "no run: nsd_wall_velocity" },
         { nsd_velocity(NULL, 0, x, x), NSD_USAGE, "no run: nsd_velocity" },
         { nsd_gravity(NULL, x), NSD_USAGE, "no run: nsd_gravity" },
         { nsd_friction(NULL, "ball", "ball", 0), NSD_USAGE, "no run: nsd_friction" },

@@ -359,15 +359,16 @@ static void test_material(void)
 {
     struct packing p;
     struct failure failure;
-    if (!ok(!build(&p,
-                   "{\"dt\": 1e-4, \"mu\": 0.3, \"e_n\": 0.2, \"kinds\": {\"steel\": {\"density\":"
-                   "7800}}, \"pairs\": [{\"pair\": [\"steel\", \"wall\"], \"mu\": 0.1}],"
-                   "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"steel\"},"
-                   "{\"x\": [3, 0, 0], \"radius\": 1, \"mass\": 5, \"w\": [1, 2, 3]},"
-                   "{\"x\": [6, 0, 0], \"radius\": 1, \"fixed\": true, \"v\": [0, 1, 0]}],"
-                   "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 3, 4],"
-                   "\"velocity\": [1, 0, 0]}]}",
-                   NULL, &failure),
+    if (!ok(!build(
+                &p,
+                "{\"dt\": 1e-4, \"mu\": 0.3, \"e_n\": 0.2, \"materials\": {\"steel\": {\"density\":"
+                "7800}}, \"pairs\": [{\"pair\": [\"steel\", \"wall\"], \"mu\": 0.1}],"
+                "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1, \"material\": \"steel\"},"
+                "{\"x\": [3, 0, 0], \"radius\": 1, \"mass\": 5, \"w\": [1, 2, 3]},"
+                "{\"x\": [6, 0, 0], \"radius\": 1, \"fixed\": true, \"v\": [0, 1, 0]}],"
+                "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 3, 4],"
+                "\"velocity\": [1, 0, 0]}]}",
+                NULL, &failure),
             "materials %s", failure.text))
         return;
     int32_t k = p.materials;
@@ -512,8 +513,8 @@ static void test_bad_scenes(void)
           "shape orientation v w kind density mass fixed name" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
           "2:43: bodies[0].mass: density is given too" },
-        { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"kind\": \"glass\"}"),
-          "2:43: bodies[0].kind: no kind \"glass\"; name it under \"kinds\"" },
+        { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"material\": \"glass\"}"),
+          "2:43: bodies[0].kind: no kind \"glass\"; name it under \"materials\"" },
         { BODY("{\"count\": 3, \"radius\": 1}"), "2:13: bodies[0].box: is missing" },
         { BODY("{\"count\": 3, \"radius\": 1, \"box\": {\"x\": [0, 1], \"z\": [0, 1]}}"),
           "2:39: bodies[0].box: a lattice may be open above only, y is not closed" },
@@ -542,7 +543,7 @@ static void test_bad_scenes(void)
           "\"ball\"]}]}",
           "1:50: pairs[1].pair: this pair was given before" },
         { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wal\"]}]}",
-          "1:39: pairs[0].pair[1]: no kind \"wal\"; name it under \"kinds\"" },
+          "1:39: pairs[0].pair[1]: no kind \"wal\"; name it under \"materials\"" },
         { "{\"dt\": 1, \"a\\nb\": 1}", NULL }, // one line, whatever the key
         { "{\"dt\": 1e400}", NULL },
         { "{\"dt\": NaN}", NULL },
@@ -592,9 +593,9 @@ static void test_damage(void)
 static const char *const whole_scene[] = {
     "{\"title\": \"all\", \"dim\": 3, \"dt\": 1e-3, \"theta\": 0.5, \"gravity\": [0, 0, -9.81],"
     "\"seed\": 3, \"density\": 2500, \"mu\": 0.3, \"e_n\": 0.1, \"e_t\": 0, \"time\": 0,"
-    "\"allow_overlap\": true, \"kinds\": {\"steel\": {\"density\": 7800}},"
+    "\"allow_overlap\": true, \"materials\": {\"steel\": {\"density\": 7800}},"
     "\"pairs\": [{\"pair\": [\"ball\", \"steel\"], \"mu\": 0.1, \"e_n\": 0.5, \"e_t\": 0.1}],"
-    "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 0, 1], \"kind\": \"steel\","
+    "\"walls\": [{\"point\": [0, 0, -2], \"normal\": [0, 0, 1], \"material\": \"steel\","
     "  \"load\": {\"along\": [0, 0, 1], \"mass\": 2, \"force\": 3, \"speed\": 0.1}},"
     " {\"box\": {\"x\": [-20, 20], \"y\": [-20, 20], \"z\": [-1, null]}, \"until\": 9},"
     " {\"rectangle\": {\"center\": [0, 0, 0], \"normal\": [0, 0, 1], \"along\": [1, 0, 0],"
@@ -611,7 +612,7 @@ static const char *const whole_scene[] = {
     " {\"sphere\": {\"center\": [0, 0, 0], \"radius\": 30, \"side\": \"outside\"}},"
     " {\"mesh\": {\"file\": \"none.stl\", \"scale\": 2, \"at\": [0, 0, 0]}}],"
     "\"bodies\": [{\"x\": [0, 0, 0], \"radius\": 1, \"v\": [0, 0, 0], \"w\": [0, 0, 0],"
-    "  \"kind\": \"steel\", \"density\": 3, \"fixed\": true},"
+    "  \"material\": \"steel\", \"density\": 3, \"fixed\": true},"
     " {\"count\": 3, \"radius\": {\"uniform\": [0.1, 0.2]}, \"box\": {\"x\": [0, 9], \"y\": [0, 9],"
     "  \"z\": [0, null]}, \"cells\": \"own\", \"spacing\": 1.1, \"jitter\": 0.5, \"thermal\": 0.1,"
     "  \"mass\": 3}, {\"file\": \"balls\", \"v\": [0, 0, 0]},"
@@ -625,10 +626,11 @@ static const char *const whole_scene[] = {
     "\"pour\": [{\"rate\": 9, \"radius\": {\"power\": {\"exponent\": 3, \"min\": 0.1, \"max\": "
     "0.2}},"
     "  \"opening\": {\"disc\": {\"center\": [0, 0, 8], \"normal\": [0, 0, 1], \"radius\": 3}},"
-    "  \"v\": [0, 0, -0.5], \"w\": [0, 0, 0], \"kind\": \"steel\", \"mass\": 2, \"from\": 0.1,"
+    "  \"v\": [0, 0, -0.5], \"w\": [0, 0, 0], \"material\": \"steel\", \"mass\": 2, \"from\": 0.1,"
     "  \"until\": 0.5, \"count\": 9}, {\"mass_rate\": 9, \"radius\": 0.1, \"density\": 3,"
     "  \"opening\": {\"box\": {\"x\": [0, 1], \"y\": [0, 1], \"z\": [0, 1]}}}],"
-    "\"remove\": [{\"outside\": {\"x\": [-9, 9]}, \"kind\": \"steel\"}, {\"inside\": {\"y\": [5, "
+    "\"remove\": [{\"outside\": {\"x\": [-9, 9]}, \"material\": \"steel\"}, {\"inside\": {\"y\": "
+    "[5, "
     "6]}},"
     " {\"below\": {\"point\": [0, 0, -9], \"normal\": [0, 0, 1]}}]}",
 

@@ -13,11 +13,11 @@ near() { jq -en "($1 - $2 | fabs) <= $3" >/dev/null; }
 
 # A ball of 20 mm falls with 2 m/s on two layers of balls of 2 mm.
 jq -n '{dt: 5e-5, gravity: [0, 0, -9.8], density: 2500, mu: 0.3, e_n: 0.4, overlap: true,
-    kinds: {steel: {density: 7200}}, walls: [{point: [0, 0, 0], normal: [0, 0, 1]}],
+    materials: {steel: {density: 7200}}, walls: [{point: [0, 0, 0], normal: [0, 0, 1]}],
     bodies: ([range(-3; 4) as $i | range(-3; 4) as $j | {x: [0.002 * $i, 0.002 * $j, 0.001], radius: 0.001}] +
         [range(-3; 3) as $i | range(-3; 3) as $j |
             {x: [0.002 * $i + 0.001, 0.002 * $j + 0.001, 0.0024142], radius: 0.001}] +
-        [{x: [2e-4, 1e-4, 0.0134], radius: 0.01, v: [0, 0, -2], kind: "steel"}])}' | nsd-gen - >"$tmp/bed.h5"
+        [{x: [2e-4, 1e-4, 0.0134], radius: 0.01, v: [0, 0, -2], material: "steel"}])}' | nsd-gen - >"$tmp/bed.h5"
 rebound() { nsd-step --solver auto "$@" -n 60 "$tmp/bed.h5" 2>/dev/null | bodies | jq 'select(.radius > 0.009).v[2]'; }
 exact=$(rebound --cold --criterion natural --tolerance 1e-9)
 for o in "" --cold "--order natural"; do

@@ -392,9 +392,9 @@ for part in 1.02 0.98; do
 done
 
 # a chain of balls is peeled off a floor: w S a ball
-jq -n '{ dt: 5e-7, mu: 0.3, gravity: [0, 0, 0], kinds: { hook: {} }, pairs: [{ pair: ["ball", "wall"], adhesion: { c_n: 1e12, w: 1, area: 1e-7 } },
+jq -n '{ dt: 5e-7, mu: 0.3, gravity: [0, 0, 0], materials: { hook: {} }, pairs: [{ pair: ["ball", "wall"], adhesion: { c_n: 1e12, w: 1, area: 1e-7 } },
     { pair: ["ball", "ball"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }, { pair: ["ball", "hook"], adhesion: { c_n: 1e13, w: 1e6, area: 1e-7 } }], walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }],
-    bodies: [range(0; 5) as $i | { x: [$i * 2e-3, 0, 1e-3], radius: 1e-3 } | if $i == 0 then . + { kind: "hook", density: 1e9, v: [0, 0, 1] } else . end] }' |
+    bodies: [range(0; 5) as $i | { x: [$i * 2e-3, 0, 1e-3], radius: 1e-3 } | if $i == 0 then . + { material: "hook", density: 1e9, v: [0, 0, 1] } else . end] }' |
     nsd-gen - >"$tmp/chain.h5"
 step -n 14000 --every 14000 --log "$tmp/peel.log" -o "$tmp/peeled.h5" "$tmp/chain.h5"
 like "peeling a chain of five balls, one free, costs four times w S" \
@@ -581,8 +581,8 @@ refuses 65 "a compliance with a tangential stiffness" nsd-gen <(jq -n '{ dt: 1e-
 light() # DENSITY HEIGHT V KEYS: of the heavy one, its gap and speed
 {
     jq -n --argjson density "$1" --argjson gap "$2" --argjson v "$3" --argjson more "$4" '{ density: 2500, stiffness: "auto",
-        walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], kinds: { heavy: { density: $density } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 },
-        { x: [0, 0, (0.03 + $gap)], radius: 0.01, v: [0, 0, (-$v)], kind: "heavy" }] } + $more' | nsd-gen -
+        walls: [{ normal: [0, 0, 1], point: [0, 0, 0] }], materials: { heavy: { density: $density } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 },
+        { x: [0, 0, (0.03 + $gap)], radius: 0.01, v: [0, 0, (-$v)], material: "heavy" }] } + $more' | nsd-gen -
 }
 for dt in 1e-3 1e-4; do
     light 2500 0 0 '{ "dt": '$dt' }' | step --criterion natural --tolerance 1e-12 -n 100 --every 100 -o "$tmp/stack.h5"

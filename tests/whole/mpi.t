@@ -90,9 +90,9 @@ same_small() # FILE ARGUMENT ...: the bytes of one process
 }
 ok "small steps: the bytes of one process" same_small "$tmp/heap.h5" -n 20 --every 10 --contacts
 ok "and the processes that wait are said" grep -q "the first makes all small steps" "$tmp/said"
-jq -n '{ gravity: [0, 0, -9.81], dt: 1e-3, e_n: 0.5, kinds: { heavy: { density: 2600000 } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
+jq -n '{ gravity: [0, 0, -9.81], dt: 1e-3, e_n: 0.5, materials: { heavy: { density: 2600000 } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
     bodies: ([range(3) as $i | range(3) as $j | range(3) as $k | { x: [0.021 * $i, 0.021 * $j, 0.0101 + 0.0203 * $k], radius: 0.01 }] +
-        [{ x: [0.021, 0.021, 0.08], radius: 0.01, kind: "heavy", v: [0, 0, -1] }]) }' | nsd-gen - >"$tmp/heavy.h5"
+        [{ x: [0.021, 0.021, 0.08], radius: 0.01, material: "heavy", v: [0, 0, -1] }]) }' | nsd-gen - >"$tmp/heavy.h5"
 ok "among steps that are made at once, too" same_small "$tmp/heavy.h5" -n 60
 
 # ---- a program in the loop, which the first process talks to ----

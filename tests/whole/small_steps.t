@@ -39,8 +39,8 @@ ok "and rises with it" near "$(body '.x[2]')" 0.015 1e-5
 # A ball of 20 mm on two layers of 2 mm, at 2 m/s with e 0.4: 0.62 to 0.72 m/s by Newton's law for simultaneous impacts
 jq -n '[range(7) as $i | range(7) as $j | { x: [0.002 * ($i - 3), 0.002 * ($j - 3), 0.001], radius: 0.001 }] +
     [range(6) as $i | range(6) as $j | { x: [0.002 * ($i - 2.5), 0.002 * ($j - 2.5), 0.00242], radius: 0.001 }] +
-    [{ x: [0, 0, 0.0135], radius: 0.01, v: [0, 0, -2], kind: "steel" }] | { dim: 3, dt: 5e-5, gravity: [0, 0, -9.8],
-    density: 2500, mu: 0.3, e_n: 0.4, overlap: true, kinds: { steel: { density: 7200 } },
+    [{ x: [0, 0, 0.0135], radius: 0.01, v: [0, 0, -2], material: "steel" }] | { dim: 3, dt: 5e-5, gravity: [0, 0, -9.8],
+    density: 2500, mu: 0.3, e_n: 0.4, overlap: true, materials: { steel: { density: 7200 } },
     walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: . }' | nsd-gen - >"$tmp/in.h5"
 for dt in 5e-5 1e-5; do
     steps=$(jq -n "0.003 / $dt | round")
@@ -61,7 +61,7 @@ for e in 0 0.5 0.9; do
 done
 
 for ratio in 300 3000; do
-    scene "$floor, kinds: { heavy: { density: ($ratio * 2600) } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }, { x: [0, 0, 0.03], radius: 0.01, kind: \"heavy\" }]"
+    scene "$floor, materials: { heavy: { density: ($ratio * 2600) } }, bodies: [{ x: [0, 0, 0.01], radius: 0.01 }, { x: [0, 0, 0.03], radius: 0.01, material: \"heavy\" }]"
     ok "a ball that carries $ratio times its mass sinks by less than 0.003 radii, in small steps" \
         eval 'small_alone 200 && near "$(last .max_overlap)" 0 3e-3 && near "$(body ".x[2]")" 0.01 3e-5'
 done

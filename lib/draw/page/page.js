@@ -59,7 +59,7 @@ async function load(k) {
   f.radius = take(grains, Float32Array, n);
   f.mass = take(grains, Float32Array, n);
   f.id = take(grains, Int32Array, n);
-  f.kind = take(grains, Int32Array, n);
+  f.material = take(grains, Int32Array, n);
   f.shape = m.h === undefined ? null : take(grains, Int32Array, n); // null: all are balls
   f.solids = m.h === undefined ? [] : solids(await chunk('s' + m.h), 's' + m.h);
   f.shown = images(f);
@@ -179,7 +179,7 @@ const colours = {
   radius: { unit: 'm', range: R.radius, of: each((f, i) => f.radius[i]) },
   height: { unit: 'm', range: [R.lo[up], R.hi[up]], of: each((f, i) => place(f, i)[up]) },
   spin: { unit: 'rad/s', range: [0, R.spin], of: each(spin) },
-  kind: { classes: meta.kinds, of: each((f, i) => f.kind[i]) },
+  material: { classes: meta.materials, of: each((f, i) => f.material[i]) },
   id: { classes: [], of: each((f, i) => f.id[i]) },
 };
 if (meta.solved) {
@@ -529,7 +529,7 @@ function show_picked(f) {
   }
   const table = document.createElement('table'), v = velocity(f, i);
   row(table, 'id', f.id[i]);
-  row(table, 'kind', meta.kinds[f.kind[i]]);
+  row(table, 'material', meta.materials[f.material[i]]);
   row(table, 'radius', complete(f.radius[i]) + ' m');
   row(table, 'mass', complete(f.mass[i]) + ' kg');
   row(table, 'position', place(f, i).slice(0, meta.dim).map(complete).join(', ') + ' m');
