@@ -9,6 +9,7 @@
 # make gallery    experiments beside what is published     QUICK=1       small, in minutes
 # make gallery-reference   the same by an independent code; gallery-keep, gallery-page put both on the page
 # make peers      seven jobs by nsd, LIGGGHTS and Yade    QUICK=1        small, in minutes
+# make claims     what the pages claim, by the commands of tests/project/claims
 # make site       all pages and manuals as HTML, build/site  make drawings  docs/drawings, from scripts/drawings
 # make deb        Debian packages, in build/deb
 #
@@ -187,7 +188,7 @@ REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/claims project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 
@@ -381,6 +382,10 @@ $(COOKBOOK): scripts/man/cookbook.sh $(wildcard cookbook/* cookbook/*/*)
 $(SCENE): build/man/%: man/% $(KEYED) scripts/man/keys.sh $B/nsd-gen
 	@mkdir -p $(@D)
 	$(call Q,MAN,$@)PATH=$(CURDIR)/$B:$$PATH scripts/man/keys.sh $< > $@
+
+# What the pages claim, the slow ones too
+claims: all
+	NSD_CLAIMS=all $(PROVE) tests/project/claims.t
 
 # All pages, manuals and recipes as static HTML, by scripts/site/site.py; docs: its former name
 docs site: setup-site $(MANUALS)
