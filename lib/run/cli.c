@@ -274,6 +274,8 @@ static void no_such_option(const char *text, const struct option *known)
     char begun[200] = "";
     struct nearest near = { 0 };
     const struct renamed *renamed = renamed_find(tool.name, name, n);
+    const char *cure = gone_find(tool.name, name, n);
+    if (cure) die_usage("--%.*s is no longer available: %s", (int)n, name, cure);
     if (renamed) die_usage("--%.*s: now called --%s", (int)n, name, renamed->is);
     for (const struct option *o = known; o->name; o++) {
         const size_t at = strlen(begun);
