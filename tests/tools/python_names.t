@@ -49,7 +49,8 @@ run()
 import sys
 import nsd
 with nsd.Run.from_scene(sys.argv[1]) as run:
-    assert run.names == {"materials": ["ball", "wall", "steel"], "shapes": ["ball", "cube"],
+    steel = ["ball", "wall", "steel"]
+    assert run.names == {"materials": steel, "kinds": steel, "shapes": ["ball", "cube"],
                          "walls": ["floor", "side", "side", None], "groups": ["first"], "named": {"floor": [0], "side": [1, 2]}}, run.names
     run.move_wall("side", [0, 0, 0.25])
     assert [list(v) for v in run.wall_velocity] == [[0, 0, 0], [0, 0, 0.25], [0, 0, 0.25], [0, 0, 0]]
