@@ -80,7 +80,7 @@ class _Handle:
             if 0 in described.shape[:described.rank]:
                 return np.zeros(tuple(described.shape[:described.rank]), _DTYPES[described.type])
             view = np.asarray(owner)
-            if name.startswith((b"contact_", b"boundary_", b"cell_")):
+            if name.startswith((b"contact_", b"wall_", b"cell_")):
                 return view.copy()
             self.views.add(owner)
         return view
@@ -594,12 +594,12 @@ for _name, _text in {
     "mass": "[n] kg; 0: fixed", "inertia": "[n] kg m^2", "id": "[n] numbers that stay with bodies", "material": "[n] number of the material",
     "shape": "[n] number of the shape, 0: a ball", "group": "[n] 1 + number of the group's name, 0: none",
     "image": "[n, 3] edges of the periodic cell to add to position",
-    "contact_body": "[c, 2] ids of bodies a and b; -1-w: boundary w", "contact_point": "[c, 3] m",
+    "contact_body": "[c, 2] ids of bodies a and b; -1-w: wall w", "contact_point": "[c, 3] m",
     "contact_normal": "[c, 3] unit vectors from a to b", "contact_gap": "[c] m; negative: overlap",
     "contact_friction": "[c] coefficients", "contact_force": "[c, 3] N: on b",
     "contact_velocity": "[c, 3] m/s: of b relative to a, as it enters the contact law", "contact_status": "[c] 0 free, 1 stick, 2 slide",
     "wall_position": "[b, 3] m", "wall_normal": "[b, 3] unit normals or axes", "wall_velocity": "[b, 3] m/s",
-    "wall_angular_velocity": "[b, 3] rad/s", "wall_force": "[b, 3] N: force of the bodies on the boundary",
+    "wall_angular_velocity": "[b, 3] rad/s", "wall_force": "[b, 3] N: force of the bodies on the wall",
     "wall_torque": "[b, 3] N m: torque of the same about wall_position, rolling and pivoting included",
     "cell_origin": "[3] m: of the periodic cell, see cell; [0]: none", "cell_edges": "[3, 3] m: one per row; [0, 3]: none",
     "cell_rates": "[3, 3] m/s: velocities of the edges; [0, 3]: none", "cell_periodic": "[3] 1: periodic along this edge; [0]: none",

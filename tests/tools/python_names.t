@@ -57,7 +57,7 @@ with nsd.Run.from_scene(sys.argv[1]) as run:
     run.set(only="side", contacts=True)
     run.step(2)
     assert run.measure("boundaries")["boundaries"]["boundary"] == [1, 2]
-    for key, name, heard in ("only", "lid", "only: no 'lid' here, but floor, side"), ("tracer", "gravel", "tracer: no kind 'gravel'"):
+    for key, name, heard in ("only", "lid", "only: no 'lid' here, but floor, side"), ("tracer", "gravel", "tracer: no material 'gravel'"):
         run.set(**{key: name, "contacts": False})
         try:
             run.measure("fraction")

@@ -510,11 +510,11 @@ static void test_bad_scenes(void)
                      "random import" },
         { BODY("{\"x\": [0, 0, 0], \"raduis\": 1}"),
           "2:30: bodies[0].raduis: unknown key; did you mean \"radius\"? known here: x radius size "
-          "shape orientation v w kind density mass fixed name" },
+          "shape orientation v w material density mass fixed name" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"mass\": 1, \"density\": 1}"),
           "2:43: bodies[0].mass: density is given too" },
         { BODY("{\"x\": [0, 0, 0], \"radius\": 1, \"material\": \"glass\"}"),
-          "2:43: bodies[0].kind: no kind \"glass\"; name it under \"materials\"" },
+          "2:43: bodies[0].material: no material \"glass\"; name it under \"materials\"" },
         { BODY("{\"count\": 3, \"radius\": 1}"), "2:13: bodies[0].box: is missing" },
         { BODY("{\"count\": 3, \"radius\": 1, \"box\": {\"x\": [0, 1], \"z\": [0, 1]}}"),
           "2:39: bodies[0].box: a lattice may be open above only, y is not closed" },
@@ -543,7 +543,7 @@ static void test_bad_scenes(void)
           "\"ball\"]}]}",
           "1:50: pairs[1].pair: this pair was given before" },
         { "{\"dt\": 1, \"pairs\": [{\"pair\": [\"ball\", \"wal\"]}]}",
-          "1:39: pairs[0].pair[1]: no kind \"wal\"; name it under \"materials\"" },
+          "1:39: pairs[0].pair[1]: no material \"wal\"; name it under \"materials\"" },
         { "{\"dt\": 1, \"a\\nb\": 1}", NULL }, // one line, whatever the key
         { "{\"dt\": 1e400}", NULL },
         { "{\"dt\": NaN}", NULL },
