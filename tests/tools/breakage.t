@@ -98,8 +98,8 @@ ok "by Tavares to what his equation gives" py "$tmp/tavares.py" "$(tail -n 1 "$t
 
 scene '{ "by": "force", "strength": 1e3, "modulus": 3, "size": 2e-3, "smallest": 1e-3 }' \
     '[{ "count": 1000, "radius": 1e-3, "kind": "g", "jitter": 0, "box": { "x": [0, 0.1], "y": [0, 0.1], "z": [0, 2.2e-3] } }]' \
-    '"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }], "gravity": [0, 0, -9.81]' | nsd-gen - >"$tmp/grains.h5"
-step -n 300 "$tmp/grains.h5" --every 300 >"$tmp/loaded.h5"
+    '"walls": [{ "point": [0, 0, 5e-5], "normal": [0, 0, 1] }], "gravity": [0, 0, -9.81]' | nsd-gen - >"$tmp/grains.h5"
+step -n 3 "$tmp/grains.h5" --every 3 >"$tmp/loaded.h5"
 cat >"$tmp/weibull.py" <<'END'
 import sys, h5py, numpy as np
 with h5py.File(sys.argv[1], 'r') as f:
