@@ -49,8 +49,6 @@ static const struct cli_option own[] = {
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
       .help = "sweep until at most a part B of the impulses is missing [none]" },
-    { CLI_INT, 0, "substeps", &options.substeps, "N", .min = 1, .max = 1e6,
-      .help = "divide steps in which fast bodies meet into at most N [1000]" },
     { CLI_EVERY, 0, "every", &every, "K|T",
       "keep every K-th step, or one per time T: 0.1s, 5ms, and the last [1]", .max = 1e15 },
     { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
@@ -132,8 +130,6 @@ static const char *cure(enum account_row row, const struct report *r)
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
-    if (row == ACCOUNT_TUNNELLED && options.substeps == 1 && !r->small)
-        return "--substeps finds such contacts, and so does a smaller dt";
     return account_watched[row].cure;
 }
 
@@ -231,7 +227,7 @@ static void summary(int64_t made)
             "or bodies are too fast for them",
             (long long)(made - total.small));
     if (total.divided)
-        warn("%lld steps were divided into %lld substeps, because fast bodies met in them",
+        warn("%lld steps that were made at once were divided into %lld parts",
              (long long)total.divided, (long long)total.substeps);
     if (total.abandoned)
         warn("%lld steps were given up before their limits", (long long)total.abandoned);

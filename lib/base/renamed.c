@@ -26,6 +26,20 @@ static const struct renamed table[] = {
 };
 enum { RENAMED = sizeof table / sizeof table[0] };
 
+static const struct {
+    const char *in, *was, *cure;
+} gone[] = {
+    { "nsd-step nsd_set", "substeps", "small steps, the default, find what fast bodies meet" },
+};
+
+const char *gone_find(const char *in, const char *was, size_t n)
+{
+    for (size_t k = 0; k < sizeof gone / sizeof gone[0]; k++)
+        if (words_have(gone[k].in, in, strlen(in)) && words_have(gone[k].was, was, n))
+            return gone[k].cure;
+    return NULL;
+}
+
 bool words_have(const char *words, const char *word, size_t n)
 {
     for (const char *s = words; s && *s; s += strcspn(s, " ")) {

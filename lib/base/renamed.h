@@ -16,6 +16,8 @@ struct renamed {
 
 /* The row of the n bytes of a name in a tool, "nsd_set", "scene" or "document"; NULL: it was never renamed */
 const struct renamed *renamed_find(const char *in, const char *was, size_t n);
+/* The same of an option that there is no more: what to do instead; NULL: there was none */
+const char *gone_find(const char *in, const char *was, size_t n);
 /* Row k of the table; NULL past the last */
 const struct renamed *renamed_at(int k);
 /* Are these n bytes among words with blanks between? */

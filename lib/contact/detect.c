@@ -7,7 +7,6 @@
 #include "contact/detect_shapes.h"
 #include "contact/internal_edge.h"
 #include "contact/seek.h"
-#include "contact/tunnelling.h"
 #include "state/freedom.h"
 #include "state/kinematics.h"
 #include "state/rotation.h"
@@ -109,7 +108,7 @@ static bool add_plane(struct contacts *out, const struct sought *o, int64_t firs
         if (!(touch.distance - p->radius[i] <= gap)) continue;
         if (!packing_may_meet(p, -1 - w, (int32_t)i)) continue;
         if (o->all.shaped && packing_shape(p, i)) {
-            if (!detect_shapes_wall(out, &o->all, w, i, gap, v3(0, 0, 0))) return false;
+            if (!detect_shapes_wall(out, &o->all, w, i, gap)) return false;
             continue;
         }
         if (!add_touch(out, p, w, i, x[i], &touch)) return false;
@@ -128,8 +127,7 @@ static bool detect_add_body(struct contacts *out, const struct sought *o, const 
     const struct surface *surface = situation_surface(&o->all, w);
     double r = p->radius[i];
     struct touch touch[TOUCHES_MOST];
-    if (o->all.shaped && packing_shape(p, i))
-        return detect_shapes_wall(out, &o->all, w, i, o->gap, v3(0, 0, 0));
+    if (o->all.shaped && packing_shape(p, i)) return detect_shapes_wall(out, &o->all, w, i, o->gap);
     vec3 c = v3_sub(quat_turn_back(pose->q, v3_sub(o->all.x[i], pose->shift)), wall->x);
     int n = surface ? surface_touches(surface, c, r + o->gap, touch)
                     : wall_nearest(wall, p->dim, c, r, touch);
@@ -145,14 +143,10 @@ static bool detect_add_shape(struct contacts *out, const struct sought *o, int64
                              int64_t end)
 {
     const struct packing *p = o->all.p;
-    const double most = tunnelling_beside(p, o->wall);
     struct pose pose = wall_pose(p, &p->wall[o->wall], o->all.t);
     for (int64_t i = first; i < end; i++) {
         if (!packing_may_meet(p, -1 - o->wall, (int32_t)i)) continue;
-        int64_t before = out->n;
         if (!detect_add_body(out, o, &pose, i)) return false;
-        if (tunnelling_is(p, i, most) && !tunnelling_meets_wall(out, before, &o->all, o->wall, i))
-            return false;
     }
     return true;
 }
@@ -270,7 +264,6 @@ static int detect_all(struct contacts *out, const struct packing *p, const struc
         stored = find_all(out, &o, near->list.n, shaped ? PER_THREAD_CURVED : PER_THREAD_FLAT,
                           add_pairs);
     if (!e && stored) e = seams_drop(out, &o.all, failure);
-    if (!e && stored) stored = tunnelling_meet_hulls(out, &o.all);
     placed_free(&placed);
     if (!e) e = check_crowd(near, p, seen, failure);
     neighbours_free(&once);
@@ -345,7 +338,7 @@ static void keep_seen(struct contacts *s, const struct packing *p, double gap)
     for (int64_t i = 0; i < s->n; i++) {
         bool held = s->law && contact_law_holds(&s->law[i]);
         bool seen = sees && is_seen(p, &o, &s->c[i]);
-        if (!(s->c[i].gap <= gap || held || tunnelling_ahead(&s->c[i]) || seen)) continue;
+        if (!(s->c[i].gap <= gap || held || seen)) continue;
         if (s->law) s->law[n] = s->law[i];
         s->c[n++] = s->c[i];
     }

@@ -344,7 +344,7 @@ static int meet_rims(const struct facing *o, const struct core *c, struct place 
 }
 
 bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32_t w, int64_t i,
-                        double gap, vec3 ahead)
+                        double gap)
 {
     static const int8_t none[3] = { 0, 0, 0 };
     const struct packing *p = all->p;
@@ -354,7 +354,6 @@ bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32
     bool plane = wall->shape == WALL_PLANE;
     vec3 at = wall_at(p, wall, all->t), n = wall_normal(p, wall, all->t), ends[2];
     struct core wall_core;
-    o.pose.shift = v3_sub(o.pose.shift, ahead);
     if (plane && v3_dot(v3_sub(s->x[i], at), n) > reach_of(&o)) return true;
     if (convex_wall(&o, ends, &wall_core)) return meet_convex(out, s, w, i, &wall_core, gap);
     struct place place[CORNERS];

@@ -22,7 +22,6 @@ enum {
    pair->shift: as of a contact. Law and point are set. False when memory is short. */
 bool detect_shapes_pair(struct contacts *out, const struct placed *s, const struct pair *pair,
                         vec3 away, double gap);
-/* Contacts of body i, which is shaped, with wall w. ahead: not of a plane, the body is sought as far (m) from
-   where it is, and places are relative to where it is. */
+/* Contacts of body i, which is shaped, with wall w */
 bool detect_shapes_wall(struct contacts *out, const struct situation *all, int32_t w, int64_t i,
-                        double gap, vec3 ahead);
+                        double gap);

@@ -1,7 +1,6 @@
 #include "contact/internal_edge.h"
 
 #include "contact/detect_shapes.h"
-#include "contact/tunnelling.h"
 #include "shape/gjk.h"
 #include "shape/mesh.h"
 #include "shape/wall_edge.h"
@@ -268,7 +267,6 @@ static bool at_seam(const struct internal_edge_meeting *w, const struct internal
 /* Can it be one with the rim of a wall, or of a body? */
 static bool internal_edge_may_be(const struct situation *o, const struct contact *c)
 {
-    if (tunnelling_ahead(c)) return false;
     if (c->a >= 0) return !internal_edge_moves(o, c->a) || !internal_edge_moves(o, c->b);
     int32_t w = -1 - c->a;
     const struct wall *wall = &o->p->wall[w];

@@ -83,7 +83,7 @@ json_t *json_report(const struct report *r)
     for (const struct field *f = report_fields; f->name; f++)
         if (f->offset >= ERR_AT + sizeof r->err)
             json_object_set_new(j, f->name, json_field(f, (const char *)r + f->offset));
-    if (r->watched) json_object_set_new(j, "tunnelled", json_integer(r->tunnelled));
+    if (r->watched) json_object_set_new(j, "fast", json_integer(r->fast));
     if (r->substeps > 1) json_object_set_new(j, "substeps", json_integer(r->substeps));
     if (r->balanced) json_object_set_new(j, "balance", balance(r));
     return j;

@@ -3,7 +3,6 @@
 #include "contact/depth.h"
 
 #include "contact/detect.h"
-#include "contact/time_of_impact.h"
 #include "contact/touching.h"
 #include "contact/tunnelling.h"
 #include "mpi/blocks.h"
@@ -94,8 +93,7 @@ static void find_contacts(struct rank_step *y, double gap, double reach, struct 
 {
     struct subdomain *part = &y->part;
     struct failure failure = { 0 };
-    double ahead = comm_most(part->comm, tunnelling_reach(&part->p));
-    if (subdomain_deal(part, fmax(reach, ahead))) neighbours_free(&y->near);
+    if (subdomain_deal(part, reach)) neighbours_free(&y->near);
     if (detect_near(s, &part->p, reach, &y->near, &failure)) rank_step_fail(y, &failure);
     bool *keep = comm_new(part->comm, s->n, sizeof *keep);
     for (int64_t i = 0; i < s->n; i++) keep[i] = subdomain_has(part, &s->c[i]);
@@ -411,21 +409,8 @@ static int solve_by_first(struct step_makers *m, const struct packing *whole, st
                   : step_solve_contacts(whole, all, NULL, o, rep, failure);
 }
 
-static int watch_by_first(struct step_makers *m, const struct packing *whole, struct windows watch,
-                          struct report *rep, struct failure *failure)
-{
-    return step_watch_whole(whole, ((struct by_first *)m)->y->near.surface, watch, rep, failure);
-}
-
-/* Of a substep: how far the step is, and whether it ends where bodies meet */
-struct rank_step_turn {
-    const struct substeps *steps;
-    bool meets;
-};
-
 static int step_by_first(struct rank_step *y, struct packing *whole, struct contacts *all,
-                         const struct step_opt *o, const struct rank_step_turn *turn,
-                         struct report *rep, struct failure *failure)
+                         const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct by_first f = { .makers = { .helps = t->me,
@@ -435,9 +420,7 @@ static int step_by_first(struct rank_step *y, struct packing *whole, struct cont
                                       .balance = step_balance_whole,
                                       .find_unsolved = step_unsolved_whole,
                                       .move_apart = step_move_apart_whole,
-                                      .watch = watch_by_first,
-                                      .substeps = turn->steps,
-                                      .meets = turn->meets },
+                                      .watch = step_watch_whole },
                           .y = y };
     if (step_make(&f.makers, whole, all, o, rep, failure)) return failure->status;
     if (!t->me) settings_copy_motion(&y->part.p, whole);
@@ -487,49 +470,6 @@ static void measure_depth(struct rank_step *y, const struct contacts *s, struct 
     double first = comm_most(t, d->pinched ? -d->pinched_id : none);
     d->pinched = comm_sum(t, d->pinched), d->pinched_id = d->pinched ? (int32_t)-first : 0;
     d->deepest = most;
-}
-
-/* Collective. The fast bodies of all ranks */
-static struct fast_list fast_of_all(struct rank_step *y, const bool *own)
-{
-    struct comm *t = y->part.comm;
-    struct parcel mine = { 0 }, whole = { 0 }, *in = parcels_new(t);
-    struct failure failure = { 0 };
-    struct fast_list here, all = { 0 };
-    if (fast_find(&here, &y->part.p, own, &failure)) rank_step_fail(y, &failure);
-    if (comm_sum(t, here.n) > 0) {
-        parcel_put(t, &mine, here.of, (size_t)here.n * sizeof *here.of);
-        comm_gather(t, &mine, in);
-        for (int r = 0; r < t->n && !t->me; r++) parcel_put(t, &whole, in[r].bytes, in[r].size);
-        comm_spread(t, &whole);
-        all.n = (int64_t)(whole.size / sizeof *all.of);
-        all.of = comm_new(t, all.n, sizeof *all.of);
-        parcel_take(t, &whole, all.of, whole.size);
-    }
-    free(here.of);
-    parcel_free(&mine), parcel_free(&whole);
-    parcels_free(t, in);
-    return all;
-}
-
-/* Which bodies of all ranks have gone through something */
-static void watch_here(struct rank_step *y, struct windows watch, struct report *rep)
-{
-    struct comm *t = y->part.comm;
-    struct failure failure = { 0 };
-    struct passed here = { 0 }, all = { 0 };
-    const struct packing *p = &y->part.p;
-    bool *own = own_bodies(y);
-    struct fast_list fast = fast_of_all(y, own);
-    if (watch.fixed.length > 0) tunnelling_passed(&here, p, own, y->near.surface, watch.fixed);
-    if (tunnelling_count(&here, p, own, &fast, watch.bodies, watch.beyond, &failure))
-        rank_step_fail(y, &failure);
-    free(fast.of), free(own);
-    all.n = comm_sum(t, here.n);
-    double first = -comm_most(t, here.n ? -(double)here.id : -INFINITY);
-    double through = comm_most(t, here.n && here.id == first ? here.through : -INFINITY);
-    if (all.n) all.id = (int32_t)first, all.through = (int32_t)through;
-    step_report_passed(rep, &y->part.p, &all);
 }
 
 /* The step of all ranks, each with its own bodies and contacts */
@@ -619,20 +559,20 @@ static int move_apart_by_all(struct step_makers *m, struct packing *p, const str
     return 0;
 }
 
-static int watch_by_all(struct step_makers *m, const struct packing *p, struct windows watch,
-                        struct report *rep, struct failure *failure)
+static void watch_by_all(struct step_makers *m, const struct packing *p, struct report *rep)
 {
-    (void)p, (void)failure;
-    if (!report_made(rep))
-        rep->balanced = false;
-    else
-        watch_here(((struct by_all *)m)->y, watch, rep);
-    return 0;
+    struct rank_step *y = ((struct by_all *)m)->y;
+    struct comm *t = y->part.comm;
+    bool *own = own_bodies(y);
+    const int64_t here = tunnelling_count(p, own, &rep->fast_id);
+    free(own);
+    const double first = -comm_most(t, here ? -(double)rep->fast_id : -INFINITY);
+    rep->watched = rep->watched || y->part.all > 1; // which no rank has all of
+    rep->fast = comm_sum(t, here), rep->fast_id = rep->fast ? (int32_t)first : 0;
 }
 
 static int step_by_all(struct rank_step *y, struct packing *whole, struct contacts *all,
-                       const struct step_opt *o, const struct rank_step_turn *turn,
-                       struct report *rep, struct failure *failure)
+                       const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct comm *t = y->part.comm;
     struct contacts s = { 0 };
@@ -648,9 +588,7 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
                                     .agree = agree_by_all,
                                     .find_unsolved = find_unsolved_by_all,
                                     .move_apart = move_apart_by_all,
-                                    .watch = watch_by_all,
-                                    .substeps = turn->steps,
-                                    .meets = turn->meets },
+                                    .watch = watch_by_all },
                         .y = y,
                         .whole = whole,
                         .all = told[1] ? all : NULL };
@@ -665,65 +603,20 @@ static int step_by_all(struct rank_step *y, struct packing *whole, struct contac
     return 0;
 }
 
-/* ---- a step, in substeps where fast bodies meet ---- */
+/* ---- a step, in parts where small steps could not make it ---- */
 
-/* Collective. The next substep, as step_substep_whole() chooses it, of bodies that nobody has all of */
-static void choose_here(struct rank_step *y, struct substep_choice *c, const struct substeps *s)
-{
-    struct comm *t = y->part.comm;
-    struct packing *p = &y->part.p;
-    struct failure failure = { 0 };
-    struct passed passed = { 0 };
-    substeps_whole(s, p);
-    packing_wrap(p, NULL);
-    bool *own = own_bodies(y);
-    struct fast_list fast = fast_of_all(y, own);
-    if (fast.n &&
-        time_of_impact_part(&c->length, p, own, &fast, substeps_rest(s), c->left, &failure))
-        rank_step_fail(y, &failure);
-    if (fast.n) c->length = -comm_most(t, -c->length);
-    for (bool passes = fast.n > 0; passes && c->length > substeps_least(s);) {
-        p->dt = c->length;
-        tunnelling_passed(&passed, p, own, y->near.surface, window_before(p));
-        passes = comm_sum(t, passed.n) > 0;
-        if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
-    }
-    free(fast.of), free(own);
-}
-
-/* Collective */
-static int rank_step_choose(struct rank_step *y, struct substeps *s, struct rank_step_turn *turn,
-                            struct packing *whole, bool by_all, const struct step_opt *o,
-                            struct failure *failure)
-{
-    struct comm *t = y->part.comm;
-    struct substep_choice c = step_substep(s, o);
-    turn->steps = s;
-    if (c.meets && neighbours_surfaces(&y->near, &y->part.p, failure)) rank_step_fail(y, failure);
-    if (c.meets && by_all) choose_here(y, &c, s);
-    if (c.meets && !by_all && !t->me && step_substep_whole(&c, s, whole, y->near.surface, failure))
-        return failure->status;
-    if (c.meets && !by_all) MPI_Bcast(&c.length, 1, MPI_DOUBLE, 0, t->mpi);
-    step_substep_fit(&c, s);
-    turn->meets = c.meets;
-    substeps_choose(s, c.length);
-    return 0;
-}
-
-/* Collective: the substep, of all packings that know the time */
-static int make_substep(struct rank_step *y, struct substeps *s, const struct rank_step_turn *turn,
-                        struct packing *whole, struct contacts *all, bool by_all,
-                        const struct step_opt *o, struct report *rep, struct failure *failure)
+/* Collective: the part, of all packings that know the time */
+static int make_part(struct rank_step *y, struct substeps *s, struct packing *whole,
+                     struct contacts *all, bool by_all, const struct step_opt *o,
+                     struct report *rep, struct failure *failure)
 {
     const bool first = !y->part.comm->me;
-    const struct step_opt part = step_opt_part(o, s);
-    if (first && substeps_remember(s, whole, failure)) return failure->status;
     substeps_enter(s, &y->part.p);
     if (first) substeps_enter(s, whole);
-    if ((by_all ? step_by_all : step_by_first)(y, whole, all, &part, turn, rep, failure))
+    if ((by_all ? step_by_all : step_by_first)(y, whole, all, o, rep, failure))
         return failure->status;
     substeps_leave(s, &y->part.p);
-    if (first) substeps_leave(s, whole), substeps_recall(s, whole);
+    if (first) substeps_leave(s, whole);
     if (first) return substeps_add(s, whole, all, rep, failure);
     substeps_count(s);
     return 0;
@@ -735,14 +628,12 @@ int rank_step_make(struct rank_step *y, struct packing *whole, struct contacts *
     bool by_all = rank_step_scatters(&y->part.p, o) && !y->varies;
     double since = comm_busy() - y->part.comm->waited;
     struct substeps steps;
-    struct rank_step_turn turn = { &steps, false };
     int e = 0;
-    substeps_begin(&steps, &y->part.p);
-    MPI_Bcast(&y->longest, 1, MPI_DOUBLE, 0, y->part.comm->mpi);
-    if (y->longest > 0) steps.longest = y->longest;
+    MPI_Bcast(&y->parts, 1, MPI_INT64_T, 0, y->part.comm->mpi);
+    substeps_begin(&steps, &y->part.p, y->parts);
+    const struct step_opt part = step_opt_part(o, &steps);
     for (int ends = 0; !ends && !e;) {
-        e = rank_step_choose(y, &steps, &turn, whole, by_all, o, failure);
-        if (!e) e = make_substep(y, &steps, &turn, whole, all, by_all, o, rep, failure);
+        e = make_part(y, &steps, whole, all, by_all, &part, rep, failure);
         ends = steps.ends;
         // one whose solve diverges ends the step, which the first knows
         if (!e && !substeps_alone(&steps)) MPI_Bcast(&ends, 1, MPI_INT, 0, y->part.comm->mpi);

@@ -26,7 +26,7 @@ struct rank_step {
     double mean_mass; /* kg: of its bodies, where it is scattered */
     bool contacts;    /* the first rank writes the contacts of the frames that it keeps */
     bool may_end;     /* with a step that fails its account the run ends */
-    double longest;   /* s: no part of the step to come is longer; 0: no bound. The first rank's */
+    int64_t parts;    /* of the step to come, as of step_in_small(). The first rank's */
     int64_t steps;    /* steps made */
     int64_t since;    /* the step of the last cut */
     int64_t alone;    /* steps whose contacts the first rank has solved alone */

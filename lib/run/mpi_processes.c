@@ -138,8 +138,8 @@ int processes_follow(void)
     return 0;
 }
 
-/* By all processes; longest: s, of a part of the step, or 0 */
-static int mpi_processes_step(struct frame *f, struct changes changes, double longest,
+/* By all processes; parts: of the step, or 0 */
+static int mpi_processes_step(struct frame *f, struct changes changes, int64_t parts,
                               const struct step_opt *o, struct failure *failure)
 {
     if (!self.begun)
@@ -152,7 +152,7 @@ static int mpi_processes_step(struct frame *f, struct changes changes, double lo
         mpi_processes_next(OTHER_DT), rank_step_set_dt(&self.step, &f->packing);
     if (changes.acts || moved) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
-    self.step.longest = longest;
+    self.step.parts = parts;
     mpi_processes_next(STEP);
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, failure);
 }
@@ -161,14 +161,14 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
                    const struct step_opt *o, struct failure *failure)
 {
     bool made = false;
-    double longest = 0;
+    int64_t parts = 0;
     if (!f->distributed &&
-        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &longest, failure))
+        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &parts, failure))
         return failure->status;
     self.moved = self.moved || made; // others have not heard of it
     if (made) return 0;
-    const int status = mpi_processes_step(f, changes, longest, o, failure);
-    if (longest > 0) step_forget_impulses(&f->packing, o);
+    const int status = mpi_processes_step(f, changes, parts, o, failure);
+    if (parts) step_forget_impulses(&f->packing, o);
     return status;
 }
 

@@ -70,7 +70,7 @@ static struct nsd_run *new_run(struct failure *failure)
     if (!r) return failure_set(failure, NSD_SOFTWARE, "no memory for a run"), NULL;
     r->maker = maker;
     r->f.packed = true;
-    r->options.threads = 1, r->options.substeps = SUBSTEPS_MOST;
+    r->options.threads = 1;
     r->asked = (struct asked)ASKED_DEFAULT;
     return r;
 }
@@ -220,7 +220,6 @@ void nsd_close(struct nsd_run **run)
 static const struct cli_option run_options[] = {
     { CLI_INT, .name = "threads", .to = &options.threads, .min = 1, .max = 1024 },
     { CLI_FLAG, .name = "warm", .to = &options.warm },
-    { CLI_INT, .name = "substeps", .to = &options.substeps, .min = 1, .max = 1e6 },
     { CLI_REAL, .name = "small-steps", .to = &options.small, .min = 0, .max = 0.1 },
     { CLI_REAL, .name = "missing-impulse", .to = &options.bound, .min = 0, .max = 1 },
     { 0 },
@@ -244,6 +243,9 @@ static int no_such_option(const char *name, struct failure *failure)
     struct nearest near = { 0 };
     const size_t n = strlen(name);
     const struct renamed *renamed = renamed_find("nsd_set", name, n);
+    const char *cure = gone_find("nsd_set", name, n);
+    if (cure)
+        return failure_set(failure, NSD_USAGE, "%.60s is no longer available: %s", name, cure);
     if (renamed)
         return failure_set(failure, NSD_USAGE, "%s: now called %s", renamed->was, renamed->is);
     for (int k = 0; others[k]; k++) nearest_look(&near, name, n, others[k]);

@@ -22,10 +22,10 @@ static double pinched(const struct report *r, double bodies[2])
     return (double)r->depth.pinched;
 }
 
-static double tunnelled(const struct report *r, double bodies[2])
+static double fast(const struct report *r, double bodies[2])
 {
-    bodies[0] = r->tunnelled_id, bodies[1] = r->tunnelled_through;
-    return r->watched ? (double)r->tunnelled : 0;
+    bodies[0] = r->fast_id;
+    return r->watched ? (double)r->fast : 0;
 }
 
 static double unconverged(const struct report *r, double bodies[2])
@@ -41,9 +41,10 @@ const struct watched account_watched[ACCOUNT_ROWS] = {
                            INFINITY, INFINITY, approach, "" },
     [ACCOUNT_PINCHED] = { "pinched", "wedged", "1", "%.0f pinched", NULL, false, 1, 0, 0, pinched,
                           "held from two sides, deeper than 0.1 of its radius" },
-    [ACCOUNT_TUNNELLED] = { "tunnelled", "passed", "1",
-                            "%.0f tunnelled through a wall or another body", NULL, true, 2, 0, 0,
-                            tunnelled, "a smaller dt finds such contacts" },
+    [ACCOUNT_FAST] = { "fast", "passed", "1", "%.0f too fast", NULL, false, 1, 0, 0, fast,
+                       "farther in a step than it is thick, it may have passed through others: "
+                       "leave out "
+                       "--dt, for small steps, or take a smaller one" },
     [ACCOUNT_UNCONVERGED] = { "unconverged", "unconverged", "1", "%.0f steps not converged",
                               "1 step not converged", true, 2, 0, 0, unconverged,
                               "forces and motion are not those of the laws" },

@@ -27,7 +27,7 @@ struct found {
 };
 
 /* States beyond the law's: the contact has no solution, its reaction has grown without end [solve/judge.h]; or its
-   reaction is the sum of those of substeps [step/substeps.h], each of which had a state of its own. */
+   reaction is the sum of those of parts of a step [step/substeps.h], each of which had a state of its own. */
 enum { STATUS_JAMMED = 3, STATUS_SUMMED = 4 };
 
 /* Of a contact's tie: what is kept of it, and what is new in this step */

@@ -114,18 +114,17 @@ struct report {
     int32_t unsolved
         [2]; /* where it has not converged: the ids of the bodies of the contact that is farthest
                             from its law; a wall w is -1-w */
-    int64_t newton;            /* Newton steps in all */
-    int64_t safeguarded;       /* local solves that ended with the exact solution instead */
-    int64_t gave_up;           /* local solves that did not satisfy the law */
-    bool watched;              /* there is what bodies may tunnel through [contact/tunnelling.h] */
-    int64_t tunnelled;         /* bodies that went through a wall or another body in this step */
-    int32_t tunnelled_id;      /* the last, */
-    int32_t tunnelled_through; /* and what: a wall -1-w, or the number of a body */
-    int64_t substeps;          /* that the step was made in */
-    int64_t small;             /* small steps, of which it is made; 0: it was made at once */
-    int64_t small_limited;     /* those of them that have ended at the limit of their sweeps */
-    bool fine;                 /* small steps were asked for, and what follows is known */
-    bool judged;               /* and reactions are compared with converged ones */
+    int64_t newton;        /* Newton steps in all */
+    int64_t safeguarded;   /* local solves that ended with the exact solution instead */
+    int64_t gave_up;       /* local solves that did not satisfy the law */
+    bool watched;          /* there is what bodies may pass [contact/tunnelling.h] */
+    int64_t fast;          /* bodies that moved by more than they are thick */
+    int32_t fast_id;       /* the first of them */
+    int64_t substeps;      /* parts that the step was made in */
+    int64_t small;         /* small steps, of which it is made; 0: it was made at once */
+    int64_t small_limited; /* those of them that have ended at the limit of their sweeps */
+    bool fine;             /* small steps were asked for, and what follows is known */
+    bool judged;           /* and reactions are compared with converged ones */
     double missing_mean,
         missing; /* what is missing of reactions, over the load: of all bodies, and of the worst */
     int32_t missing_id; /* the worst */

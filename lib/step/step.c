@@ -3,7 +3,6 @@
 
 #include "contact/depth.h"
 #include "contact/detect.h"
-#include "contact/time_of_impact.h"
 #include "contact/touching.h"
 #include "contact/tunnelling.h"
 #include "solve/device.h"
@@ -165,63 +164,10 @@ void step_forget(struct step_memory *m)
     *m = (struct step_memory){ 0 };
 }
 
-void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed)
+void step_watch_whole(struct step_makers *m, const struct packing *p, struct report *rep)
 {
-    if (passed->n && (!rep->tunnelled || passed->id < rep->tunnelled_id))
-        rep->tunnelled_id = passed->id, rep->tunnelled_through = passed->through;
-    rep->tunnelled += passed->n;
-    rep->watched = tunnelling_watches(p) || rep->tunnelled;
-}
-
-int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
-                     struct report *rep, struct failure *failure)
-{
-    struct passed passed = { 0 };
-    struct fast_list fast = { 0 };
-    if (watch.fixed.length > 0) tunnelling_passed(&passed, p, NULL, surface, watch.fixed);
-    if (!fast_find(&fast, p, NULL, failure) &&
-        !tunnelling_count(&passed, p, NULL, &fast, watch.bodies, watch.beyond, failure))
-        step_report_passed(rep, p, &passed);
-    free(fast.of);
-    return failure->status;
-}
-
-struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o)
-{
-    return (struct substep_choice){ s->made + 1 < o->substeps, o->substeps - s->made,
-                                    substeps_rest(s) };
-}
-
-void step_substep_fit(struct substep_choice *c, const struct substeps *s)
-{
-    c->meets = c->meets && c->length <= s->longest;
-    c->length = dmin(c->length, s->longest);
-    const double end = dmax(fabs(s->t), fabs(s->t + s->dt)), rest = substeps_rest(s),
-                 shortest = 2 * (nextafter(end, INFINITY) - end);
-    if (c->length >= rest) return;
-    c->meets = c->meets && c->length >= shortest;
-    c->length = dmax(c->length, shortest);
-    if (rest - c->length < shortest) c->length = rest;
-}
-
-int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
-                       const struct surface *surface, struct failure *failure)
-{
-    struct fast_list fast;
-    struct passed passed = { 0 };
-    substeps_whole(s, p);
-    packing_wrap(p, NULL);
-    if (fast_find(&fast, p, NULL, failure)) return failure->status;
-    time_of_impact_part(&c->length, p, NULL, &fast, substeps_rest(s), c->left, failure);
-    // a wall that lies before the place where contacts are sought
-    for (bool passes = fast.n > 0 && !failure->status; passes && c->length > substeps_least(s);) {
-        p->dt = c->length;
-        tunnelling_passed(&passed, p, NULL, surface, window_before(p));
-        passes = passed.n > 0;
-        if (passes) c->length = dmax(0.5 * c->length, substeps_least(s));
-    }
-    free(fast.of);
-    return failure->status;
+    (void)m;
+    rep->fast = tunnelling_count(p, NULL, &rep->fast_id);
 }
 
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
@@ -311,30 +257,14 @@ end:
     return failure->status;
 }
 
-static const struct window none = { 0, 0 };
-
-/* What is looked at before contacts act, and after the motion: of the path from where they were sought to where they
-   will be. Bodies that are made to meet pass only what they meet after they have met something else, in what is left
-   of the substep. */
-static struct windows watch_before(const struct step_makers *m, const struct packing *p)
+/* How many bodies are too fast for the step, at its beginning, where it is the first, and at its end */
+static void step_watch(struct step_makers *m, const struct packing *p, struct report *rep)
 {
-    const bool inner = m->substeps->made > 0, first = !p->step;
-    struct windows w = { none, none, false };
-    if (inner || first) w.fixed = window_before(p);
-    if (!m->meets && (inner || first)) w.bodies = window_before(p);
-    return w;
-}
-
-static struct windows watch_after(const struct step_makers *m, const struct packing *p)
-{
-    const struct window rest = { step_after(p), step_after(p) };
-    struct windows w = { rest, rest, m->meets };
-    if (substeps_alone(m->substeps))
-        w.fixed = window_after(p);
-    else if (substeps_last(m->substeps))
-        w.fixed.length += (1 - p->theta) * m->substeps->dt;
-    if (!m->meets) w.bodies = w.fixed;
-    return w;
+    const int64_t before = rep->fast;
+    const int32_t id = rep->fast_id;
+    rep->watched = tunnelling_watches(p);
+    m->watch(m, p, rep);
+    if (rep->fast < before) rep->fast = before, rep->fast_id = id;
 }
 
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
@@ -344,14 +274,12 @@ int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
     if (m->detect(m, p, s, o, failure)) return failure->status;
     rep->detection = report_seconds(CLOCK_CPU) - cpu;
     if (!m->helps && step_begin(m, m->measure, p, s, rep, failure)) return failure->status;
-    rep->tunnelled = 0, rep->endless = (struct endless){ 0 };
-    if (!m->helps && (!p->step || m->substeps->made) &&
-        m->watch(m, p, watch_before(m, p), rep, failure))
-        return failure->status;
+    rep->fast = 0, rep->endless = (struct endless){ 0 };
+    if (!m->helps && !p->step) step_watch(m, p, rep);
     if (m->solve(m, p, s, o, rep, failure) || m->helps) return failure->status;
     if (!rep->converged) m->find_unsolved(m, p, s, rep);
-    if (step_move(m, p, s, o, rep, failure)) return failure->status;
-    return m->watch(m, p, watch_after(m, p), rep, failure);
+    if (!step_move(m, p, s, o, rep, failure)) step_watch(m, p, rep);
+    return failure->status;
 }
 
 /* ---- a process alone ---- */
@@ -379,47 +307,30 @@ static int solve_alone(struct step_makers *m, const struct packing *p, struct co
     return step_solve_contacts(p, s, kept ? &kept->plan : NULL, o, rep, failure);
 }
 
-static int watch_alone(struct step_makers *m, const struct packing *p, struct windows watch,
-                       struct report *rep, struct failure *failure)
-{
-    struct step_memory *kept = ((struct alone *)m)->memory;
-    struct neighbours once = { 0 }, *near = kept ? &kept->near : &once;
-    if (!neighbours_surfaces(near, p, failure))
-        step_watch_whole(p, near->surface, watch, rep, failure);
-    neighbours_free(&once);
-    return failure->status;
-}
-
-static int choose_alone(struct alone *a, struct substeps *steps, struct packing *p,
-                        const struct step_opt *o, struct failure *failure)
-{
-    struct neighbours once = { 0 }, *near = a->memory ? &a->memory->near : &once;
-    struct substep_choice c = step_substep(steps, o);
-    if (c.meets && !neighbours_surfaces(near, p, failure))
-        step_substep_whole(&c, steps, p, near->surface, failure);
-    neighbours_free(&once);
-    step_substep_fit(&c, steps);
-    a->makers.meets = c.meets;
-    substeps_choose(steps, c.length);
-    return failure->status;
-}
-
 struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s)
 {
     struct step_opt part = *o;
-    if (!substeps_alone(s)) part.solve.local.newton_abs *= s->length / s->dt;
+    part.solve.local.newton_abs /= (double)s->n;
     return part;
 }
 
+/* Of the smallest radius, over four: by more no body moves in a step of a packing that small steps lack something for, without being
+   too fast */
+#define FAST 0.25
+
 int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kept,
-                  const struct step_opt *o, struct report *rep, bool *made, double *longest,
+                  const struct step_opt *o, struct report *rep, bool *made, int64_t *parts,
                   struct failure *failure)
 {
-    *made = false, *longest = 0;
+    *made = false, *parts = 0;
     rep->small = rep->small_limited = 0, rep->fine = o->small > 0;
     rep->missing = rep->missing_mean = 0, rep->missing_id = 0;
     rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
-    if (!(o->small > 0) || !kept || small_lacks(p)) return 0;
+    if (!(o->small > 0) || !kept) return 0;
+    if (small_lacks(p)) {
+        if (small_parts(p, FAST) > 1) *parts = small_parts(p, o->small);
+        return 0;
+    }
     const struct small_opt small = { .overlap = o->small,
                                      .threads = o->solve.threads,
                                      .near = &kept->near,
@@ -429,7 +340,7 @@ int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kep
                                      .warm = o->warm };
     rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
     small_advance(p, s, &kept->small, &small, rep, made, failure);
-    if (!*made) *longest = p->dt / (double)small_parts(p, o->small);
+    if (!*made) *parts = small_parts(p, o->small);
     return failure->status;
 }
 
@@ -448,25 +359,21 @@ static int advance_alone(struct packing *p, struct contacts *s, struct step_memo
                          .solve = solve_alone,
                          .balance = step_balance_whole,
                          .move_apart = step_move_apart_whole,
-                         .watch = watch_alone,
-                         .substeps = &steps },
+                         .watch = step_watch_whole },
                        kept };
     bool made;
-    double longest;
-    if (step_in_small(p, s, kept, o, rep, &made, &longest, failure) || made) return failure->status;
-    substeps_begin(&steps, p);
-    if (longest > 0) steps.longest = longest;
-    while (!steps.ends && !choose_alone(&a, &steps, p, o, failure)) {
-        const struct step_opt part = step_opt_part(o, &steps);
-        if (substeps_remember(&steps, p, failure)) break;
+    int64_t parts;
+    if (step_in_small(p, s, kept, o, rep, &made, &parts, failure) || made) return failure->status;
+    substeps_begin(&steps, p, parts);
+    const struct step_opt part = step_opt_part(o, &steps);
+    while (!steps.ends) {
         substeps_enter(&steps, p);
         step_make(&a.makers, p, s, &part, rep, failure);
         substeps_leave(&steps, p);
-        substeps_recall(&steps, p);
         if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
     }
     substeps_free(&steps);
-    if (longest > 0) step_forget_impulses(p, o);
+    if (parts) step_forget_impulses(p, o);
     return failure->status;
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include "contact/neighbours.h"
-#include "contact/tunnelling.h"
 #include "solve/plan.h"
 #include "solve/solver.h"
 #include "step/balance.h"
@@ -20,7 +19,6 @@ struct step_opt {
     enum order order;
     bool
         warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
-    int64_t substeps; /* of a step, at most: 1: it is never divided */
     bool as_is; /* reactions that have not converged act whatever they give: the paper's protocol */
     bool bare;  /* nobody reads the report's balance of this step: it is left out */
     double
@@ -50,12 +48,11 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                         struct failure *failure);
 
 /* A step in small ones, where o asks for them and the packing has nothing that they lack. *made: false where the packing is as it
-   was, and the step is to be made at once; *longest (s) > 0: in parts of this length, with reactions that are no loads, from which small
-   steps could begin. */
+   was, and the step is to be made at once; *parts > 0: in so many parts, after which step_forget_impulses() is due. */
 int step_in_small(struct packing *p, struct contacts *s, struct step_memory *m,
-                  const struct step_opt *o, struct report *rep, bool *made, double *longest,
+                  const struct step_opt *o, struct report *rep, bool *made, int64_t *parts,
                   struct failure *failure);
-/* After such a step: the next one begins without reactions. */
+/* Reactions that are no loads, from which small steps could begin: the next step begins without. */
 void step_forget_impulses(struct packing *p, const struct step_opt *o);
 
 /*
@@ -64,12 +61,6 @@ void step_forget_impulses(struct packing *p, const struct step_opt *o);
  */
 int step_advance(struct packing *p, struct contacts *s, struct step_memory *m,
                  const struct step_opt *o, struct report *rep, struct failure *failure);
-
-/* What to look for that bodies go through in a step, or in a substep */
-struct windows {
-    struct window fixed, bodies; /* walls and fixed hulls; bodies that move; of length 0: nothing */
-    bool beyond;                 /* as of crossing_count() */
-};
 
 /*
  * What a step asks of those who make it: one process, or the ranks of a run (mpi/rank_step.h). Each returns 0
@@ -102,19 +93,16 @@ struct step_makers {
        then */
     int (*move_apart)(struct step_makers *m, struct packing *p, const struct contacts *s,
                       struct projected *did, struct failure *failure);
-    /* Which bodies go through something: once the step is made, and before the first one and before substeps */
-    int (*watch)(struct step_makers *m, const struct packing *p, struct windows watch,
-                 struct report *rep, struct failure *failure);
-    const struct substeps *substeps; /* of which this is one */
-    bool
-        meets; /* it ends where bodies meet [contact/time_of_impact.h]; else what they go through is counted */
+    /* rep->fast and rep->fast_id: how many bodies move in a step by more than they are thick */
+    void (*watch)(struct step_makers *m, const struct packing *p, struct report *rep);
 };
-/* The step, or the substep, by these makers */
+/* The step, or a part of it, by these makers */
 int step_make(struct step_makers *m, struct packing *p, struct contacts *s,
               const struct step_opt *o, struct report *rep, struct failure *failure);
 /* What one process does: a process that has a whole packing */
 int step_measure_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                        struct report *rep, struct failure *failure);
+void step_watch_whole(struct step_makers *m, const struct packing *p, struct report *rep);
 void step_unsolved_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
                          struct report *rep);
 int step_balance_whole(struct step_makers *m, const struct packing *p, const struct contacts *s,
@@ -131,25 +119,5 @@ int step_solve_contacts(const struct packing *pack, struct contacts *s, struct p
                         const struct step_opt *o, struct report *rep, struct failure *failure);
 int step_bound_impacts(const struct packing *pack, struct contacts *s, struct plan **kept,
                        const struct step_opt *o, struct report *rep, struct failure *failure);
-/* Adds bodies that have gone through something to the report, whose number of them is 0 before the step. */
-void step_report_passed(struct report *rep, const struct packing *p, const struct passed *passed);
-/* The same of a whole packing, which is looked through. surface: [walls] of those that are meshes */
-int step_watch_whole(const struct packing *p, const struct surface *surface, struct windows watch,
-                     struct report *rep, struct failure *failure);
-
-/* The options of a substep */
+/* The options of a part */
 struct step_opt step_opt_part(const struct step_opt *o, const struct substeps *s);
-/* The choice of a substep, in a packing that has the step's dt: */
-struct substep_choice {
-    bool meets;    /* below the limit of substeps */
-    int64_t left;  /* substeps, with this one */
-    double length; /* s */
-};
-/* without fast bodies: all that is left; */
-struct substep_choice step_substep(const struct substeps *s, const struct step_opt *o);
-/* with them: at most so long that a whole packing's bodies meet, and, halved where that helps, that they do not go
-   through walls before contacts are sought. p is in between given other dt. */
-int step_substep_whole(struct substep_choice *c, const struct substeps *s, struct packing *p,
-                       const struct surface *surface, struct failure *failure);
-/* No shorter than twice the spacing of numbers at the time of the step; what bodies pass for that is counted. */
-void step_substep_fit(struct substep_choice *c, const struct substeps *s);

@@ -73,7 +73,7 @@ static const struct step_options_usual paper = {
     .overlap = OVERLAP_KEEP,
 };
 
-struct options options = { .threads = 1, .substeps = SUBSTEPS_MOST };
+struct options options = { .threads = 1 };
 
 const char *options_usual(const void *to)
 {
@@ -199,9 +199,8 @@ const struct cli_option options_detect[] = {
 /* ---- which of them are given ---- */
 
 /* Members of which tools have options of their own */
-const void *const options_others[] = { &options.warm, &options.small,    &options.bound,
-                                       &options.dt,   &options.substeps, &options.device,
-                                       NULL };
+const void *const options_others[] = { &options.warm, &options.small,  &options.bound,
+                                       &options.dt,   &options.device, NULL };
 
 /* One bit for each row of both tables, and for each of the others */
 static uint64_t bit_of(const void *to)
@@ -259,7 +258,6 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
     int32_t sweeps = nlgs ? u->nlgs_sweeps : eps < u->tight ? u->tight_sweeps : u->sweeps;
     return (struct step_opt){
         .gap = o->gap,
-        .substeps = o->substeps,
         .alpha = o->alpha,
         .order = order,
         .as_is = o->protocol,
@@ -306,7 +304,6 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
     json_object_set_new(j, "order", json_string(order_name[o->order]));
     json_object_set_new(j, "warm", json_boolean(o->warm));
-    if (o->substeps != SUBSTEPS_MOST) json_object_set_new(j, "substeps", json_integer(o->substeps));
     if (o->small > 0) json_object_set_new(j, "small_steps", json_real(o->small));
     if (o->small > 0 && o->bound > 0)
         json_object_set_new(j, "missing_impulse", json_real(o->bound));

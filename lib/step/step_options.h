@@ -16,9 +16,8 @@ struct options {
     double gap; /* m */
     double theta;
     int64_t max_sweeps, newton_max, threads;
-    int64_t substeps; /* of a step in which fast bodies meet, at most */
-    double small;     /* radii: small steps; 0: none */
-    double bound;     /* of what is missing of their reactions; 0: none */
+    double small; /* radii: small steps; 0: none */
+    double bound; /* of what is missing of their reactions; 0: none */
     bool warm, every_sweep, history, strict, keep_going;
     const char *log;    /* or NULL */
     const char *dt;     /* s, or auto:TOL; or NULL */

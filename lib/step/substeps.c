@@ -5,81 +5,48 @@
 #include <math.h>
 #include <string.h>
 
-void substeps_begin(struct substeps *s, const struct packing *p)
+void substeps_begin(struct substeps *s, const struct packing *p, int64_t parts)
 {
     *s = (struct substeps){ .dt = p->dt,
                             .t = p->t,
                             .t0 = p->t0,
                             .step = p->step,
                             .step0 = p->step0,
-                            .length = p->dt,
-                            .longest = p->dt };
+                            .n = parts > 1 ? parts : 1 };
 }
 
 void substeps_free(struct substeps *s)
 {
     contacts_free(&s->sum);
-    memory_free(&s->memory);
 }
 
-void substeps_whole(const struct substeps *s, struct packing *p)
+/* s: of the next part; the last one is what is left. */
+static double length(const struct substeps *s)
 {
-    p->dt = s->dt;
-}
-
-void substeps_choose(struct substeps *s, double length)
-{
-    s->length = length;
+    return s->made + 1 < s->n ? s->dt / (double)s->n : s->dt - s->done;
 }
 
 void substeps_enter(const struct substeps *s, struct packing *p)
 {
-    if (substeps_alone(s)) return;
-    p->dt = s->length, p->t = s->t + s->done;
+    if (s->n == 1) return;
+    p->dt = length(s), p->t = s->t + s->done;
     p->t0 = p->t, p->step0 = p->step = s->step;
+    memory_scale(&p->memory, p->dt / (s->made ? s->dt / (double)s->n : s->dt));
 }
 
 void substeps_leave(const struct substeps *s, struct packing *p)
 {
-    if (substeps_alone(s)) return;
+    if (s->n == 1) return;
     const bool moved = p->step > s->step;
     p->dt = s->dt;
-    if (moved && !substeps_last(s)) {
+    if (moved && s->made + 1 < s->n) {
         p->step = s->step;
         return;
     }
-    // where a later substep cannot be made, the packing stays at its time, between two steps
+    // where a later part cannot be made, the packing stays at its time, between two steps
     if (!moved && s->made) return;
     p->t0 = s->t0, p->step0 = s->step0;
     p->t = packing_time(p, p->step);
-}
-
-/* ---- remembered reactions ---- */
-
-static const double SHORT = 0.25; /* of the step */
-
-static bool is_short(const struct substeps *s)
-{
-    return s->length < SHORT * s->dt;
-}
-
-int substeps_remember(struct substeps *s, struct packing *p, struct failure *failure)
-{
-    if (substeps_alone(s)) return 0;
-    if (is_short(s) && memory_copy(&s->memory, &p->memory, failure)) return failure->status;
-    memory_scale(&p->memory, s->length / s->dt);
-    return 0;
-}
-
-void substeps_recall(struct substeps *s, struct packing *p)
-{
-    if (substeps_alone(s)) return;
-    if (!is_short(s)) {
-        memory_scale(&p->memory, s->dt / s->length);
-        return;
-    }
-    memory_free(&p->memory);
-    p->memory = s->memory, s->memory = (struct memory){ 0 };
 }
 
 /* ---- contacts ---- */
@@ -102,7 +69,7 @@ static void substeps_copy_one(struct contacts *to, const struct contacts *from, 
     if (to->law && from->law) to->law[k] = from->law[i];
 }
 
-/* The last of `to` is also contact i of `from`, of an earlier substep. */
+/* The last of `to` is also contact i of `from`, of an earlier part. */
 static void add_one(struct contacts *to, const struct contacts *from, int64_t i)
 {
     const int64_t k = to->n - 1;
@@ -127,7 +94,7 @@ static int substeps_join(struct contacts *had, struct contacts *now, struct fail
     if (room && (had->law || now->law)) room = !contacts_alloc_laws(&all);
     if (!room) {
         contacts_free(&all);
-        return failure_set(failure, EX_SOFTWARE, "no memory for the contacts of substeps");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the contacts of a divided step");
     }
     all.n = 0;
     for (int64_t k = 0; k < now->n; k++) {
@@ -157,7 +124,7 @@ static void add_balance(struct balance *to, const struct balance *b)
     for (int k = 0; k < 3; k++) to->momentum[k] = b->momentum[k];
 }
 
-/* to = what is reported of two substeps, of which r is the later one */
+/* to = what is reported of two parts, of which r is the later one */
 static void add_report(struct report *to, const struct report *r)
 {
     if (!(err_of(&r->err, r->criterion) <= err_of(&to->err, to->criterion))) {
@@ -172,9 +139,8 @@ static void add_report(struct report *to, const struct report *r)
         memcpy(to->depth.pair, r->depth.pair, sizeof to->depth.pair);
     if (r->depth.pinched > to->depth.pinched)
         to->depth.pinched = r->depth.pinched, to->depth.pinched_id = r->depth.pinched_id;
-    if (r->tunnelled && (!to->tunnelled || r->tunnelled_id < to->tunnelled_id))
-        to->tunnelled_id = r->tunnelled_id, to->tunnelled_through = r->tunnelled_through;
-    to->tunnelled += r->tunnelled, to->watched = to->watched || r->watched;
+    if (r->fast > to->fast) to->fast = r->fast, to->fast_id = r->fast_id;
+    to->watched = to->watched || r->watched;
     if (to->converged && !r->converged) memcpy(to->unsolved, r->unsolved, sizeof to->unsolved);
     to->endless = r->endless;
     to->balanced = to->balanced && r->balanced, to->converged = to->converged && r->converged;
@@ -189,8 +155,8 @@ static void add_report(struct report *to, const struct report *r)
 
 void substeps_count(struct substeps *s)
 {
-    s->ends = substeps_last(s);
-    s->done += s->length, s->made++;
+    s->done += length(s), s->made++;
+    s->ends = s->made == s->n;
 }
 
 int substeps_add(struct substeps *s, const struct packing *p, struct contacts *contacts,
@@ -199,7 +165,7 @@ int substeps_add(struct substeps *s, const struct packing *p, struct contacts *c
     const bool first = !s->made;
     substeps_count(s);
     r->substeps = s->made;
-    if (substeps_alone(s)) return 0;
+    if (s->n == 1) return 0;
     s->ends = s->ends || !report_made(r);
     if (!first && substeps_join(&s->sum, contacts, failure)) return failure->status;
     if (first)

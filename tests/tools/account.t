@@ -18,7 +18,7 @@ status 0 "5 % of a radius are no failure" nsd-step -e --overlap-rule keep -n 3 "
 is "a line says them at once" "$(head -n 1 "$tmp/err")" \
     "nsd-step: overlap 0.05 of a radius (step 1, bodies 1 and 2): a smaller dt leaves less: --dt, or --dt auto:0.01"
 is "and the last line" "$(tail -n 1 "$tmp/err")" \
-    "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 pinched, 0 tunnelled through a wall or another body, 0 steps not converged"
+    "nsd-step: worst: overlap 0.05 of a radius (step 1, bodies 1 and 2), approach 0 m/s, 0 pinched, 0 too fast, 0 steps not converged"
 is "the document has them, in the smaller radius" "$(account "$tmp/out" "$row" | paste -sd ' ')" '[0.05,1,[1,2],false] 0 0'
 pair 0.12
 status 0 "12 % are one, but not without -e" nsd-step --overlap-rule keep "$tmp/pair.h5"
@@ -40,7 +40,7 @@ like "but a smaller TOL is" "$(head -n 1 "$tmp/err")" 'bodies 1 and 2\): a small
 pair 0
 status 0 "bodies that touch" nsd-step --solver auto -e "$tmp/pair.h5"
 is "have no account but its last line" "$(grep -c . "$tmp/err"), $(tail -n 1 "$tmp/err")" \
-    "2, nsd-step: worst: overlap 0 of a radius, approach 0 m/s, 0 pinched, 0 tunnelled through a wall or another body, 0 steps not converged"
+    "2, nsd-step: worst: overlap 0 of a radius, approach 0 m/s, 0 pinched, 0 too fast, 0 steps not converged"
 
 # A ball between walls that are 0.22 of its radius too near; beside it one that only leans on one of them.
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], overlap: true, bodies: [{ x: [5, 0, 0.85], radius: 1 }, { x: [0, 0, 0.89], radius: 1 }, { x: [9, 0, 0.5], radius: 0.55 }],

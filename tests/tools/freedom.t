@@ -141,9 +141,9 @@ like "and only what rubs or hits dissipates" "$(jq -s 'map(.balance.dissipation)
 # ---- a wall driven into a jammed packing ----
 
 jq '.walls[1] |= (del(.load) | .velocity = [0, 0, -0.2])' scenes/press.json | nsd-gen - |
-    step --overlap-rule keep --substeps 1 -n 165 --every 165 -o "$tmp/jam.h5" || true
+    step --overlap-rule keep -n 165 --every 165 -o "$tmp/jam.h5" || true
 status 1 "a wall driven into a jammed packing makes all steps, and ends with 1" \
-    timeout 120 nsd-step --overlap-rule keep --substeps 1 -n 3 --log "$tmp/jam.log" -o "$tmp/jam2.h5" "$tmp/jam.h5"
+    timeout 120 nsd-step --overlap-rule keep -n 3 --log "$tmp/jam.log" -o "$tmp/jam2.h5" "$tmp/jam.h5"
 like "each step ends by the limit of the sweeps" "$(jq -s 'map(.sweeps) | max <= 20000' "$tmp/jam.log")" true
 like "is not converged" "$(jq -s 'map(.converged) | any | not' "$tmp/jam.log")" true
 like "and says how fast bodies still approach" "$(cat "$tmp/err")" 'reactions grow without end, and bodies still approach at up to 0\.[0-9]+ m/s'

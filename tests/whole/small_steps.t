@@ -180,7 +180,6 @@ done <<'END'
 --overlap-rule project
 --dt 5e-5
 --dt auto:0.01
---substeps 1000
 --stiffness 1e3
 END
 while read -ra option; do
