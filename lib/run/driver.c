@@ -1,5 +1,6 @@
 #include "run/driver.h"
 
+#include "base/option.h"
 #include "base/text.h"
 #include "scene/breaking.h"
 #include "step/adapt.h"
@@ -47,9 +48,10 @@ bool driver_read_dt(const char *text, bool *adapts, double *x)
     static const char word[] = "auto:";
     *adapts = !strncmp(text, word, sizeof word - 1);
     const char *number = *adapts ? text + sizeof word - 1 : text;
-    char *end;
-    *x = number_read(number, &end);
-    return end != number && !*end && *x > 0 && *x <= (*adapts ? 1 : DBL_MAX);
+    char *end = NULL;
+    bool read =
+        *adapts ? (*x = number_read(number, &end), end != number && !*end) : time_parse(x, number);
+    return read && *x > 0 && *x <= (*adapts ? 1 : DBL_MAX);
 }
 
 int driver_set_dt(struct packing *p, double dt, struct failure *failure)
