@@ -553,15 +553,17 @@ static void keep_stopped(struct run *r, int64_t k)
 /* Where processes exchange velocities for longer than they sweep, fewer are faster. */
 static void warn_processes(const struct frame *f, const struct step_opt *o)
 {
+    const bool breaks = f->packing.breakage != NULL;
     const enum order order = o->order;
     // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
     const double least = order == ORDER_BLOCK ? 2000 : 20000;
     const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
     const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
-    if (size > 1 && steps && o->small > 0) {
-        warn("%d processes: the first makes all small steps, and the others wait: use threads, "
-             "nsd-step -j %d, or --small-steps 0",
-             size, size);
+    if (size > 1 && steps && (breaks || o->small > 0)) {
+        warn("%d processes: the first makes all %s, and the others wait: use threads, "
+             "nsd-step -j %d%s",
+             size, breaks ? "steps of grains that break" : "small steps", size,
+             breaks ? "" : ", or --small-steps 0");
         return;
     }
     if (size <= most || !steps) return;
@@ -586,9 +588,6 @@ static void begin(struct run *r)
     if (!f->distributed) r->driver.o.small = total.radii;
     warn_processes(f, &r->driver.o);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);
-    if (steps && f->packing.breakage && processes_size() > 1)
-        die(EX_UNAVAILABLE, "grains that break need one process: use threads, nsd-step -j %d",
-            processes_size());
     if (!steps) return;
     f->packing.events.n = 0; // they belong to the frame that was read
     if (f->packing.outside.length && !loop_asks())

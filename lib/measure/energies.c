@@ -3,6 +3,7 @@
 #include "contact/contact_law.h"
 #include "measure/measures.h"
 #include "measure/snapshot.h"
+#include "state/breakable.h"
 #include "state/rotation.h"
 #include "step/contact_motion.h"
 #include "step/move.h"
@@ -53,6 +54,8 @@ static const struct quantity quantities[] = {
       "part of dissipated by tangential velocities and by rolling and pivoting" },
     { "boundaries", "J", 1, "work of walls on bodies in that step" },
     { "peculiar", "J", 1, "kinetic energy of translation relative to the flow of the cell" },
+    { "breaking", "J", 1,
+      "energy that broken grains have lost since the first frame, that of their dust" },
     { 0 },
 };
 
@@ -100,6 +103,15 @@ static const char *energies_add_balance(double *at, const struct snapshot *s, do
     return NULL;
 }
 
+/* The kinetic and potential energy that dust took with it */
+static double energies_breaking(struct table *t, const struct snapshot *s)
+{
+    const struct broken b = breakage_total(s->p);
+    if (s->region.all && !s->only.bodies) return b.kinetic + b.potential;
+    if (s->p->breakage) table_null(t, "no energy of breaking: it is that of all bodies");
+    return s->p->breakage ? NAN : 0;
+}
+
 static int energies_rows(struct table *t, const struct snapshot *s, struct failure *failure)
 {
     const struct packing *p = s->p;
@@ -116,7 +128,7 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct failu
         potential -= times * p->mass[i] * v3_dot(p->g, p->x[i]);
     }
     double *step = at + 5, stored = 0;
-    at[9] = peculiar;
+    at[9] = peculiar, at[10] = energies_breaking(t, s);
     const char *lacks = NULL;
     if (!s->s || (!s->s->found && s->s->n))
         lacks = "the document has no solved contacts";

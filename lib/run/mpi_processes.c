@@ -84,7 +84,8 @@ static bool wants(struct distributed *e, const struct packing *settings, int64_t
 {
     const struct step_opt o = options_step(settings->dt, false);
     e->n = n;
-    return rank_step_scatters(settings, &o) && !(self.adapts && settings->tolerance > 0);
+    return rank_step_scatters(settings, &o) && !(self.adapts && settings->tolerance > 0) &&
+           !settings->breakage;
 }
 
 static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first,
@@ -162,6 +163,8 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
 {
     bool made = false;
     int64_t parts = 0;
+    if (f->packing.breakage)
+        return step_advance(&f->packing, &f->contacts, m, o, &f->report, failure);
     if (!f->distributed &&
         step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &parts, failure))
         return failure->status;

@@ -360,7 +360,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.failed = r.failed || (!failure->status && !small_is_finite(&r));
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
-    if (*made && !small_give_contacts(&r, s, o->bare, failure))
+    // grains that break need the reactions of each step
+    if (*made && !small_give_contacts(&r, s, o->bare && !p->breakage, failure))
         *made = !r.uneven || !small_error_crushes(&r, s, o->overlap);
     if (*made && !failure->status && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
