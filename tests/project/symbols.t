@@ -10,8 +10,6 @@ nsd_add
 nsd_append
 nsd_array_name
 nsd_attributes
-nsd_wall_force
-nsd_wall_velocity
 nsd_close
 nsd_error
 nsd_failure
@@ -44,6 +42,8 @@ nsd_text
 nsd_until
 nsd_velocity
 nsd_version
+nsd_wall_force
+nsd_wall_velocity
 EOT
 is "nsd.h declares these functions: one that is gone or changed is another libnsd.so" "$(declared | grep -v '^nsd_$')" "$(<"$tmp/list")"
 if nm "$build/libnsd.a" 2>/dev/null | grep -q __asan; then
