@@ -5,6 +5,7 @@
 #include "step/small_cell.h"
 #include "step/small_converge.h"
 #include "step/small_error.h"
+#include "step/small_gain.h"
 #include "step/small_load.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -305,14 +306,24 @@ static bool small_sweep_all(struct small_run *r, int me, int threads, bool again
     return r->far;
 }
 
+static bool small_gains(struct small_run *r, int me, double *last)
+{
+    team_meet();
+    if (!me) r->gained = small_gain_exceeds(r, last);
+    team_meet();
+    return r->gained;
+}
+
 static void small_sweeps(struct small_run *r, int me, int threads)
 {
     const int most = r->bound > 0 ? SWEEPS_BOUNDED : SWEEPS_MOST;
+    double gain = INFINITY;
     bool far = true;
     for (int k = 0; far && k < most; k++) {
         far = small_sweep_all(r, me, threads, k > 0);
-        if (far || !(r->bound > 0)) continue;
-        far = small_error_exceeds(r, me, threads);
+        if (far) continue;
+        far = r->bound > 0 && small_error_exceeds(r, me, threads);
+        far = far || (r->gains && small_gains(r, me, &gain));
         if (far && !me) small_copy_wake(r), r->far = true;
         team_meet();
     }

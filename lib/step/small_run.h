@@ -117,13 +117,15 @@ struct small_run {
     bool judged;             /* its errors are summed up [step/small_error.h] */
     double *missing; /* [2 bodies] N s: of a small step, missing and load, where it is bounded */
     bool exceeds;
-    double bound;  /* of what is missing of the reactions of all bodies in a small step; 0: none */
-    bool compares; /* the last one is compared with converged sweeps [step/small_converge.h]: */
-    int32_t compared;     /* in so many sweeps */
-    double distance;      /* of the reactions from those then, over these */
-    bool failed;          /* the interval is to be made at once */
-    bool lost;            /* memory was short */
-    _Atomic bool far;     /* a sweep has changed a body by more than is allowed */
+    double bound; /* of what is missing of the reactions of all bodies in a small step; 0: none */
+    bool gains,
+        gained;       /* gains of energy are bounded [step/small_gain.h]; and there has been one */
+    bool compares;    /* the last one is compared with converged sweeps [step/small_converge.h]: */
+    int32_t compared; /* in so many sweeps */
+    double distance;  /* of the reactions from those then, over these */
+    bool failed;      /* the interval is to be made at once */
+    bool lost;        /* memory was short */
+    _Atomic bool far; /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock; /* of what follows */
     double fastest;       /* m^2/s^2: of bodies */
     int64_t shaken;       /* by how much the last step has changed velocities [step/small_loop.c] */

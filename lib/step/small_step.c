@@ -13,6 +13,7 @@
 #include "step/small_bonds.h"
 #include "step/small_cell.h"
 #include "step/small_error.h"
+#include "step/small_gain.h"
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
@@ -167,6 +168,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
                 break;
             }
             small_bonds_recall(r, o->warm);
+            r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
             r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
         }

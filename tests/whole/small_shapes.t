@@ -63,6 +63,27 @@ scene "$floor, gravity: [0, 0, 0], mu: 1.5, e_n: 1, shapes: { it: { capsule: { l
 before=$(nsd-info --last -l "$tmp/in.h5" | jq .kinetic_energy)
 small_alone 120
 ok "a rod gains no energy from an impact" near "$(last .kinetic_energy) / $before" 0.995 0.005
+# Random collisions without gravity: the largest gain of a step, over the largest kinetic energy
+gains() # SHAPE DIM GAP SEED MEMBERS
+{
+    jq -n "def rnd: (. * 16807) % 2147483647; def six: [foreach range(6) as \$i (.; rnd; . / 2147483647 - 0.5)];
+        { dim: $2, dt: 1e-4, density: 2500, gravity: [range($2) | 0], shapes: { it: { $1 } }, $5,
+        walls: [range($2) as \$d | [0, 1][] as \$s | { point: [range($2) | if . == \$d then \$s * 4 * $3 else 0 end], normal: [range($2) | if . == \$d then 1 - 2 * \$s else 0 end] }],
+        bodies: [range(if $2 == 3 then 64 else 16 end) as \$n | ($4 * 1000 + \$n * 77 + 12345 | rnd | rnd | six) as \$v | { shape: \"it\", size: 0.02,
+            x: [\$n % 4, (\$n / 4 | floor) % 4, (\$n / 16 | floor)] | map((. + 0.5) * $3) | .[:$2], v: \$v | map(. * 4) | .[:$2],
+            w: (if $2 == 3 then \$v[3:] | map(. * 200) else \$v[3] * 200 end) }] }" | nsd-gen - >"$tmp/in.h5"
+    small_alone 150 --log "$tmp/log"
+    jq -s 'map(.balance) | ([0, -(map(.dissipation) | min)] | max) / (map(.kinetic) | max)' "$tmp/log"
+}
+for seed in 1 2 3 4 5 6; do
+    for laws in 'mu: 0, e_n: 0' 'mu: 0.4, e_n: 0.5'; do
+        ok "quadrangles that collide gain at most 2.5e-5 of their energy in a step, $laws, start $seed" \
+            near "$(gains 'points: [[0, 0], [1, 0], [1.2, 0.7], [0.4, 1.1]]' 2 0.028 $seed "$laws")" 0 2.5e-5
+    done
+    ok "clumps at most 5e-6, start $seed" \
+        near "$(gains 'balls: [[0, 0, 0, 0.5], [0.5, 0, 0, 0.4], [0, 0.4, 0.2, 0.3]]' 3 0.032 $seed 'mu: 0.4, e_n: 0.9')" 0 5e-6
+    ok "cubes at most 5e-6, start $seed" near "$(gains 'box: [1, 1, 1]' 3 0.025 $seed 'mu: 0, e_n: 0')" 0 5e-6
+done
 scene "gravity: [0, 0, 0], dt: 1e-3, shapes: { it: { box: [3, 2, 1] } }, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0], w: [0.1, 10, 0.1] }]"
 before=$(nsd-info --last -l "$tmp/in.h5" | jq .kinetic_energy)
 small_alone 2000
