@@ -48,7 +48,9 @@ bool small_at_seam(struct small_run *r, int64_t i, double reach)
     const struct situation o = {
         .p = r->p, .x = r->x, .t = r->p->t + r->ahead, .surface = l->surface
     };
-    const bool seam = mine >= 0 && all.n > 1 && seams_has(&all, &o, body, mine);
+    bool seam = mine >= 0 && all.n > 1 && seams_has(&all, &o, body, mine);
+    bool open = mine == 0; // of contacts that take each other for the rim's, the first stays
+    for (int64_t k = 0; seam && open && k < all.n; k++) open = seams_has(&all, &o, body, k);
     if (at != few) free(at);
-    return seam;
+    return seam && !open;
 }

@@ -34,6 +34,14 @@ ok "a ball on a floor that is to rise at 0.1 s is at rest before" near "$(body '
 small 150
 ok "and rises with it" near "$(body '.x[2]')" 0.015 1e-5
 
+# A ball whose lowest point is on the seam of two flush discs stays there: neither takes the other's contact for that of a rim.
+for x in 0.00599 0.005999 0.0059999 0.006 0.0060001; do
+    scene "dt: 2e-4, gravity: [0, 0, -9.81], bodies: [{ x: [$x, 0, 0.001], radius: 0.001 }], walls: [
+        { disc: { center: [0, 0, 0], normal: [0, 0, 1], radius: 0.02, hole: 0.006 } }, { disc: { center: [0, 0, 0], normal: [0, 0, 1], radius: 0.006 } }]"
+    small 500
+    ok "a ball rests on the seam of two discs, at $x m" near "$(body '.x[2]')" 0.001 1e-6
+done
+
 # ---- many ----
 
 # A ball of 20 mm on two layers of 2 mm, at 2 m/s with e 0.4: 0.62 to 0.72 m/s by Newton's law for simultaneous impacts
