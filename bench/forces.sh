@@ -46,7 +46,7 @@ for k in 2e3 2e4; do
     nsd-info -p "$work/start.h5" | jq -r '[.x[], .radius, .mass, 0, 0, 0, 0, 0, 0, 0] | @tsv' > "$work/start.txt"
     for e in 0.1 0.5; do by_dem $k $e; done
     echo
-    echo "k_n = $k N/m, k_t = 2/7 k_n, beside soft spheres with e = 0.1:"
+    echo "k_n = $k N/m, k_t = 2/7 k_n, compared with soft spheres with e = 0.1:"
     echo
     echo "| | contacts | in both | correlation of F_n | of F_t | explained of F_n | of F_t | rms of F_n, means |"
     echo "| --- | --- | --- | --- | --- | --- | --- | --- |"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static bool last, stream;
-static const char *steps, *output;
+static const char *steps;
 static int vtk;
 
 static struct cli_choice vtk_choice(int k)
@@ -26,8 +26,6 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "stream", &stream, .help = "write one document per frame, also to a file" },
     { CLI_CHOICE, 0, "vtk", &vtk, .choice = vtk_choice, .silent = true,
       .help = "add /VTKHDF, with which ParaView opens the document [no]" },
-    { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
-      .silent = true },
     { 0 },
 };
 static const struct cli_option *const tables[] = { own, NULL };
@@ -73,14 +71,13 @@ int tool_main(int argc, char **argv)
     if (last && steps) die_usage("--last and --frames exclude each other");
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
-    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
     enum writer_kind kind = stream || last ? WRITER_STREAM : WRITER_COPY;
     while (
         !(last ? reader_last(in, &f, &more, &failure) : reader_find(in, &range, &more, &failure)) &&
         more) {
         bool whole = !last && reader_whole(in);
         if (!last && !whole && reader_take(in, &f, &failure)) break;
-        if (!out && (writer_open(&out, output, kind, &failure) ||
+        if (!out && (writer_open(&out, cli_output(), kind, &failure) ||
                      (cli_given(&vtk) && writer_vtk(out, vtk ? &vtk_parts : NULL, &failure))))
             break;
         if (whole && writer_passes(out)) {

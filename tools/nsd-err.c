@@ -82,6 +82,7 @@ int tool_main(int argc, char **argv)
     struct failure failure = { 0 };
     bool more;
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
+    begin_stdout();
     while (!reader_next(in, NULL, &f, &more, &failure) && more) {
         const char *where = reader_where(in);
         if (f.foreign && !f.u) die(EX_DATAERR, "%s: no /solution: nsd-solve comes before", where);

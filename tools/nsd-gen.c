@@ -2,6 +2,7 @@
 #include "base/json.h"
 #include "convert/import_file.h"
 #include "convert/scene_file.h"
+#include "file/report_json.h"
 #include "file/writer.h"
 #include "run/cli.h"
 #include "scene/scene_build.h"
@@ -359,9 +360,8 @@ static void tell(const struct scene *s, const struct packing *p)
              "default of nsd-step, "
              "do not need the suggestion; \"dt\": \"auto\" takes it",
              s->dt, s->dt / t.best);
-    if (json_write(stdout, j) || putchar('\n') == EOF || fflush(stdout))
-        die(EX_IOERR, "standard output: %s", strerror(errno));
-    json_decref(j);
+    json_line(j);
+    finish_stdout();
 }
 
 /* ---- the keys of scenes ---- */
@@ -374,6 +374,7 @@ static void print_key(const char *const field[7])
 static int print_keys(void)
 {
     struct failure failure = { 0 };
+    begin_stdout();
     if (keys) {
         fputs("table\tkey\ttype\tunit\tdefault\texample\thelp\n", stdout);
         schema_lines(print_key);
@@ -385,7 +386,7 @@ static int print_keys(void)
         puts(text);
         free(text), json_decref(j);
     }
-    if (fflush(stdout) || ferror(stdout)) die(EX_IOERR, "standard output: %s", strerror(errno));
+    finish_stdout();
     return 0;
 }
 
@@ -403,7 +404,8 @@ int tool_main(int argc, char **argv)
     if (!from && (argc != 1 || !*argv[0])) die_usage("one operand: a number of balls, or a scene");
     if (from && dim != 3)
         die_usage("--from has balls; discs are a scene's: \"dim\": 2, \"import\"");
-    if (!check && writer_open(&out, NULL, WRITER_STREAM, &failure)) die_why(&failure);
+    if (check) begin_stdout();
+    if (!check && writer_open(&out, cli_output(), WRITER_STREAM, &failure)) die_why(&failure);
     double n;
     if (from)
         read_from(&scene, from);

@@ -555,6 +555,7 @@ int tool_main(int argc, char **argv)
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
+    begin_stdout();
     if (scene) last = true;
     if (last) {
         if (reader_last(in, &f, &more, &failure)) die_why(&failure);

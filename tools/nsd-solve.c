@@ -118,7 +118,7 @@ static void solve(struct frame *f, const char *where)
 int tool_main(int argc, char **argv)
 {
     options_check();
-    options_log_open(argc, argv, NULL);
+    options_log_open(argc, argv, cli_output());
     tool_filter(argc, argv, solve);
     options_log_close();
     summary();

@@ -338,6 +338,7 @@ int tool_main(int argc, char **argv)
     struct reader *in;
     struct failure failure = { 0 };
     if (list) {
+        begin_stdout();
         show_list();
         finish_stdout();
         return 0;
@@ -354,6 +355,7 @@ int tool_main(int argc, char **argv)
     if (silhouette_to &&
         (reader_reads(argc, argv, silhouette_to) || (photo && !strcmp(photo, silhouette_to))))
         die_usage("%s: is also the input", silhouette_to);
+    begin_stdout();
     run(in);
     reader_close(in);
     finish_stdout();

@@ -1,5 +1,4 @@
 /* nsd-web: a trajectory as one page that plays it in a browser. */
-#include "base/output.h"
 #include "draw/page.h"
 #include "file/reader.h"
 #include "measure/measures.h"
@@ -15,15 +14,13 @@
 #include <unistd.h>
 
 static int64_t every = 1;
-static const char *output, *title, *stat, *steps;
+static const char *title, *stat, *steps;
 
 static const struct cli_option own[] = {
     { CLI_TEXT, 's', "frames", &steps, "A:B:K",
       .help = "process the frames of steps A to B, every K-th [all]" },
     { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
       .help = "show every K-th frame [1]" },
-    { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
-      .help = "write to FILE [standard output]" },
     { CLI_TEXT, 0, "title", &title, "TEXT", .help = "set the title [that of the scene, or nsd]" },
     { CLI_TEXT, 0, "stat", &stat, "FILE", .help = "also plot the JSON lines of nsd-stat in FILE" },
     { 0 },
@@ -134,7 +131,7 @@ static void add_frame(struct page *page, const struct frame *f, FILE *lines, con
     if (j) add_numbers(page, j, "");
 }
 
-static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
+static void run(struct reader *in, struct page *page, FILE *lines)
 {
     struct frame f = { 0 };
     struct failure failure = { 0 };
@@ -146,8 +143,8 @@ static void run(struct reader *in, struct page *page, FILE *out, FILE *lines)
         tool_wants_packing(&f, reader_where(in));
         if (!page->out) {
             char *name = title ? strdup(title) : title_of(&f.packing);
-            if (page_begin(page, out, output ? output : "standard output", name ? name : "nsd",
-                           &failure))
+            if (page_begin(page, stdout, cli_output() ? cli_output() : "standard output",
+                           name ? name : "nsd", &failure))
                 die_why(&failure);
             free(name);
         }
@@ -166,15 +163,12 @@ int tool_main(int argc, char **argv)
     struct reader *in;
     struct page page = { 0 };
     struct failure failure = { 0 };
-    struct output file;
-    FILE *out = stdout, *lines = stat ? fopen(stat, "r") : NULL;
+    FILE *lines = stat ? fopen(stat, "r") : NULL;
     if (stat && !lines) die(EX_NOINPUT, "%s: cannot be opened", stat);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
-    if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    if (output && !(out = output_stream(&file, output, &failure))) die_why(&failure);
-    run(in, &page, out, lines);
-    if (output && output_stream_close(&file, out, &failure)) die_why(&failure);
-    if (!output) finish_stdout();
+    begin_stdout();
+    run(in, &page, lines);
+    finish_stdout();
     page_free(&page);
     if (lines) fclose(lines);
     reader_close(in);

@@ -146,7 +146,8 @@ int writer_open(struct writer **out, const char *path, enum writer_kind kind,
     s->output = &s->file[0];
     if (output_open(s->output, path, failure)) return failure->status;
     s->fd = s->output->fd;
-    s->waits = kind == WRITER_IN_PLACE || (kind == WRITER_COPY && s->output->old >= 0);
+    s->waits = kind == WRITER_IN_PLACE || kind == WRITER_STREAM ||
+               (kind == WRITER_COPY && s->output->old >= 0);
     if (kind == WRITER_IN_PLACE && s->output->old < 0)
         return output_failed(s, failure, "not a regular file");
     return writer_look_at(s, kind, failure);

@@ -11,7 +11,7 @@
 struct writer;
 
 enum writer_kind {
-    WRITER_STREAM,     /* one document for each frame, written when it is whole */
+    WRITER_STREAM, /* one document for each frame, written when it is whole; a file takes its place with all */
     WRITER_TRAJECTORY, /* one growing document, where the output is a regular file of its own */
     WRITER_COPY,       /* the same; the place of a file it takes when it is whole */
     WRITER_IN_PLACE /* the same; the place of the file that there is it takes when it is told to */

@@ -18,14 +18,24 @@
 
 enum {
     MESSAGE = 8192,   /* bytes of a message: names of files are at most 4096 */
-    OPTIONS = 64,     /* room for a tool's options */
-    OF_ALL = 3,       /* options of every tool */
+    OPTIONS = 68,     /* room for a tool's options */
     RENAMED_MOST = 8, /* old names that a tool accepts */
     LEFT = 28,        /* characters of --help's left column */
-    HELP = 1000,      /* what getopt_long returns: beyond all letters */
-    VERSION,
-    UNPACK,
-    FIRST_LONG /* + the option's index */
+    FIRST_LONG = 1000 /* + the option's index: what getopt_long returns, beyond all letters */
+};
+
+/* The options of every tool; one with an -o of its own has not the first */
+static const char *output;
+static double gigabytes; /* that a packed document may hold */
+static bool wants_help, wants_version;
+static const struct cli_option common[] = {
+    { CLI_TEXT, 'o', "output", &output, "FILE", .help = "write to FILE [standard output]",
+      .silent = true },
+    { CLI_REAL, 0, "unpack", &gigabytes, "GB", .max = 1e6, .silent = true,
+      .help = "accept documents that unpack to GB [64 times their size, >= 0.067]" },
+    { CLI_FLAG, 'h', "help", &wants_help, .help = "print this text" },
+    { CLI_FLAG, 'V', "version", &wants_version, .help = "print the version" },
+    { 0 },
 };
 
 static char *history;
@@ -116,16 +126,34 @@ void progress_end(void)
     progress_shown = false;
 }
 
-static bool stdout_named; /* a file that had a name when the tool began */
+static bool stdout_named;     /* a file that had a name when the tool began */
+static struct output printed; /* the file of -o, which takes standard output's place */
+
+const char *cli_output(void)
+{
+    return output;
+}
+
+void begin_stdout(void)
+{
+    struct failure failure = { 0 };
+    if (!output) return;
+    if (output_open(&printed, output, &failure)) die_why(&failure);
+    if (dup2(printed.fd, STDOUT_FILENO) < 0) die(EX_IOERR, "%s: %s", output, strerror(errno));
+}
 
 void finish_stdout(void)
 {
-    bool bad = ferror(stdout), removed = stdout_named && output_removed(STDOUT_FILENO);
+    struct failure failure = { 0 };
+    const char *name = printed.name ? printed.name : "standard output";
+    bool bad = ferror(stdout);
+    bool removed = !printed.name && stdout_named && output_removed(STDOUT_FILENO);
     if (bad) // errno is of something else
-        die(EX_IOERR, "standard output: not all was written (disk full?)");
+        die(EX_IOERR, "%s: not all was written (disk full?)", name);
     if (fflush(stdout) || (fclose(stdout) && errno != EBADF))
-        die(EX_IOERR, "standard output: %s", strerror(errno));
-    if (removed) die(EX_IOERR, "standard output: another program has removed it");
+        die(EX_IOERR, "%s: %s", name, strerror(errno));
+    if (removed) die(EX_IOERR, "%s: another program has removed it", name);
+    if (printed.name && output_close(&printed, &failure)) die_why(&failure);
 }
 
 const char *cli_history(void)
@@ -169,6 +197,24 @@ static void help_option(const struct cli_option *o)
         if (o->choice(k).help) printf("%8s%-8s  %s\n", "", o->choice(k).name, o->choice(k).help);
 }
 
+static const struct cli_option *first_common(void)
+{
+    for (const struct cli_option *const *t = tool.tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind; o++)
+            if (o->letter == 'o') return common + 1;
+    return common;
+}
+
+const struct cli_option *cli_option_at(int k)
+{
+    for (const struct cli_option *const *t = tool.tables; *t; t++)
+        for (const struct cli_option *o = *t; o->kind; o++)
+            if (!k--) return o;
+    for (const struct cli_option *o = first_common(); o->kind; o++)
+        if (!k--) return o;
+    return NULL;
+}
+
 static void help(void)
 {
     printf("usage: %s [OPTION ...] %s\n\n%s\n", tool.name, tool.operands, tool.about);
@@ -176,12 +222,17 @@ static void help(void)
         if ((*t)->kind != CLI_END) printf("\n");
         for (const struct cli_option *o = *t; o->kind; o++) help_option(o);
     }
-    printf("\n  %-*s  accept documents that unpack to GB [64 times their size, >= 0.067]\n", LEFT,
-           "    --unpack GB");
-    printf("  %-*s  print this text\n  %-*s  print the version\n", LEFT, "-h, --help", LEFT,
-           "-V, --version");
+    printf("\n");
+    for (const struct cli_option *o = first_common(); o->kind; o++) help_option(o);
     if (tool.more) printf("\n%s", tool.more);
     printf("\nThe manual: man %s, man 7 nsd\n", tool.name);
+    finish_stdout();
+    exit(0);
+}
+
+static void version(void)
+{
+    printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
     finish_stdout();
     exit(0);
 }
@@ -238,11 +289,6 @@ static void no_such_option(const char *text, const struct option *known)
     die_usage("--%.*s: no such option", (int)n, name);
 }
 
-/* Of every tool, for it is every reader's: how much a packed document may hold */
-static double gigabytes;
-static const struct cli_option unpack = { CLI_REAL, 0,          "unpack",      &gigabytes,
-                                          "GB",     .max = 1e6, .silent = true };
-
 /* Behind the n options that there are: old names that are accepted, which stand for the new ones */
 static void add_renamed(struct option *known, int n)
 {
@@ -256,21 +302,18 @@ static void add_renamed(struct option *known, int n)
 
 int cli_parse(int argc, char **argv)
 {
-    struct option lng[OPTIONS + OF_ALL + RENAMED_MOST + 1] = { { "help", 0, NULL, HELP },
-                                                               { "version", 0, NULL, VERSION },
-                                                               { "unpack", 1, NULL, UNPACK } };
-    const struct cli_option *at[OPTIONS];
-    char letters[2 * OPTIONS + 4] = ":hV";
+    struct option lng[OPTIONS + RENAMED_MOST + 1] = { { 0 } };
+    const struct cli_option *at[OPTIONS], *o;
+    char letters[2 * OPTIONS + 2] = ":";
     int n = 0;
-    for (const struct cli_option *const *t = tool.tables; *t; t++)
-        for (const struct cli_option *o = *t; o->kind && n < OPTIONS; o++, n++) {
-            at[n] = o;
-            bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
-            int wants = flag ? no_argument : required_argument;
-            lng[n + OF_ALL] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
-            if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
-        }
-    add_renamed(lng, OF_ALL + n);
+    for (; n < OPTIONS && (o = cli_option_at(n)); n++) {
+        at[n] = o;
+        bool flag = o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
+        int wants = flag ? no_argument : required_argument;
+        lng[n] = (struct option){ o->name, wants, NULL, FIRST_LONG + n };
+        if (o->letter) sprintf(letters + strlen(letters), flag ? "%c" : "%c:", o->letter);
+    }
+    add_renamed(lng, n);
     json_t *value[OPTIONS] = { NULL };
     int c;
     stdout_named = !output_removed(STDOUT_FILENO);
@@ -279,17 +322,6 @@ int cli_parse(int argc, char **argv)
     memcpy(arguments, argv, size);
     opterr = 0;
     while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
-        if (c == HELP || c == 'h') help();
-        if (c == UNPACK) {
-            cli_set(&unpack, optarg);
-            reader_unpack(1e9 * gigabytes);
-            continue;
-        }
-        if (c == VERSION || c == 'V') {
-            printf("%s (nsd) %s\n", tool.name, NSD_VERSION);
-            finish_stdout();
-            exit(0);
-        }
         if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
         if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
         if (c == '?' && optopt)
@@ -297,15 +329,18 @@ int cli_parse(int argc, char **argv)
                       argv[optind - 1]);
         if (c == '?') no_such_option(argv[optind - 1], lng);
         int k = c - FIRST_LONG;
-        for (int i = 0; c < HELP && i < n; i++)
+        for (int i = 0; c < FIRST_LONG && i < n; i++)
             if (at[i]->letter == c) k = i;
         json_decref(value[k]);
         value[k] = cli_set(at[k], optarg);
         given[k] = at[k]->to;
+        if (wants_help) help();
+        if (wants_version) version();
         if (!is_standard_output(at[k], optarg)) continue;
         json_decref(value[k]);
         value[k] = NULL, given[k] = NULL, *(const char **)at[k]->to = NULL;
     }
+    if (cli_given(&gigabytes)) reader_unpack(1e9 * gigabytes);
     json_t *options = json_object();
     for (int i = 0; i < n; i++) {
         if (value[i] && !at[i]->silent) json_object_set(options, at[i]->name, value[i]);

@@ -27,6 +27,14 @@ int cli_parse(int argc, char **argv);
 /* main()'s argv as it was: options are sorted to the front of that */
 char **cli_arguments(void);
 
+/* Option k of the tool: those of its tables, then those of every tool; NULL past the last */
+const struct cli_option *cli_option_at(int k);
+
+/* The file of -o, of a tool without an option -o of its own; NULL: standard output */
+const char *cli_output(void);
+/* What is printed from now on goes there, and takes its place with finish_stdout(). */
+void begin_stdout(void);
+
 /* Was an option given that sets this variable? Then its value is the user's, else the default. */
 bool cli_given(const void *to);
 
@@ -51,5 +59,5 @@ void progress_now(const char *format, ...) __attribute__((format(printf, 1, 2)))
 void progress_lines(double seconds);
 void progress_end(void);
 
-/* Flushes and closes stdout, where it is text; ends with EX_IOERR if any of it was not written. */
+/* Flushes and closes stdout, where it is text, and the file of -o; ends with EX_IOERR if any of it was not written. */
 void finish_stdout(void);

@@ -8,20 +8,11 @@ static bool is_flag(const struct cli_option *o)
     return o->kind == CLI_FLAG || o->kind == CLI_UNFLAG;
 }
 
-/* Of every tool; cli.c has them apart from the tables. */
-static const struct cli_option common[] = {
-    { CLI_REAL, 0, "unpack", .arg = "GB", .help = "accept documents that unpack to at most GB" },
-    { CLI_FLAG, 'h', "help", .help = "print the options" },
-    { CLI_FLAG, 'V', "version", .help = "print the version" },
-    { 0 },
-};
-
-/* Calls each for the options of all tables. */
+/* Calls each for all options of the tool. */
 static void for_each(void (*each)(const struct cli_option *))
 {
-    for (const struct cli_option *const *t = tool.tables; *t; t++)
-        for (const struct cli_option *o = *t; o->kind; o++) each(o);
-    for (const struct cli_option *o = common; o->kind; o++) each(o);
+    const struct cli_option *o;
+    for (int k = 0; (o = cli_option_at(k)); k++) each(o);
 }
 
 static void completion_words(const struct cli_option *o)

@@ -1,5 +1,6 @@
 /* run/main.c: the only main(), of every tool; the tool itself is in tool_main(). */
 #define _GNU_SOURCE // NOLINT(bugprone-reserved-identifier): on_exit
+#include "file/reader.h"
 #include "run/cli.h"
 #include "run/completion.h"
 
@@ -59,5 +60,7 @@ int main(int argc, char **argv)
     json_set_alloc_funcs(json_memory, free);
     if (argc == 3 && !strcmp(argv[1], "--completion")) return completion(argv[2]);
     int first = cli_parse(argc, argv);
+    if (cli_output() && reader_reads(argc - first, argv + first, cli_output()))
+        die_usage("%s: is also the input", cli_output());
     return tool_main(argc - first, argv + first);
 }

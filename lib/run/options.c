@@ -59,6 +59,7 @@ void options_check(void)
     if (options_names(&options, &failure)) die_usage("%s", failure.text);
     if (!options.device) return;
     if (!strcmp(options.device, "list")) {
+        begin_stdout();
         if (device_list(stdout, &failure)) die_why(&failure);
         finish_stdout();
         exit(0);

@@ -11,7 +11,8 @@ void tool_filter(int files, char *const *file, void (*each)(struct frame *, cons
     struct frame f = { 0 };
     struct failure failure = { 0 };
     bool more;
-    if (writer_open(&out, NULL, WRITER_STREAM, &failure) || reader_open(&in, files, file, &failure))
+    if (writer_open(&out, cli_output(), WRITER_STREAM, &failure) ||
+        reader_open(&in, files, file, &failure))
         die_why(&failure);
     reader_copies(in);
     while (!reader_next(in, NULL, &f, &more, &failure) && more) {

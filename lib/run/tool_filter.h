@@ -8,7 +8,8 @@
 
 /*
  * Reads every frame of every document of the files (of standard input where there are none), passes
- * it through each(), adds the command to its history and writes it to standard output at once.
+ * it through each(), adds the command to its history and writes it to standard output at once, or to the
+ * file of -o.
  * `where` names the document, for messages. Ends the tool where a frame cannot be read or written.
  */
 void tool_filter(int files, char *const *file, void (*each)(struct frame *, const char *where));

@@ -7,6 +7,8 @@
  *     walls     each body against the walls that are near it                                   600 per contact
  *     pairs     gap, normal, u; the law; the change of the reaction to both bodies             550 per pair in reach,
  *                                                                                              140 per other pair
+ *                                                                                              that may be in reach,
+ *                                                                                              2 per one that may not
  *     again     pairs of bodies that a sweep has changed by more than is allowed
  *     judge     what is missing to the law, where it is asked for                              400 per pair in reach
  *     settle    what of a new reaction does not persist is taken out of v^-                    500 per such pair
@@ -91,6 +93,7 @@ struct small_rates {
     double reach;    /* m: pairs that are farther apart do not touch in this step */
     double pulls;    /* m/s: no pair is pulled faster in a step */
     double holds;    /* m: nor are held together without a bridge; 0 */
+    double gone;     /* m: by how much two bodies may have come nearer in this interval */
     double allowed
         [2]; /* m/s: a change of a velocity that is not followed up, in the first sweep and in others */
 };
@@ -111,7 +114,9 @@ struct small {
     struct small_holds *hold;  /* NULL: nothing attracts */
     struct small_stick *stick; /* NULL: no static friction */
     uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */
-    int32_t sweep;        /* counted over all steps, from 1 on */
+    double *until; /* [8 bundles] m: lanes are looked at when rate.gone and the reach exceed it */
+    double slack;  /* m: above the rounding of places */
+    int32_t sweep; /* counted over all steps, from 1 on */
     struct small_rates rate;
 };
 

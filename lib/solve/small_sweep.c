@@ -49,6 +49,21 @@ ALWAYS_INLINE void small_pairs_look(struct small_pairs *y, const struct small *s
     y->d2 = dot3(y->d, y->d), y->ra = xa[3], y->rb = xb[3];
 }
 
+/* Has no pair of these lanes come in reach since it was last looked at? None of them pushes. */
+ALWAYS_INLINE bool small_is_far(const struct small *s, int64_t i, int k, double reach)
+{
+    return !s->live[BUNDLE * i + k] && s->rate.gone + reach < s->until[(BUNDLE * i + k) / LANES];
+}
+
+/* None of them is in reach: when they are to be looked at again */
+ALWAYS_INLINE void small_wait(const struct small_pairs *y, const struct small *s)
+{
+    double gap[LANES], least = INFINITY;
+    vstore(gap, root(y->d2) - (y->ra + y->rb));
+    for (int j = 0; j < LANES; j++) least = gap[j] >= least ? least : gap[j];
+    if (!s->moves) s->until[(BUNDLE * y->i + y->k) / LANES] = s->rate.gone + least - s->slack;
+}
+
 /* The rest */
 ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s)
 {
@@ -268,11 +283,15 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     struct small_pairs y;
     struct small_law l;
     vd had[3], couple[3], df[3], dc[3], dm[3], dp[3] = { splat(0), splat(0), splat(0) };
-    small_pairs_look(&y, s, i, k);
     const double reach = rich && s->rate.holds > s->rate.reach ? s->rate.holds : s->rate.reach;
+    if (small_is_far(s, i, k, reach)) return false;
+    small_pairs_look(&y, s, i, k);
     vd most = y.ra + y.rb + reach;
     vm near = le(y.d2, most * most);
-    if (!s->live[BUNDLE * i + k] && !any(near)) return false;
+    if (!s->live[BUNDLE * i + k] && !any(near)) {
+        small_wait(&y, s);
+        return false;
+    }
     small_pairs_load(&y, s);
     if (rich)
         small_velocity_image(&y, s, &y.ma, &y.mb, l.u);
@@ -357,6 +376,7 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     struct small_law l;
     vd had[3], df[3], zero = splat(0);
     double far[LANES], load[LANES];
+    if (small_is_far(s, i, k, s->rate.reach)) return;
     small_pairs_look(&y, s, i, k);
     vd most = y.ra + y.rb + s->rate.reach;
     vm near = le(y.d2, most * most);

@@ -11,6 +11,8 @@
 /* Of the smallest radius: how much farther than contacts pairs are listed, and how near those are that come first */
 #define MARGIN 0.3
 #define BESIDE 0.1
+/* Of the margin: by how much sooner pairs are looked at again than bounds of ways say */
+#define CLOSE 1e-3
 
 enum { COLOURS = 64 };
 
@@ -18,7 +20,7 @@ static void small_arrays_free(struct small_list *l)
 {
     struct small *s = &l->s;
     free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->live),
-        free(s->late), free(s->group);
+        free(s->late), free(s->until), free(s->group);
     free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
@@ -28,7 +30,7 @@ static void small_forget(struct small_list *l)
 {
     struct small *s = &l->s;
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
-    s->live = s->late = NULL, s->group = NULL;
+    s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
@@ -207,9 +209,10 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
     if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
     s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
+    s->until = calloc((size_t)(s->bundles + 1), BUNDLE * sizeof *s->until);
     if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
         (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) || !s->live ||
-        !s->late)
+        !s->late || !s->until)
         return false;
     for (int64_t i = 0; i < s->bundles; i++)
         for (int k = 0; k < BUNDLE; k++)
@@ -236,6 +239,14 @@ static struct small_past past_of(const struct small *s, int64_t slot)
     }
     for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
     return x;
+}
+
+/* Does the reaction of a slot persist? */
+static bool pair_pushes(const struct small *s, int64_t slot)
+{
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    const int k = (int)(slot % BUNDLE);
+    return c->f[0][k] != 0 || c->f[1][k] != 0 || c->f[2][k] != 0;
 }
 
 void small_list_wake(struct small *s, int64_t slot)
@@ -278,18 +289,6 @@ vec3 small_slot_force(const struct small *s, int64_t slot)
     if (!s->hold) return f;
     const vec3 d = small_branch(s, slot);
     return v3_axpy(f, -s->hold[slot / BUNDLE].x[HOLD_PULL][k] / v3_norm(d), d);
-}
-
-vec3 small_branch(const struct small *s, int64_t slot)
-{
-    const int k = (int)(slot % BUNDLE);
-    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
-    const struct small_place *a = &s->place[body_index(c->a[k])];
-    const struct small_place *b = &s->place[body_index(c->b[k])];
-    vec3 d = v3_sub(small_vec(b->x), small_vec(a->x));
-    if (!s->shift) return d;
-    const struct small_shift *h = &s->shift[slot / BUNDLE];
-    return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
 }
 
 struct contact_key small_pair_key(const struct pair *q)
@@ -486,7 +485,7 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     was = *l;
     small_forget(l);
     l->spare = MARGIN * packing_whole(p).small, l->way = 0;
-    l->margin = l->spare + small_tie_reach(p);
+    l->margin = l->spare + small_tie_reach(p), l->s.slack = CLOSE * l->margin;
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
     if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
         room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
@@ -579,6 +578,7 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
         remember_one(&m, k, by[i]->f, by[i]->m, 1 / part);
     }
     for (int64_t i = 0; i < l->pairs.n; i++) {
+        if (!pair_pushes(&l->s, l->slot[i])) continue;
         const struct small_past x = past_of(&l->s, l->slot[i]);
         remember_one(&m, small_pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
     }

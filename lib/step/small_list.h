@@ -81,8 +81,6 @@ static inline vec3 small_image_velocity(const struct small *s, int64_t slot)
 }
 /* N s: what both bodies of slot i feel, on b, in the step in hand */
 vec3 small_slot_force(const struct small *s, int64_t slot);
-/* m, from a to the image of b that it meets: of slot i */
-vec3 small_branch(const struct small *s, int64_t slot);
 /* Of a branch; of bodies in one place, that along y */
 static inline vec3 small_normal(vec3 branch)
 {
@@ -97,6 +95,18 @@ double small_wall_distance(const struct packing *p, const struct pose *pose, int
 static inline vec3 small_vec(const double x[3])
 {
     return v3(x[0], x[1], x[2]);
+}
+/* m, from a to the image of b that it meets: of slot i */
+static inline vec3 small_branch(const struct small *s, int64_t slot)
+{
+    const int k = (int)(slot % BUNDLE);
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    const struct small_place *a = &s->place[body_index(c->a[k])];
+    const struct small_place *b = &s->place[body_index(c->b[k])];
+    vec3 d = v3_sub(small_vec(b->x), small_vec(a->x));
+    if (!s->shift) return d;
+    const struct small_shift *h = &s->shift[slot / BUNDLE];
+    return v3_add(d, v3(h->d[0][k], h->d[1][k], h->d[2][k]));
 }
 static inline void small_array(double to[3], vec3 x)
 {

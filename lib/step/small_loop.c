@@ -45,7 +45,8 @@ static int64_t shaken_by(const struct small_run *r, int64_t i)
 {
     const struct small *s = &r->l->s;
     const vec3 dv = v3_sub(small_vec(s->body[i].v), small_vec(s->before[i].v));
-    return s->body[i].im > 0 ? (int64_t)(SHAKEN_ONE * fmin(1, v3_norm(dv) / r->fall)) : 0;
+    const double x = v3_norm(dv) / r->fall, by = x < 1 ? x : 1;
+    return s->body[i].im > 0 ? (int64_t)(SHAKEN_ONE * by) : 0;
 }
 
 static double small_warm(const struct small_run *r, int64_t shaken)
@@ -212,8 +213,9 @@ static void settle_slot(struct small *s, int64_t slot)
     const int k = (int)(slot % BUNDLE);
     struct small_bundle *c = &s->bundle[i];
     const int64_t a = body_index(c->a[k]), b = body_index(c->b[k]);
-    if (a >= s->bodies) return;
-    const vec3 d = small_branch(s, slot), f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
+    const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
+    if (f.x == 0 && f.y == 0 && f.z == 0) return;
+    const vec3 d = small_branch(s, slot);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
     const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
     const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
@@ -261,16 +263,24 @@ static double farthest(const struct small_run *r)
     return sqrt(most);
 }
 
+/* m/s: of a point of a wall */
+static double fastest_wall(const struct small_run *r)
+{
+    double most = 0;
+    for (int32_t w = 0; w < r->p->walls; w++) most = fmax(most, r->wall[w].top);
+    return most;
+}
+
 /* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
 static void prepare_step(struct small_run *r)
 {
     struct small_list *l = r->l;
-    const double wall = small_wall_speed(r->p),
+    const double wall = fastest_wall(r),
                  way = r->h * (fmax(sqrt(r->fastest), wall) + small_cell_stretch(r));
     if (!isfinite(way)) r->failed = r->stop = true;
     l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
     if (wall == 0 && !r->cell.moves && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
-    l->way += way;
+    l->way += way, l->s.rate.gone += 2 * way;
     r->shaken = 0;
     r->stop = r->stop || l->way + way > 0.49 * l->spare;
     r->fastest = 0;

@@ -16,7 +16,8 @@ struct small_wall {
     vec3 at, v, spin; /* m; m/s, rad/s: of its material at that point */
     vec3 held;        /* rad/s: of the spin, what is prescribed */
     vec3 belt;        /* m/s */
-    double way;       /* m: that its fastest point has gone in the interval */
+    double top;       /* m/s: of its fastest point */
+    double way;       /* m: that it has gone in the interval */
 };
 
 /* The cell in a small step [step/small_cell.h] */

@@ -18,13 +18,14 @@ void small_walls_set(struct small_run *r)
     for (int32_t w = 0; w < p->walls; w++) {
         const struct wall *wall = &p->wall[w];
         const vec3 at = wall_at(p, wall, t);
-        const double way = r->wall[w].way + r->h * wall_top_speed(p, wall);
+        const double top = wall_top_speed(p, wall), way = r->wall[w].way + r->h * top;
         r->wall[w] = (struct small_wall){ .there = wall_there(wall, t),
                                           .pose = wall_pose(p, wall, t),
                                           .at = at,
                                           .v = wall_held(p, wall, at),
                                           .spin = wall_spin(p, wall),
                                           .held = small_spin_held(p, wall),
+                                          .top = top + v3_norm(wall->belt),
                                           .way = way };
         r->wall[w].belt = quat_turn(wall_pose(p, wall, p->t + p->dt / 2).q, wall->belt);
     }

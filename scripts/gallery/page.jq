@@ -20,13 +20,13 @@ def hours($all): [$all[].runs[]?.cpu // empty] | add // 0 | . / 3600 | digits(2)
 " an independent code: `bench/reference/dem.c`, soft discs and balls with springs, dashpots and tangential memory, explicit in time, with overlaps of 1e-4 to 1e-2 diameters," +
 " from the same starts and by the same measures. Values are means over the seeds with their standard errors.", "",
 "- A value **differs** where it lies outside the published range by more than two of its own standard errors. The codes differ where their values are apart by more than two standard errors of the difference.",
-"- A range from a source whose text was not read is a *remark*: it judges nothing. Nor do identities of momentum and rows with one bound.",
+"- A range from a source whose text was not read is a *remark*: it judges nothing. Identities of momentum and rows with one bound judge nothing either.",
 "- *Not yet run*: the set-up has changed since the last run; the value in brackets is that of the set-up before.", "",
 "\(length) rows. \(count(judged)) are judged: \(count(judged and .verdict != "differs")) agree with what is published, \(count(judged and .verdict == "differs")) differ." +
 " \(count(.kind == "not read")) have a range whose source was not read, \(count(.kind == "identity")) are identities, \(count(.kind == "one bound")) have one bound, \(count(.kind == "no range")) none; \(count(.kind == "judged" and .verdict == "not yet run")) would be judged and are not yet run (\(count(.verdict == "not yet run")) of all rows)." +
 " The independent code has a value in \(count(.independent and .kind != "identity")) rows that are no identities: in \(count(.codes == "same")) both codes agree, in \(count(.codes == "differ")) they differ" +
 (if any(.[]; .codes == "unknown") then ", in \(count(.codes == "unknown")) a run has one seed only and no error" else "" end) + (count(.independent and .codes == null and .kind != "identity") as $n | if $n > 0 then "; in \($n) nsd\u0027s own value is not yet run" else "" end) + "." +
-(count(judged and .verdict == "differs" and .codes == "same") as $n | if $n > 0 then " Of the rows that differ the independent code has nsd\u0027s value in \($n)." else "" end), "",
+(count(judged and .verdict == "differs" and .codes == "same") as $n | if $n > 0 then " The independent code has nsd\u0027s value in \($n) of the rows that differ." else "" end), "",
 "`make gallery` makes all experiments again by nsd, `make gallery-reference` by the independent code, both at full size (`QUICK=1`: small, in minutes);" +
 " `make gallery-keep` puts the results here, and `make gallery-page` writes this page from them. The runs below whose cost was recorded took \(hours($results)) (nsd) and \(hours($references)) (independent code) CPU hours.", "",
 "Single forces of a pile by both codes, their distribution and their chains side by side: [docs/forces](../forces/README.md). Impacts of several balls at once by both codes: nsd-methods(7), Impact.", "",

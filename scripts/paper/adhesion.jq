@@ -55,7 +55,7 @@ def claims:
     | [ "Newton improves the time by more than 20 %", "time over SBP\u0027s: EBP \($x[0] | spread) and \($x[2] | spread), EAL \($x[1] | spread) and \($x[3] | spread) (examples 2 and 3); 500 sweeps of one problem of example 3: EBP \($x[4] | spread), EAL \($x[5] | spread), exact \($x[6] | spread)",
         verdict($x[0:4] | all(.mid < 0.8); $x[0:4] | any(.mid < 0.8)) + " (a matter of time, on one machine)" ] ),
   ( [less("example2"; "ebp"; .max_penetration), less("example3"; "ebp"; .max_penetration), less("example2"; "ebp"; .max_penetration_true), less("example3"; "ebp"; .max_penetration_true)] as $x
-    | [ "EBP\u0027s penetration is far smaller than SBP\u0027s", "the same problems given to both, SBP\u0027s over EBP\u0027s: as the local solve believes \($x[0] | spread) and \($x[1] | spread), of the motion \($x[2] | spread) and \($x[3] | spread) (examples 2 and 3)",
+    | [ "EBP\u0027s penetration is far smaller than SBP\u0027s", "the same problems given to both, SBP\u0027s over EBP\u0027s: in the local solve \($x[0] | spread) and \($x[1] | spread), of the motion \($x[2] | spread) and \($x[3] | spread) (examples 2 and 3)",
         verdict($x | all(.mid > 5); $x | any(.mid > 5)) ] ),
   ( [part("sbp"; .penetration), part("sal"; .penetration)] as $x
     | [ "SBP, SAL: the error is governed by penetration", "its share of eps_glob in example 3: SBP \($x[0] | percent), SAL \($x[1] | percent); the motion has \([part("sbp"; .motion), part("sal"; .motion)] | map(percent) | join(" and "))",

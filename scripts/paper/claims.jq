@@ -75,17 +75,17 @@ faster("EAL"; "eal"; "7, 17 and 16"; "0.93, 0.83 and 0.84"),
 
 ([believed("sbp"; "ebp"), moved("sbp"; "ebp")] as [$own, $true]
  | [ "EBP's penetration 5 times smaller than SBP's", "EBP's penetration is 5 times smaller than SBP's (in example 3's table 7 times)",
-     "the same problems given to both: as the local solve believes \($own | map(spread) | list) times (examples 2, 3, discs 2, 3); of the motion \($true | map(spread) | list) times",
+     "the same problems given to both: in the local solve \($own | map(spread) | list) times (examples 2, 3, discs 2, 3); of the motion \($true | map(spread) | list) times",
      ($own + $true | verdict(.mid >= 5)), "" ]),
 
 ([believed("ebp"; "eal"), moved("ebp"; "eal")] as [$own, $true]
- | [ "EAL's penetration far smaller than EBP's", "EAL's penetration is far smaller than EBP's (2e-20 beside 6e-13 in example 2, 4e-18 beside 3e-7 in example 3)",
-     "the same problems given to both, EBP's over EAL's: as the local solve believes \($own | map(spread) | list) times (examples 2, 3, discs 2, 3; less than 1e-17 m/s counts as that, the rounding of such velocities); of the motion \($true | map(spread) | list) times. Far smaller: at least 1000 times",
+ | [ "EAL's penetration far smaller than EBP's", "EAL's penetration is far smaller than EBP's (2e-20 instead of 6e-13 in example 2, 4e-18 instead of 3e-7 in example 3)",
+     "the same problems given to both, EBP's over EAL's: in the local solve \($own | map(spread) | list) times (examples 2, 3, discs 2, 3; less than 1e-17 m/s counts as that, the rounding of such velocities); of the motion \($true | map(spread) | list) times. Far smaller: at least 1000 times",
      ($own + $true | verdict(.mid >= 1000)), "" ]),
 
 ([four | same(.; "eal")] as $eal
  | [ "EAL's penetration very small", "EAL's penetration is very small (2e-20, 4e-18)",
-     "as the local solve believes at most \($eal | map(map(.max_penetration) | max | digits(1)) | list) m/s; of the motion up to \($eal | map(map(.max_penetration_true) | max | digits(1)) | list) m/s (examples 2, 3, discs 2, 3)",
+     "in the local solve at most \($eal | map(map(.max_penetration) | max | digits(1)) | list) m/s; of the motion up to \($eal | map(map(.max_penetration_true) | max | digits(1)) | list) m/s (examples 2, 3, discs 2, 3)",
      (($eal | map(map(.max_penetration) | max)) + ($eal | map(map(.max_penetration_true) | max)) | verdict(. < 1e-15)), "" ]),
 
 [ "SBP, SAL: penetration governs the error", "SBP, SAL: the error is governed by penetration",

@@ -24,7 +24,7 @@ NAVIGATION = [
              ('cookbook/README.md', 'Cookbook'), ('docs/drawings/README.md', 'Drawings'), ('man', 'Manuals')]),
     ('Evidence', [('docs/gallery/README.md', 'Gallery'), ('docs/paper/README.md', 'Paper'),
                   ('docs/powder/README.md', 'Powder'), ('docs/forces/README.md', 'Forces'),
-                  ('docs/peers/README.md', 'Peers'), ('docs/wall/README.md', 'Wall'),
+                  ('docs/peers/README.md', 'Peers'), ('docs/wall/README.md', 'Large piles'),
                   ('docs/scale/README.md', 'Scale'), ('docs/breakage/README.md', 'Breakage'),
                   ('bench/README.md', 'Benchmarks')]),
     ('Project', [('LIMITATIONS.md', 'Limitations'), ('CHANGELOG.md', 'Changes'), ('CONTRIBUTING.md', 'Contributing'),

@@ -32,10 +32,58 @@ keeps_fields() { keeps "$1" eval "nsd-stat -f $1 cut.h5"; }
 keeps_fields x.h5
 keeps_fields x.vti
 keeps x.h5 nsd-cat -o x.h5 good.h5 cut.h5
+nsd-step -n 300 good.h5 2>/dev/null | nsd-cat --last | nsd-detect >contacts.h5
+nsd-solve contacts.h5 2>/dev/null >solved.h5
+# the second document is cut: what the first gives is not written either
+for tool in nsd-info nsd-stat 'nsd-stat -t -m fraction' nsd-err nsd-detect nsd-move nsd-solve; do
+    # shellcheck disable=SC2086 # words
+    case $tool in *err | *move) keeps x $tool -o x solved.h5 cut.h5 ;; *) keeps x $tool -o x contacts.h5 cut.h5 ;; esac
+done
+echo '{"dt": 1, "bodies": 3}' >bad.json
+keeps x nsd-gen -o x bad.json
+keeps x nsd-gen -o x --check bad.json
 mkdir dir
 keeps dir/grains.pvd nsd-export -o dir/ cut.h5
 refuses 65 "nsd-export into a folder that is not there" nsd-export -o made/ cut.h5
 ok "makes none" test ! -e made
+is "and nothing else is left" "$(left)" 0
+
+# ---- -o of every tool: the bytes of standard output ----
+
+while read -r line; do
+    ok "$line -o FILE has the bytes of standard output" eval "$line >out.std 2>/dev/null && $line -o out.file 2>/dev/null && cmp out.std out.file"
+    ok "so has -o -" eval "$line -o x -o - >out.file 2>/dev/null && cmp out.file out.std && test ! -e ./- && test ! -e x"
+    refuses 74 "to a full disk" eval "$line -o /dev/full"
+    like "names the file" "$(cat err)" "/dev/full: .*(No space|disk full|not written|cannot be written)"
+    refuses 74 "into a folder that is not there" eval "$line -o no/x"
+    like "names it" "$(cat err)" "no/x: No such file"
+done <<'END'
+nsd-gen 5
+nsd-gen --schema
+nsd-gen --keys
+nsd-detect good.h5
+nsd-solve contacts.h5
+nsd-move solved.h5
+nsd-err solved.h5
+nsd-info -p good.h5
+nsd-stat t.h5
+nsd-stat --list
+nsd-web t.h5
+nsd-cat --stream t.h5
+nsd-export -t csv t.h5
+nsd-step -n 1 good.h5
+nsd-solve --device list
+END
+for tool in nsd-detect nsd-info nsd-stat nsd-web nsd-cat 'nsd-export -t csv' nsd-step; do
+    refuses 64 "$tool -o: its input" eval "$tool -o good.h5 good.h5"
+    like "is named" "$(head -1 err)" 'good.h5: is also the input'
+    refuses 64 "$tool: standard input, too" eval "$tool -o good.h5 <good.h5"
+done
+nsd-gen --check 5 >out.std 2>/dev/null
+ok "nsd-gen --check -o FILE, too" eval 'nsd-gen --check -o out.file 5 2>/dev/null && cmp out.std out.file'
+echo '{"dt": 1, "bodies": []}' >own.json
+refuses 64 "nsd-gen -o: the scene" nsd-gen -o own.json own.json
+ok "a log of nsd-solve is no output" eval '! nsd-solve --log out.file -o out.file contacts.h5 2>err'
 is "and nothing else is left" "$(left)" 0
 
 # ---- films ----

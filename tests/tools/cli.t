@@ -31,13 +31,25 @@ for tool in "${tools[@]}"; do
     is "$tool -V is --version, -h --help" "$("$tool" -V; "$tool" -h)" "$(cat "$tmp/out"; "$tool" --help)"
     like "says the version" "$(cat "$tmp/out")" "^$tool \(nsd\) [0-9]+\.[0-9]+$"
 done
-for tool in "${tools[@]}"; do
-    "$tool" --help | grep -o -E '^ +(-., )?--[a-z-]+' | grep -o -e '--.*' | sort -u >"$tmp/options"
+all() { for t in tools/nsd-*; do basename "$t" .c; done; } # tests/project/docs.t compares their manuals with --help
+words() # of a completion: the long options
+{
+    grep -v '^ *#' "$1" | sed 's/\[.*\]//' | grep -oE -e '[ {,(:]--[a-z0-9-]+' -e "'--[a-z0-9-]+" | grep -o -e '--.*' | sort -u
+}
+for tool in $(all); do
+    "$tool" --help | sed -n '/^Examples/q; s/^ *\(-., \)\{0,1\}\(--[a-z0-9-]*\).*/\2/p' | sort -u >"$tmp/options"
     for shell in bash zsh; do
         status 0 "$tool --completion $shell" "$tool" --completion $shell
-        is "has every option of --help" "$(while read -r option; do grep -q -e "$option" "$tmp/out" || echo "$option"; done <"$tmp/options")" ""
+        is "has the options of --help, and no other" "$(words "$tmp/out" | grep -v -x -e --completion)" "$(<"$tmp/options")"
     done
     refuses 64 "$tool --completion of another shell" "$tool" --completion fish
+    is "$tool has -h, -V and -o" "$("$tool" --help | grep -c -E '^  -(h, --help|V, --version|o, --output) ')" 3
+done
+# -j has one default, and 0 of it is refused
+for tool in $(all); do
+    "$tool" --help | grep -q -e '-j, --threads' || continue
+    like "$tool -j" "$("$tool" --help | grep -e '-j, ')" '\[1\]$'
+    refuses 64 "$tool -j 0" "$tool" -j 0
 done
 while read -r line; do
     read -r tool option near <<<"$line"
