@@ -22,8 +22,8 @@ nsd-web --title "500 balls fall into a box" --every 5 -o "$dir/out.html" "$dir/o
 
 echo
 echo "the last steps:"
-printf 'step\tcontacts\tsweeps\toverlap, smallest radii\tmissing impulse, of the load\n'
-tail -n 5 "$dir/steps.tsv"
+printf '%-6s%-10s%-8s%-25s%s\n' step contacts sweeps 'overlap, smallest radii' 'missing impulse, of the load'
+tail -n 5 "$dir/steps.tsv" | awk -F '\t' '{ printf "%-6s%-10s%-8s%-25.4f%.3f\n", $1, $2, $3, $4, $5 }'
 echo
 echo "look at    $dir/demo.png, and in a browser $dir/out.html, which plays it"
 echo "ask        build/nsd-info $dir/out.h5 | jq -c 'select(.step == 1000)'"

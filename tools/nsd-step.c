@@ -42,7 +42,7 @@ static const struct cli_option own[] = {
     { CLI_TIME, 0, "until", &until, "T", "make steps until the time is T: 2 or 2s, 5ms [by -n]",
       .min = -1e300, .max = 1e300 },
     { CLI_TEXT, 0, "dt", &options.dt, "DT",
-      .help = "set the time step, s: one solve per step [document's, in small steps]" },
+      .help = "set the time step, 1e-4 or 0.1ms: one solve per step [document's, small steps]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
@@ -52,7 +52,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "contacts", &contacts, .help = "also keep the contacts of each frame" },
     { CLI_FLAG, 0, "forces", &forces,
       .help = "also keep their forces as vectors in N; implies --contacts" },
-    { CLI_FLAG, 0, "sums", &sums,
+    { CLI_FLAG, 0, "wall-loads", &sums,
       .help = "sum forces and work on walls over steps: nsd-stat -m wall_loads" },
     { CLI_FLAG, 'w', "warm", &options.warm,
       .help = "start each solve from the reactions of the last step" },
@@ -748,9 +748,9 @@ int tool_main(int argc, char **argv)
         start(&r, in, asked);
     if (sums && !r.f.packing.sums.n) {
         if (in_place)
-            die_usage(
-                "--sums: %s keeps none, and a trajectory has them from its first frame: -o FILE",
-                argv[0]);
+            die_usage("--wall-loads: %s keeps none, and a trajectory has them from its first "
+                      "frame: -o FILE",
+                      argv[0]);
         if (sums_begin(&r.f.packing.sums, r.f.packing.walls, r.f.packing.wall, r.f.packing.t,
                        &failure))
             die_why(&failure);

@@ -16,7 +16,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static int64_t step = -1, every, samples = 3, threads = 1, follow = -1, rate = 25;
+static struct cli_every every; /* 0, 0: one picture */
+static int64_t step = -1, samples = 3, threads = 1, follow = -1, rate = 25;
 static int colour = COLOUR_RADIUS, walls;
 static bool plain, bare, svg, strays;
 static double perspective, pale;
@@ -56,8 +57,8 @@ static struct cli_choice surface_choice(int k)
 static const struct cli_option own[] = {
     { CLI_INT, 's', "step", &step, "N", .max = 1e15,
       .help = "draw the frame of step N [last frame]" },
-    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
-      .help = "draw every K-th frame, numbered from 0 [one picture]" },
+    { CLI_EVERY, 0, "every", &every, "K|T", .max = 1e15,
+      .help = "draw every K-th frame, or one per time T: 0.1s, 5ms [one picture]" },
     { CLI_TEXT, 'o', "output", &output, "FILE", .silent = true,
       .help = "write to FILE; for a series 'f%05d.png' or film.mp4 [stdout]" },
     { CLI_INT, 0, "rate", &rate, "N", .min = 1, .max = 240,
@@ -451,28 +452,36 @@ static void series_close(void)
     free(series_out.pattern), free(series_out.path);
 }
 
-/* Draws every K-th frame; the first document's decide about the view of all. */
+/* Reads frame k, the n-th of all documents, if --every wants it. */
+static bool series_takes(struct reader *in, int64_t k, int64_t n, double *passed, struct frame *f)
+{
+    struct failure failure = { 0 };
+    if (every.steps && n % every.steps) return false;
+    if (reader_frame(in, k, f, &failure)) die_why(&failure);
+    return every.steps || every_passed(&every, passed, f->packing.t);
+}
+
+/* Draws frames of all documents; the first document's decide about the view of all. */
 static void series(struct reader *in, int files, char *const *file, struct view *v)
 {
     struct frame f = { 0 };
     struct failure failure = { 0 };
-    int64_t frames, before = 0, drawn = 0;
+    int64_t frames, before = 0, drawn = 0; // frames count on through documents
+    double passed = NAN;
     series_open();
     while (!reader_document(in, &frames, &failure) && frames >= 0) {
-        int64_t first = (every - before % every) % every; // frames count on through documents
         bool fitted = v->started;
-        for (int64_t k = first; !fitted && k < frames; k += every) {
-            if (reader_frame(in, k, &f, &failure)) die_why(&failure);
-            extend(v, &f, reader_where(in));
-        }
-        for (int64_t k = first; k < frames; k += every, drawn++) {
-            if (reader_frame(in, k, &f, &failure)) die_why(&failure);
+        double looked = passed;
+        for (int64_t k = 0; !fitted && k < frames; k++)
+            if (series_takes(in, k, before + k, &looked, &f)) extend(v, &f, reader_where(in));
+        for (int64_t k = 0; k < frames; k++) {
+            if (!series_takes(in, k, before + k, &passed, &f)) continue;
             set_values(v, &f, reader_where(in));
             view_follow(v, &f.packing);
             if (!fitted) fit(v, &f);
             fitted = true;
-            series_add(v, &f, drawn, files, file, reader_where(in));
-            progress("%lld pictures", (long long)drawn + 1);
+            series_add(v, &f, drawn++, files, file, reader_where(in));
+            progress("%lld pictures", (long long)drawn);
         }
         before += frames;
     }
@@ -499,16 +508,17 @@ int tool_main(int argc, char **argv)
     struct frame f = { 0 };
     struct failure failure = { 0 };
     struct view v = view_of_options();
-    if (every && step >= 0) die_usage("--step and --every exclude each other");
-    if (every && !output) die_usage("--every needs --output 'name%%05d.png'");
-    if (svg && every && film_name(output)) die_usage("--svg: a film is of PNGs");
-    if (!every && output && film_name(output)) die_usage("%s: a film needs --every", output);
+    const bool many = cli_given(&every);
+    if (many && step >= 0) die_usage("--step and --every exclude each other");
+    if (many && !output) die_usage("--every needs --output 'name%%05d.png'");
+    if (svg && many && film_name(output)) die_usage("--svg: a film is of PNGs");
+    if (!many && output && film_name(output)) die_usage("%s: a film needs --every", output);
     if (!output && isatty(STDOUT_FILENO))
         die(EX_USAGE, "standard output is a terminal: a picture is binary, use > FILE or a pipe");
     read_values(&v);
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     if (output && reader_reads(argc, argv, output)) die_usage("%s: is also the input", output);
-    if (every) {
+    if (many) {
         if (!film_name(output)) conversion(output);
         series(in, argc, argv, &v);
     } else {

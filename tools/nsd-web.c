@@ -13,14 +13,14 @@
 #include <string.h>
 #include <unistd.h>
 
-static int64_t every = 1;
+static struct cli_every every = { 1, 0 };
 static const char *title, *stat, *steps;
 
 static const struct cli_option own[] = {
     { CLI_TEXT, 's', "frames", &steps, "A:B:K",
       .help = "process the frames of steps A to B, every K-th [all]" },
-    { CLI_INT, 0, "every", &every, "K", .min = 1, .max = 1e15,
-      .help = "show every K-th frame [1]" },
+    { CLI_EVERY, 0, "every", &every, "K|T", .max = 1e15,
+      .help = "show every K-th frame, or one per time T: 0.1s, 5ms [1]" },
     { CLI_TEXT, 0, "title", &title, "TEXT", .help = "set the title [that of the scene, or nsd]" },
     { CLI_TEXT, 0, "stat", &stat, "FILE", .help = "also plot the JSON lines of nsd-stat in FILE" },
     { 0 },
@@ -137,10 +137,12 @@ static void run(struct reader *in, struct page *page, FILE *lines)
     struct failure failure = { 0 };
     struct range range = { 0, INT64_MAX, 1 };
     bool more = false;
+    double passed = NAN;
     if (steps && !range_parse(&range, steps)) die_usage("--frames: '%s' is not A:B:K", steps);
     for (int64_t k = 0; !reader_next(in, steps ? &range : NULL, &f, &more, &failure) && more; k++) {
-        if (k % every) continue;
+        if (every.steps && k % every.steps) continue;
         tool_wants_packing(&f, reader_where(in));
+        if (!every.steps && !every_passed(&every, &passed, f.packing.t)) continue;
         if (!page->out) {
             char *name = title ? strdup(title) : title_of(&f.packing);
             if (page_begin(page, stdout, cli_output() ? cli_output() : "standard output",

@@ -6,7 +6,7 @@ read -ra step <<<"${STEP---stiffness $(jq -n "600 * $load")}" # options of nsd-s
 step() # LOAD ARGUMENT ...: steps under a load, N
 {
     local load=$1
-    nsd-step "${step[@]}" --sums --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-boundaries head "${@:2}"
+    nsd-step "${step[@]}" --wall-loads --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-walls head "${@:2}"
 }
 jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson speed "$speed" |
     nsd-gen - >filled.h5

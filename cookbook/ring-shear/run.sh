@@ -12,7 +12,7 @@ jq -r '[.from, .to, .vanes] | @tsv' <<<"$cell" | awk '{ n = $3; m = 3 * n; for (
 step() # LOAD ARGUMENT ...: steps under a load, N
 {
     local load=$1
-    nsd-step "${step[@]}" --sums --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-boundaries head "${@:2}"
+    nsd-step "${step[@]}" --wall-loads --every 0.004s --with "jq -cn --unbuffered --argjson load $load -f servo.jq" --with-walls head "${@:2}"
 }
 jq -n -f scene.jq --argjson grain "$grain" --argjson size "$size" --argjson dt "$dt" --argjson omega "$omega" --arg surfaces "$surfaces" --argjson cell "$cell" |
     nsd-gen - >filled.h5

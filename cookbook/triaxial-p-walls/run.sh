@@ -5,7 +5,7 @@ nsd-gen scene.json | nsd-step --overlap-rule gap --until 0.01 --every 0.01s -o s
 test() # NAME FROM CHANGE: what the servo then does; z becomes shorter at 30 per s
 {
     nsd-info --scene "$2.h5" | jq ".bodies[0].at_rest = true | .servo.strain_rate = [15, 15, -30] | $3" | nsd-gen - >"$1-start.h5"
-    nsd-step --overlap-rule gap -n "$4" --every 25 --sums -o "$1.h5" "$1-start.h5"
+    nsd-step --overlap-rule gap -n "$4" --every 25 --wall-loads -o "$1.h5" "$1-start.h5"
     # a row for each frame: axial and volumetric strain, pressures of the lid and the sides, mean of all by their distances
     paste <(nsd-stat -m strain "$1-start.h5" "$1.h5" | jq -r 'select(.step > '"$(nsd-info "$1-start.h5" | jq 'select(.step != null) | .step')"') | [.strain.tensor[2][2], .strain.volumetric] | @tsv') \
         <(nsd-stat -m wall_loads "$1.h5" 2>/dev/null | jq -c '.wall_loads.normal') \

@@ -9,6 +9,6 @@ controller='jq -c --unbuffered ".boundaries[0] | {boundaries: {\"0\": {
     force: (-2 * (100 * (.position[2] - 0.5) + 20 * .velocity[2]))}}}"'
 
 nsd-gen - <<<"$scene" |
-    nsd-step -n 300 --with "$controller" --with-boundaries all 2>/dev/null |
+    nsd-step -n 300 --with "$controller" --with-walls all 2>/dev/null |
     nsd-info --last --walls |
     jq -c '{case: "piston", place: (1 + .load.travel), expected: (0.5 + 0.5 * 4 * (-3 | exp))}'

@@ -76,13 +76,27 @@ static double read_time(const char *text, double *x)
     return -1;
 }
 
+bool time_parse(double *seconds, const char *text)
+{
+    double x, unit = read_time(text, &x);
+    *seconds = unit > 0 ? x * unit : x;
+    return unit >= 0;
+}
+
+bool every_passed(const struct cli_every *e, double *last, double t)
+{
+    const double multiple = floor(t / e->seconds + 1e-6); // times of frames are rounded
+    bool passed = multiple != *last;                      // NAN, too
+    *last = multiple;
+    return passed;
+}
+
 static int set_time(const struct cli_option *o, double *to, const char *text,
                     struct failure *failure)
 {
-    double x, unit = read_time(text, &x);
-    if (unit < 0)
+    double x;
+    if (!time_parse(&x, text))
         return option_wrong(o, failure, text, "is no time as 90 (seconds), 5ms, 90s, 10min or 2h");
-    if (unit > 0) x *= unit;
     if (!(x > o->min && x <= o->max))
         return failure_set(failure, EX_USAGE, "--%s: %s must be above %g s and at most %g s",
                            o->name, text, o->min, o->max);
@@ -96,7 +110,7 @@ static int set_every(const struct cli_option *o, struct cli_every *e, const char
     double x, unit = read_time(text, &x);
     if (unit < 0)
         return option_wrong(o, failure, text,
-                            "is neither a number of steps nor, as 0.01s or 5ms, a time");
+                            "is neither a whole number nor, as 0.01s or 5ms, a time");
     if (unit > 0 ? !(x > 0) : !(x >= 1 && x <= o->max && x == floor(x)))
         return failure_set(failure, EX_USAGE, "--%s: %s must be %s", o->name, text,
                            unit > 0 ? "above 0" : "a whole number, at least 1");

@@ -30,6 +30,12 @@ struct cli_every {
     double seconds;
 };
 
+/* Is the frame at time t one of those by times: the first of all, or the first at or after a multiple of e->seconds?
+   last: NAN before the first */
+bool every_passed(const struct cli_every *e, double *last, double t);
+/* Reads a time as options have it; false where text is none. */
+bool time_parse(double *seconds, const char *text);
+
 /* A word that an option takes, and what it means; help may be NULL. */
 struct cli_choice {
     const char *name, *help;

@@ -8,6 +8,8 @@ static const struct renamed table[] = {
     { "nsd-solve nsd-step nsd_set", "method", "local", false },
     { "nsd-cat nsd-export nsd-info nsd-stat nsd-web", "steps", "frames", false },
     { "nsd-view", "cut", "clip", false },
+    { "nsd-step", "sums", "wall-loads", true },
+    { "nsd-step", "with-boundaries", "with-walls", true },
     { "nsd-detect nsd-solve nsd-step", "overlap", "overlap-rule", true },
     { "nsd_set", "overlap", "overlap-rule", false },
     { "nsd-solve nsd-step", "eps", "tolerance", true },

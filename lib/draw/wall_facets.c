@@ -95,7 +95,7 @@ int solid_init(struct solid_walls *s, const struct packing *p, const struct soli
     *s = (struct solid_walls){ .by = by, .lo = o->lo, .hi = o->hi };
     if (selection_init(&c, p, "--solid", o->list, failure)) return failure->status;
     if (by != SURFACE_NAME && !p->sums.n)
-        failure_set(failure, EX_DATAERR, "no sums of walls (nsd-step --sums keeps them)");
+        failure_set(failure, EX_DATAERR, "no sums of walls (nsd-step --wall-loads keeps them)");
     if (!failure->status && !face_of_init(&s->faces, p, false, failure) &&
         !(s->colour = calloc((size_t)s->faces.n + 1, sizeof *s->colour)))
         failure_set(failure, EX_SOFTWARE, "no memory for the colours of boundaries");

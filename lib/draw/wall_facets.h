@@ -1,6 +1,6 @@
 /*
  * draw/wall_facets.h: walls that are drawn solid and shaded: which of their faces, and in which colour: one for each name,
- * or by what bodies have done to each face, from the sums of nsd-step --sums [state/wall_load.h].
+ * or by what bodies have done to each face, from the sums of nsd-step --wall-loads [state/wall_load.h].
  */
 #pragma once
 

@@ -91,7 +91,7 @@ static const char *lacks(const struct snapshot *s, enum needs needs)
 {
     if (!s->p->n) return "the frame has no bodies";
     if (needs == NEEDS_SUMS && !s->p->sums.n)
-        return "the document has no sums over steps: nsd-step --sums keeps them";
+        return "the document has no sums over steps: nsd-step --wall-loads keeps them";
     if ((needs == NEEDS_CONTACTS || needs == NEEDS_FORCES || needs == NEEDS_CONTACTS_BEFORE) &&
         !s->s)
         return "the frame has no contacts: steps find them, and nsd-step --contacts keeps them";

@@ -1,5 +1,6 @@
 #include "run/driver.h"
 
+#include "base/option.h"
 #include "base/text.h"
 #include "scene/breaking.h"
 
@@ -32,15 +33,13 @@ int driver_begin(struct driver *d, struct packing *p, struct contacts *last,
 
 int driver_read_dt(const char *text, double *x, struct failure *failure)
 {
-    char *end;
-    *x = number_read(text, &end);
     if (!strncmp(text, "auto", 4))
         return failure_set(failure, EX_USAGE,
                            "'%.60s' is no longer available: leave dt out, for small steps, which "
                            "bound overlaps",
                            text);
-    if (end == text || *end || !(*x > 0 && *x <= DBL_MAX))
-        return failure_set(failure, EX_USAGE, "'%.60s' is no number of seconds above 0", text);
+    if (!time_parse(x, text) || !(*x > 0 && *x <= DBL_MAX))
+        return failure_set(failure, EX_USAGE, "'%.60s' is no time above 0, as 1e-4 or 0.1ms", text);
     return 0;
 }
 

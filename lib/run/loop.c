@@ -31,14 +31,14 @@ const struct cli_option options_loop[] = {
       .help = "ask CMD, by lines of JSON, for forces and changes [none]" },
     { CLI_INT, 0, "with-every", &every, "K", .min = 1, .max = 1e15, .silent = true,
       .help = "ask before the first and then every K-th step [1]" },
-    { CLI_TEXT, 0, "with-boundaries", &walls, "all|NAME,...", .silent = true,
+    { CLI_TEXT, 0, "with-walls", &walls, "all|NAME,...", .silent = true,
       .help = "send these walls, by name or number [none]" },
     { CLI_TEXT, 0, "with-measures", &measures, "A,B,...", .silent = true,
       .help = "send these measures of nsd-stat [none]" },
     { CLI_FLAG, 0, "with-document", &document, .silent = true,
       .help = "send a whole document after each line" },
-    { CLI_ABOVE, 0, "with-timeout", &timeout, "S", .max = 1e9, .silent = true,
-      .help = "end the run if CMD takes longer than S seconds [60]" },
+    { CLI_TIME, 0, "with-timeout", &timeout, "T", .max = 1e9, .silent = true,
+      .help = "end the run if CMD takes longer than T: 90 or 90s, 10min [60s]" },
     { CLI_TEXT, 0, "replay", &replay, "FILE", .silent = true,
       .help = "apply the answers stored in FILE, without a program [none]" },
     { 0 },
@@ -179,8 +179,8 @@ void loop_choose_walls(const struct packing *p)
 {
     struct failure failure = { 0 };
     if (!walls || !strcmp(walls, "all")) return;
-    if (selection_init(&loop.told, p, "--with-boundaries", walls, &failure)) die_why(&failure);
-    if (!loop.told.walls) die(EX_DATAERR, "--with-boundaries: '%s' names no wall", walls);
+    if (selection_init(&loop.told, p, "--with-walls", walls, &failure)) die_why(&failure);
+    if (!loop.told.walls) die(EX_DATAERR, "--with-walls: '%s' names no wall", walls);
 }
 
 void loop_open(const struct packing *p, const volatile sig_atomic_t *stop)

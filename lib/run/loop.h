@@ -16,7 +16,7 @@ extern const struct cli_option options_loop[]; /* --with ..., --replay */
 void loop_check(void);
 /* Is there a program, or are there answers to replay? */
 bool loop_asks(void);
-/* Ends the tool with EX_DATAERR where --with-boundaries names what is no wall of this packing, that of the run. */
+/* Ends the tool with EX_DATAERR where --with-walls names what is no wall of this packing, that of the run. */
 void loop_choose_walls(const struct packing *p);
 /* Starts the program, or reads the answers for a run from this packing on; *stop: other than 0 when the run is to end, as by
    a signal. */

@@ -16,7 +16,8 @@ static const char *const intos[] = { "pieces", "balls", NULL };
 
 static const struct key breaks_key[] = {
     { "by", &key_word, AT(by), "-", REQUIRED, "\"force\"",
-      "What is compared with the strength: force, the largest force of a neighbour over the square "
+      "Quantity compared with the strength: force, the largest force of a neighbour over the "
+      "square "
       "of the "
       "diameter (2D: over the diameter times 1 m); stress, the mean stress in the grain; shear, "
       "its octahedral "

@@ -23,6 +23,8 @@ cat >"$tmp/rejected" <<'EOT'
 \bmend(s|ed|ing)?\b	correct, repair
 \b(is|are|was|were) there\b	exists, is available
 \banew\b	again
+\b(turns?|revolutions?) an? minute\b	rpm
+\b(CPU|minutes?|hours?) an? (evaluation|run|drum)\b	per
 \bsome [0-9]	about
 \b(believes?|believed|patience|riddle|knows?|wants?)\b	needs, expects; programs do not believe, know or want
 \bfor ever\b|\bgo(es)? round\b	without end, cycle
@@ -46,9 +48,13 @@ found() # LABEL FILE: FILE:LINE: WORDING: what to write
         text "$2" | grep -niE "$wrong" | sed "s|^|$1:|; s|\$|   -> $right|"
     done <"$tmp/rejected"
 }
-pages=(man/* "${keyed[@]/#/build/}" README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md cookbook/README.md
-    docs/notes/README.md docs/peers/README.md docs/scale/README.md docs/wall/README.md)
-for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")" ""; done
+riddles() # FILE: sentences that begin with What, Which or Of and do not ask
+{
+    text "$1" | grep -v '^#' | grep -E '(^|[.;:!?] |^[-*] |\| )(What|Which|Of) [^?]*$'
+}
+pages=(man/* "${keyed[@]/#/build/}" README.md INSTALL.md LIMITATIONS.md CONTRIBUTING.md SECURITY.md CHANGELOG.md paper.md
+    bench/README.md lib/README.md tests/README.md cookbook/README.md cookbook/*/about docs/*/README.md)
+for page in "${pages[@]}"; do is "$page" "$(found "$page" "$page")$(riddles "$page")" ""; done
 for tool in tools/*.c; do
     tool=$(basename "$tool" .c)
     "$tool" --help | sed '/^  nsd-/,$d; s/^      */ /' >"$tmp/help"
@@ -72,6 +78,8 @@ is "no message wants, knows or yields" "$(messages)" ""
 
 printf 'A boundary that turns goes on, beside a cell that repeats.\n' >"$tmp/bad"
 is "the wordings are found" "$(found bad "$tmp/bad" | wc -l)" 4
+printf 'What springs push lasts.\nWhat is a spring?\nOf ten, one. It lasts. Which of them is open.\n# What to know\n' >"$tmp/bad"
+is "and sentences that begin with What, Which or Of" "$(riddles "$tmp/bad" | wc -l)" 2
 printf '.Sh OPTIONS\n.It Fl d\nof the N balls\n.Sh X\n' >"$tmp/bad"
 is "and options without a verb" "$(items "$tmp/bad" | wc -l)" 1
 done_testing

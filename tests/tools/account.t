@@ -74,7 +74,7 @@ nsd-stat -m boundaries "$tmp/pressed.h5" 2>"$tmp/err" | jq -s -c 'map(.unconverg
 is "nsd-stat has the number of such steps in each line" "$(cat "$tmp/out")" '[1,1,1,1,1]'
 is "and says so" "$(cat "$tmp/err")" \
     "nsd-stat: 5 steps NOT CONVERGED, the first is step 1: their forces, and the motion by them, are no solution; of 5 frames 5 have such forces (key unconverged)"
-nsd-step --solver auto -n 4 --every 4 --sums "$tmp/press.h5" 2>/dev/null >"$tmp/sums.h5" || true
+nsd-step --solver auto -n 4 --every 4 --wall-loads "$tmp/press.h5" 2>/dev/null >"$tmp/sums.h5" || true
 is "of sums, those of their span" "$(nsd-stat -m sums "$tmp/sums.h5" 2>/dev/null | jq .unconverged)" 4
 
 # A bed that falls too fast for its dt, and solves that are ended early

@@ -90,6 +90,10 @@ global=nlgs solver=nlgs
 overlap=keep overlap-rule=keep
 eps=1e-3 tolerance=1e-3
 END
+ok "nsd-step --sums is --wall-loads" cmp <(step -n 2 --sums "$tmp/heap.h5") <(step -n 2 --wall-loads "$tmp/heap.h5")
+walls() { nsd-step -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" "$1" all "$tmp/heap.h5" >/dev/null 2>&1 && cat "$tmp/told"; }
+ok "--with-boundaries is --with-walls" cmp <(walls --with-boundaries) <(walls --with-walls)
+is "neither is in --help" "$(nsd-step --help | grep -c -e '--sums' -e '--with-boundaries')" 0
 refuses 64 "the beginning of several options" nsd-step --max 3
 like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'
 refuses 64 "an argument to an option without one" nsd-step --in-place=3
@@ -109,8 +113,23 @@ while read -r one other; do
 done <<'END'
 -n40,--every=0.5ms -n40,--every=0.0005s
 --until=0.032 --until=32ms
+-n2,--dt=1e-4 -n2,--dt=0.1ms
+-n2,--max-seconds=600 -n2,--max-seconds=10min
 END
-for wrong in --until=1x --until=ms --progress=0 --save=-1s --every=1d --every=0ms --every=1.5; do
+step -n 40 "$tmp/heap.h5" >"$tmp/forty.h5"
+shown() { nsd-web --every "$1" "$tmp/forty.h5" -o "$tmp/page.html" && grep -o '"s":[0-9]*' "$tmp/page.html" | tr '\n' ' '; }
+drawn() { rm -f "$tmp"/f0*.png && nsd-view --every "$1" --size 16x16 -o "$tmp/f%03d.png" "$tmp/forty.h5" 2>/dev/null && find "$tmp" -name 'f0*.png' | wc -l; }
+ten=$(nsd-info "$tmp/forty.h5" | jq -n '[inputs.dt // empty][0] * 10')s
+is "nsd-view draws the first frame, and one per time" "$(drawn "$ten")" 5
+is "or every tenth" "$(drawn 10)" 4
+is "nsd-web shows those at or after multiples of a time, and the first" "$(shown "$ten")" '"s":601 "s":610 "s":620 "s":630 "s":640 '
+is "or every tenth" "$(shown 10)" '"s":601 "s":611 "s":621 "s":631 '
+for wrong in 1x 0s 1.5; do
+    refuses 64 "nsd-web --every $wrong" nsd-web --every $wrong "$tmp/heap.h5"
+    refuses 64 "nsd-view --every $wrong" nsd-view --every $wrong -o "$tmp/f%03d.png" "$tmp/heap.h5"
+done
+refuses 64 "nsd-fit --timeout 1x" nsd-fit --timeout 1x none.json
+for wrong in --until=1x --until=ms --progress=0 --save=-1s --dt=1x --max-seconds=1d --every=1d --every=0ms --every=1.5; do
     refuses 64 "$wrong" nsd-step "$wrong" -o "$tmp/none.h5" "$tmp/heap.h5"
 done
 ok "bash reads what it is to complete with" bash -n <(nsd-step --completion bash)

@@ -51,17 +51,17 @@ is "forces of all bodies in their order" "$(number -p "$tmp/all.h5" | jq -sc '.[
 # ---- what it is told ----
 
 tell() { quiet "$@" --with "tee -a $tmp/told | jq -c --unbuffered '{}'" "$tmp/ball.h5" >"$tmp/plain.h5"; }
-tell -n 3 --with-boundaries all --with-measures energy,fraction
+tell -n 3 --with-walls all --with-measures energy,fraction
 is "a line before each step" "$(jq -c '[.step, .time, .dt, .bodies]' "$tmp/told" | paste -sd ' ')" "[0,0,0.001,2] [1,0.001,0.001,2] [2,0.002,0.001,2]"
 is "boundaries, and where they are" "$(jq -c 'select(.step == 2).boundaries | map([.boundary, .position[2], .velocity[2], .force])' "$tmp/told")" "[[0,0,0,[0,0,0]],[1,8.998,-1,[0,0,0]]]"
 is "measures, as nsd-stat has them" "$(jq -c 'select(.step == 2).measures | [.energy.kinetic, (.fraction | type)]' "$tmp/told")" '[0,"object"]'
 quiet -n 3 "$tmp/ball.h5" >"$tmp/alone.h5"
 is "one that changes nothing changes no bit" "$(number -p "$tmp/plain.h5")" "$(number -p "$tmp/alone.h5")"
 rm "$tmp/told"
-tell -n 1 --with-boundaries 1
+tell -n 1 --with-walls 1
 is "some boundaries alone" "$(jq -c '.boundaries | map(.boundary)' "$tmp/told")" "[1]"
 nsd-info --scene "$tmp/ball.h5" | jq '.walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 9], normal: [0, 0, -1], name: "lid" }]' |
-    nsd-gen - | quiet -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" --with-boundaries lid >/dev/null
+    nsd-gen - | quiet -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" --with-walls lid >/dev/null
 is "by name" "$(jq -c '.boundaries | map([.boundary, .name])' "$tmp/told")" '[[1,"lid"]]'
 cat >"$tmp/reads" <<'EOT'
 while IFS= read -r line; do
@@ -77,7 +77,7 @@ is "whole documents" "$(nsd-info "$tmp/documents" | jq -sc 'map(select(.step != 
 jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },
     { point: [0, 0, 0.1], normal: [0, 0, -1], name: "lid" }, { point: [9, 0, 0], normal: [-1, 0, 0], name: "lid" }] }' | nsd-gen - >"$tmp/press.h5"
 status 1 "a lid that a program drives down" nsd-step --solver auto -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {boundaries: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
-    --with-boundaries lid -o "$tmp/pressed.h5" "$tmp/press.h5"
+    --with-walls lid -o "$tmp/pressed.h5" "$tmp/press.h5"
 is "it is told whether the step before has converged" "$(jq -c .converged "$tmp/told" | paste -sd ' ')" "null true true false"
 is "and the account, with names" "$(jq -c '.account.unconverged | [.value, .step, .bodies[1], .fails]' "$tmp/told" | paste -sd ' ')" \
     "[null,null,null,null] [0,0,null,false] [0,0,null,false] [1,3,0,true]"
@@ -173,7 +173,7 @@ stops "one without nsd's header" "read -r l; tail -c +513 $tmp/heap.h5; cat >/de
 stops "the number of its bytes in front" 'read -r l; echo "{\"document\":4000}"; head -c 4000 /dev/zero' "[0]" 69 "step 1: --with: $instead"
 refuses 64 "--with-every alone" nsd-step --with-every 2 "$tmp/ball.h5"
 refuses 64 "--with and --replay" nsd-step --with cat --replay "$tmp/ball.h5" "$tmp/ball.h5"
-for b in 1,x 2 ball; do refuses 65 "boundaries $b, which are none" nsd-step -n 1 --with cat --with-boundaries "$b" "$tmp/ball.h5"; done
+for b in 1,x 2 ball; do refuses 65 "boundaries $b, which are none" nsd-step -n 1 --with cat --with-walls "$b" "$tmp/ball.h5"; done
 refuses 64 "a measure that there is not" nsd-step --with cat --with-measures beauty "$tmp/ball.h5"
 refuses 65 "a document without answers" nsd-step --replay "$tmp/ball.h5" "$tmp/ball.h5"
 

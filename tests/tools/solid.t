@@ -20,7 +20,7 @@ jq -n --arg file "$tmp/floor.obj" '{ dt: 1e-3, mu: 0.5, kinds: { steel: {}, glas
     walls: [{ mesh: { file: $file, parts: "groups" }, name: "floor", wear: 1e-12 },
             { disc: { center: [0, 0, 2], normal: [0, 0, -1], radius: 0.4 }, name: "lid" }],
     bodies: [{ x: [-0.5, -0.5, 0.1], radius: 0.1, kind: "steel" }, { x: [0.5, 0.5, 0.2], radius: 0.2, kind: "glass" }] }' |
-    nsd-gen - | nsd-step -n 20 --sums --contacts --tolerance 1e-12 -o "$tmp/run.h5" 2>/dev/null
+    nsd-gen - | nsd-step -n 20 --wall-loads --contacts --tolerance 1e-12 -o "$tmp/run.h5" 2>/dev/null
 
 # ---- pictures: the colours of points whose faces are known ----
 
@@ -82,7 +82,7 @@ nsd-gen -d 2 10 >"$tmp/discs.h5"
 refuses 64 "in the plane boundaries are lines" nsd-view --solid 0 "$tmp/discs.h5"
 nsd-gen 10 >"$tmp/none.h5"
 refuses 65 "colours by sums that there are not" nsd-view --surface rub "$tmp/none.h5"
-like "says what keeps them" "$(cat "$tmp/err")" 'nsd-step --sums'
+like "says what keeps them" "$(cat "$tmp/err")" 'nsd-step --wall-loads'
 
 # ---- exports ----
 

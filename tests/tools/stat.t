@@ -70,7 +70,7 @@ nsd-gen "$tmp/works.json" | step -n 120 --every 20 --contacts --overlap-rule kee
 ok "belts, drives, moments of rolling and pivoting, balls and blocks: the energies of the report" truth balances "$tmp/works.h5" walls
 nsd-gen <(jq 'del(.bodies[1])' "$tmp/works.json") | step -n 120 --every 20 --contacts --tolerance 1e-8 -o "$tmp/works.h5"
 ok "and of balls that are moved apart" truth balances "$tmp/works.h5" walls
-step -n 120 --sums --tolerance 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
+step -n 120 --wall-loads --tolerance 1e-8 -o "$tmp/works.h5" <(nsd-gen "$tmp/works.json")
 opposite() { jq -ne --argjson a "$1" --argjson b "$2" '(($a + $b) | fabs) < 1e-9 * ($b | fabs) and $b != 0'; }
 ok "the sums of the walls have the work of all steps" opposite \
     "$(nsd-stat --last -m sums "$tmp/works.h5" 2>/dev/null | jq '.sums | (.power | add) * .span[0]')" \
@@ -228,7 +228,7 @@ refuses 64 "fields in a text" nsd-stat -f fields.txt "$tmp/heap.h5"
 refuses 66 "a file that is not there" nsd-stat "$tmp/nothing.h5"
 
 # former names of measures, as scripts of others have them
-nsd-gen 20 | nsd-step --solver auto --sums --contacts -n 200 --every 100 >"$tmp/walls.h5" 2>"$tmp/err"
+nsd-gen 20 | nsd-step --solver auto --wall-loads --contacts -n 200 --every 100 >"$tmp/walls.h5" 2>"$tmp/err"
 for pair in boundaries=walls sums=wall_loads sums_by_face=wall_loads_by_face; do
     is "-m ${pair%=*} is -m ${pair#*=}, with its former names" \
         "$(nsd-stat -m "${pair%=*}" "$tmp/walls.h5" 2>"$tmp/err" | jq -c ".${pair%=*} | if .boundary then .wall = .boundary | del(.boundary) else . end |

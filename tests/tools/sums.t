@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# nsd-step --sums and nsd-stat -m sums: forces, works and wear of walls, summed over steps, against closed forms; faces of
+# nsd-step --wall-loads and nsd-stat -m sums: forces, works and wear of walls, summed over steps, against closed forms; faces of
 # meshes; spans between frames; the same for any number of threads and processes, and when a run goes on.
 . tests/support/tap.sh
 
-step() { nsd-step --sums "$@" 2>/dev/null; }
+step() { nsd-step --wall-loads "$@" 2>/dev/null; }
 stat() { nsd-stat "$@" 2>/dev/null; }
 near() { jq -ne --argjson a "$1" --argjson b "$2" --argjson t "$3" '(($a - $b) | fabs) <= $t * ($b | fabs)'; }
 
@@ -156,13 +156,13 @@ step -n 30 -j 2 -o "$tmp/two.h5" "$tmp/each.h5"
 ok "two threads give the bytes of one" cmp "$tmp/two.h5" "$tmp/a.h5"
 if have_ranks; then
     step --solver auto -n 30 -o "$tmp/once.h5" "$tmp/each.h5"
-    ranks 2 nsd-step --solver auto --sums -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
+    ranks 2 nsd-step --solver auto --wall-loads -n 30 -o "$tmp/ranks.h5" "$tmp/each.h5" 2>/dev/null
     ok "two processes give the bytes of one" cmp "$tmp/ranks.h5" "$tmp/once.h5"
 else
     skip "two processes give the bytes of one" "no MPI"
 fi
 nsd-step -n 30 -o "$tmp/without.h5" <(nsd-gen 50) 2>/dev/null
-nsd-step -n 30 --sums -o "$tmp/with.h5" <(nsd-gen 50) 2>/dev/null
+nsd-step -n 30 --wall-loads -o "$tmp/with.h5" <(nsd-gen 50) 2>/dev/null
 is "the motion is that of a run without sums" "$(nsd-info --last -p "$tmp/with.h5")" "$(nsd-info --last -p "$tmp/without.h5")"
 nsd-gen 50 | nsd-detect | nsd-solve 2>/dev/null | nsd-move >"$tmp/hand0.h5"
 step --solver auto -n 1 "$tmp/each.h5" >"$tmp/one.h5"
@@ -171,18 +171,18 @@ is "a step by hand adds to them" "$(stat -m sums "$tmp/hand.h5")" "$(stat -m sum
 # a run continued by its scene: the edges gone, what the run does about overlaps
 echo '{ "dt": 1e-3, "mu": 0.3, "cell": { "lengths": [0.3, 0.3, 1], "repeats": [true, true, false] }, "walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1] }],
     "bodies": [{ "count": 20, "radius": 0.02, "v": [0.7, 0.2, 0], "box": { "x": [0, 0.3], "y": [0, 0.3], "z": [0, 0.4] } }] }' | nsd-gen - >"$tmp/slides.h5"
-step -n 300 --every 300 --sums --overlap-rule gap -o "$tmp/half.h5" "$tmp/slides.h5"
+step -n 300 --every 300 --wall-loads --overlap-rule gap -o "$tmp/half.h5" "$tmp/slides.h5"
 step -n 300 --every 300 -o "$tmp/on.h5" "$tmp/half.h5"
 nsd-info --scene "$tmp/half.h5" | nsd-gen - 2>"$tmp/err" | step -n 300 --every 300 -o "$tmp/by_scene.h5"
 is "a scene continues what the run does about overlaps" "$(nsd-info "$tmp/by_scene.h5" | jq -c 'select(.overlap_rule).overlap_rule')" '"gap"'
 is "and bodies, to the bit, with the edges that they have gone" "$(nsd-info --last -p "$tmp/by_scene.h5" | jq -c '[.x, .v, .w, .image]')" "$(nsd-info --last -p "$tmp/on.h5" | jq -c '[.x, .v, .w, .image]')"
 like "the sums begin again, which is said" "$(cat "$tmp/err")" "half.h5: the sums of its walls begin again from 0"
 cp "$tmp/without.h5" "$tmp/grown.h5"
-refuses 64 "a trajectory without sums takes none" nsd-step --sums -i "$tmp/grown.h5"
+refuses 64 "a trajectory without sums takes none" nsd-step --wall-loads -i "$tmp/grown.h5"
 like "says what to do" "$(cat "$tmp/err")" '-o FILE'
-nsd-step --sums -n 1 -o "$tmp/later.h5" "$tmp/without.h5" 2>/dev/null
+nsd-step --wall-loads -n 1 -o "$tmp/later.h5" "$tmp/without.h5" 2>/dev/null
 refuses 65 "nor are sums joined that began at different times" nsd-cat -o "$tmp/joined.h5" "$tmp/a.h5" "$tmp/later.h5"
-is "without sums a measure is null, and says what keeps them" "$(nsd-stat --last -m sums "$tmp/without.h5" | jq -c '[.sums, (.why.sums | test("--sums"))]')" '[null,true]'
+is "without sums a measure is null, and says what keeps them" "$(nsd-stat --last -m sums "$tmp/without.h5" | jq -c '[.sums, (.why.sums | test("--wall-loads"))]')" '[null,true]'
 if has h5py; then
     nsd-cat --last "$tmp/a.h5" >"$tmp/crafted.h5"
     while IFS='|' read -r what how; do

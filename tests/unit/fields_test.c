@@ -312,7 +312,7 @@ static void push(struct packing *p)
 static bool run(struct frame *f, int k)
 {
     char *command, *path;
-    const char *sums = k < WITHOUT_WALLS || k == ALL ? "--sums" : "";
+    const char *sums = k < WITHOUT_WALLS || k == ALL ? "--wall-loads" : "";
     if (asprintf(&path, "%s/out.h5", folder) < 0 ||
         asprintf(&command,
                  "nsd-gen %s/%s.json | nsd-step -n 3 --every 3 --contacts --warm %s -o %s "

@@ -102,7 +102,7 @@ acts='jq -c --unbuffered "{forces: [range(.bodies) | [(. * 1e-8), 0, 2e-6]], tor
     velocities: (if .step % 4 == 1 then {\"205\": [0.01, 0, 0]} else {} end), friction: [[\"ball\", \"wall\", (.step % 7 / 10)]],
     boundaries: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
 three=1 ok "forces, torques, velocities, gravity, friction, boundaries that a program answers: the same bytes" \
-    same "$tmp/heap.h5" "$all" -n 8 --contacts --with "$acts" --with-boundaries all
+    same "$tmp/heap.h5" "$all" -n 8 --contacts --with "$acts" --with-walls all
 ranks 2 -n 8 --contacts --replay "$tmp/one.h5" -o "$tmp/replayed.h5" "$tmp/heap.h5" 2>/dev/null
 ok "replayed" cmp "$tmp/one.h5" "$tmp/replayed.h5"
 ok "where grains pour and are taken away" same "$tmp/pour.h5" 3 -n 20 --with 'jq -c --unbuffered "{forces: [range(.bodies) | [1e-6, 0, 0]]}"'

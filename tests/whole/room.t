@@ -14,7 +14,7 @@ box='{ dt: 1e-3, gravity: [0, 0, 0], mu: 0.3, density: 1000, walls: [{ box: { x:
 
 jq -n "$box" >"$tmp/one.json"
 nsd-gen "$tmp/one.json" >"$tmp/one.h5"
-step -n 50 --sums --tolerance 1e-12 -o "$tmp/pressed.h5" "$tmp/one.h5"
+step -n 50 --wall-loads --tolerance 1e-12 -o "$tmp/pressed.h5" "$tmp/one.h5"
 is "one ball between six walls: each carries p A = 1 N, to 1e-6, by sums over steps" \
     "$(nsd-stat --last -m sums "$tmp/pressed.h5" | jq -c '.sums.normal | map(. - 1 | fabs < 1e-6)')" '[true,true,true,true,true,true]'
 is "and along its normal" "$(nsd-stat --last -m sums "$tmp/pressed.h5" | jq -c '.sums.force | map(map((. + 0.5) | floor))')" \
@@ -23,7 +23,7 @@ ok "nothing moves" holds '[.load.growth, .load.travel] | map(fabs < 1e-12) | all
 # Forces in a rigid row are not unique, their mean is: F_x l_x + F_y l_y = 2 p A with the distances l of the walls
 jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], mu: 0.4, density: 1000, walls: [{ box: { x: [0, 0.5], y: [0, 0.1] }, name: "box" }], room: { walls: "box", pressure: 40, mass: 1 },
     bodies: [range(5) | { x: [0.05 + 0.1 * ., 0.05], radius: 0.05 }] }' | nsd-gen - >"$tmp/row.h5"
-step -n 40 --sums --tolerance 1e-12 -o "$tmp/rows.h5" "$tmp/row.h5"
+step -n 40 --wall-loads --tolerance 1e-12 -o "$tmp/rows.h5" "$tmp/row.h5"
 mean() # of the walls over the last span: the sum of force times distance by that of face times distance
 {
     paste <(nsd-stat --last -t -m sums "$1" 2>/dev/null | tail -n +2 | cut -f 12) <(nsd-info -w --last "$1" | jq .load.lever) <(nsd-info -w --last "$1" | jq .load.face) |
@@ -32,14 +32,14 @@ mean() # of the walls over the last span: the sum of force times distance by tha
 ok "a row of five discs in the plane: their mean pressure is p, to 1e-6" near "$(mean "$tmp/rows.h5")" 40 4e-5
 jq '.walls = [{ point: [0, -0.05, 0], normal: [0, 1, 0] }, { point: [0, 0.05, 0], normal: [0, -1, 0] }, { point: [-0.05, 0, 0], normal: [1, 0, 0] }, { point: [0.05, 0, 0], normal: [-1, 0, 0] },
     { point: [0, 0, -0.05], normal: [0, 0, 1], name: "floor" }, { point: [0, 0, 0.05], normal: [0, 0, -1], name: "lid" }] | .room.walls = "lid" | .gravity = [0, 0, -10]' "$tmp/one.json" | nsd-gen - >"$tmp/lid.h5"
-step -n 50 --sums --tolerance 1e-12 -o "$tmp/lidded.h5" "$tmp/lid.h5"
+step -n 50 --wall-loads --tolerance 1e-12 -o "$tmp/lidded.h5" "$tmp/lid.h5"
 is "the lid alone: the floor, where the centre is, carries p A and the weight" \
     "$(nsd-stat --last -m sums "$tmp/lidded.h5" | jq -c --argjson m "$(nsd-info -p --last "$tmp/lid.h5" | jq .mass)" '[.sums.normal[4] - 1 - 10 * $m, .sums.normal[5] - 1] | map(fabs < 1e-6)')" '[true,true]'
 is "it is where the floor is" "$(nsd-info -w --only lid "$tmp/lid.h5" | jq -c '[.load.center, .load.lever]')" '[[0,0,-0.05],-0.1]'
 # a column of three in a cell that is periodic along x: the face of the floor is the edge
 jq -n '{ dim: 2, dt: 1e-3, gravity: [0, 0], density: 1000, cell: { lengths: [0.3, 1], repeats: [true, false] }, walls: [{ box: { y: [0, 0.3] }, name: "plates" }],
     room: { walls: "plates", pressure: { table: [[0, 20], [0.01, 50]] }, mass: 1 }, bodies: [range(3) | { x: [0.1, 0.05 + 0.1 * .], radius: 0.05 }] }' | nsd-gen - >"$tmp/plates.h5"
-step -n 20 --sums --every 10 --tolerance 1e-12 -o "$tmp/plated.h5" "$tmp/plates.h5"
+step -n 20 --wall-loads --every 10 --tolerance 1e-12 -o "$tmp/plated.h5" "$tmp/plates.h5"
 is "between plates along a periodic edge: p by the edge, which rises with its table" \
     "$(nsd-stat -m sums "$tmp/plated.h5" 2>/dev/null | jq -c '.sums.normal | map(. * 1e9 | round / 1e9)' | tr '\n' ' ')" '[10.5,10.5] [15,15] '
 
@@ -84,16 +84,16 @@ before=$(nsd-info -w --last "$tmp/held.h5" | volume) after=$(nsd-info -w --last 
 ok "the work of the pressure over 200 steps is - p dV, to 1e-5" \
     near "$(balances "$tmp/helds.h5" | jq -s 'map(.loads) | add')" "$(jq -n "0.7 * ($before - $after)")" "$(jq -n "1e-5 * ($before - $after | fabs) + 1e-9")"
 
-step --overlap-rule gap --until 30 --every 30s --sums -o "$tmp/dense.h5" "$tmp/falls.h5"
+step --overlap-rule gap --until 30 --every 30s --wall-loads -o "$tmp/dense.h5" "$tmp/falls.h5"
 # at rest single walls differ and their mean does not; the sums are those of the last steps only
-step --overlap-rule gap -n 20 --every 20 --sums --tolerance 1e-6 -o "$tmp/rest.h5" <(nsd-info --scene "$tmp/dense.h5" | jq '.bodies[0].at_rest = true | .room.growth = 0' | nsd-gen -)
+step --overlap-rule gap -n 20 --every 20 --wall-loads --tolerance 1e-6 -o "$tmp/rest.h5" <(nsd-info --scene "$tmp/dense.h5" | jq '.bodies[0].at_rest = true | .room.growth = 0' | nsd-gen -)
 ok "150 balls at rest: the mean pressure of the walls is p, to 0.2 %" near "$(mean "$tmp/rest.h5")" 1 2e-3
 
 down='[0.005, 0.005, -0.01]'
 nsd-info --scene "$tmp/dense.h5" | jq --argjson e "$down" '.mu = 0.5 | .pairs = [{ pair: ["ball", "wall"], mu: 0 }] | .bodies[0].at_rest = true |
     .room.pressure = 1 | .room.strain_rate = $e' >"$tmp/test.json"
 nsd-gen "$tmp/test.json" >"$tmp/test.h5"
-step --overlap-rule gap -n 2400 --every 24 --contacts --sums -o "$tmp/tests.h5" "$tmp/test.h5"
+step --overlap-rule gap -n 2400 --every 24 --contacts --wall-loads -o "$tmp/tests.h5" "$tmp/test.h5"
 # [frames][walls]: p by the forces over the 24 steps between two frames, by the faces of the later one
 paste <(nsd-stat -m sums "$tmp/tests.h5" | jq -c '.sums.normal') <(nsd-info -w "$tmp/tests.h5" | jq -s -c '[_nwise(6)][] | [map(.load.lever), map(.load.face)]') |
     jq -c -n '[inputs as $f | input as [$l, $a] | ([$f, $l] | transpose | map(.[0] * .[1]) | add) / ([$l, $a] | transpose | map(.[0] * .[1]) | add)]' >"$tmp/p.json"
@@ -124,7 +124,7 @@ ok "no wall yields to a push" eval '! echo "{\"boundaries\": {\"0\": {\"force\":
 # ---- documents, resumed runs, threads, processes ----
 
 jq '.theta = 0.6 | .walls[0].drives = [{ along: [0, 0, 1], speed: 0.01, from: .time }] | .walls += [{ point: [0, 0, 20], normal: [0, 0, -1], load: { along: [0, 0, 1], mass: 1, force: { table: [[0, 0], [1, -1]] } } }]' "$tmp/test.json" | nsd-gen - >"$tmp/all.h5"
-run() { nsd-step --overlap-rule gap -n "$1" --every "$1" --contacts --sums "${@:2}" 2>/dev/null; }
+run() { nsd-step --overlap-rule gap -n "$1" --every "$1" --contacts --wall-loads "${@:2}" 2>/dev/null; }
 run 40 -o "$tmp/whole.h5" "$tmp/all.h5"
 run 20 -o "$tmp/half.h5" "$tmp/all.h5" && run 20 -o "$tmp/rest2.h5" "$tmp/half.h5"
 state() { nsd-info -p -w --last "$1" >"$tmp/state" && [ -s "$tmp/state" ] && md5sum <"$tmp/state"; }
@@ -140,7 +140,7 @@ if have_ranks; then
     for doc in all volume; do
         run 40 -o "$tmp/serial.h5" "$tmp/$doc.h5"
         for order in colour block; do
-            ranks 2 nsd-step --overlap-rule gap --order $order -n 40 --every 40 --contacts --sums -o "$tmp/ranks.h5" "$tmp/$doc.h5" 2>/dev/null
+            ranks 2 nsd-step --overlap-rule gap --order $order -n 40 --every 40 --contacts --wall-loads -o "$tmp/ranks.h5" "$tmp/$doc.h5" 2>/dev/null
             [ $order = block ] && run 40 --order block -o "$tmp/serial.h5" "$tmp/$doc.h5"
             is "two processes in order $order: the state of one, $doc" "$(state "$tmp/ranks.h5")" "$(state "$tmp/serial.h5")"
         done

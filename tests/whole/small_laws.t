@@ -78,14 +78,14 @@ sums() # JQ PROGRAM: of the sums of the last frame
     nsd-stat --last -m sums "$tmp/out.h5" 2>"$tmp/stat" | jq -c ".sums | $1"
 }
 scene "$floor, mu: 0.3, bodies: [{ x: [0, 0, 0.01], radius: 0.01, density: 2500, v: [1, 0, 0] }]"
-ok "sums of walls are kept in small steps" small_alone 300 --sums
+ok "sums of walls are kept in small steps" small_alone 300 --wall-loads
 ok "a ball at rest: the floor carries m g" near "$(sums '.normal[0]')" "$mass * 9.81" 1e-9
 ok "a ball that slides until it rolls: friction takes 2/7 of its energy" near "$(sums '.friction[0]')" "$mass / 7" 1e-7
 ok "and has slid over that divided by mu m g" near "$(sums '.rub[0]')" "$mass / 7 / 0.3" 1e-6
 ok "and pushes the floor by 2/7 of its momentum" near "$(sums '.force[0][0]')" "$mass * 2 / 7 / 0.3" 1e-6
 scene "walls: [{ point: [0, 0, 0], normal: [0, 0, 1], velocity: [0, 0, 0.2] }], gravity: [0, 0, 0], dt: 1e-3, e_n: 0.5,
     bodies: [{ x: [0, 0, 0.02], radius: 0.01, density: 2500, v: [0, 0, -1] }]"
-small_alone 50 --sums
+small_alone 50 --wall-loads
 ok "a wall that a ball meets at 1.2 m/s with e 0.5 gets m 1.2 1.5, and works on it by that times 0.2 m/s" \
     near "$(sums '.force[0][2]') * 0.05 + $(sums '.power[0]') * 0.05 / 0.2 + 2 * $mass * 1.8" 0 1e-9
 
@@ -228,7 +228,7 @@ scene "$floor, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 
 small_alone 200
 ok "a lid that falls on a ball comes to rest on it" near "$(load .travel)" 0.01 2e-5
 cp "$tmp/out.h5" "$tmp/in.h5"
-small_alone 20 --sums
+small_alone 20 --wall-loads
 ok "the ball carries the load" near "$(sums '.normal[1]')" 2 1e-9
 ok "and the floor carries both" near "$(sums '.normal[0]')" "2 + $mass * 9.81" 1e-9
 
@@ -250,7 +250,7 @@ ok "balls below a lid: the same bytes" same_bytes 60
 small_alone 400
 travel=$(load .travel)
 ok "a lid at a constant pressure comes to rest on balls" near "$(load .speed)" 0 3e-3
-nsd-step --small-steps 0.01 -n 100 --every 100 --sums -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"
+nsd-step --small-steps 0.01 -n 100 --every 100 --wall-loads -o "$tmp/sums.h5" "$tmp/out.h5" 2>"$tmp/err" && mv "$tmp/sums.h5" "$tmp/out.h5"
 ok "which carry p A" near "$(sums '.normal[5]') / 3.969" 1 1e-3
 nsd-step --overlap-rule gap -n 400 --every 400 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
 ok "where steps that are made at once leave it" near "$travel / $(load .travel)" 1 0.1

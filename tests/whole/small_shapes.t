@@ -84,7 +84,7 @@ sums() # JQ PROGRAM: of the sums that walls keep
     nsd-stat --last -m sums "$tmp/out.h5" 2>"$tmp/stat" | jq -c ".sums | $1"
 }
 scene "$floor, mu: 0.3, $block"
-ok "sums of walls are kept" small_alone 400 --sums
+ok "sums of walls are kept" small_alone 400 --wall-loads
 ok "a box that slides until it rests: friction takes its energy" near "$(sums '.friction[0]') / 3" 1 2e-3
 ok "and pushes the floor by its momentum" near "$(sums '.force[0][0] * 0.4') / 6" 1 2e-3
 ok "which carries m g" near "$(sums '.normal[0]') / (6 * 9.81)" 1 1e-3
@@ -106,7 +106,7 @@ scene "$floor, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 
 small_alone 400
 ok "a lid that falls on a cube comes to rest on it" near "$(load '[.travel - 0.02, .speed] | map(fabs) | max')" 0 1e-4
 cp "$tmp/out.h5" "$tmp/in.h5"
-small_alone 20 --sums
+small_alone 20 --wall-loads
 ok "the cube carries the load" near "$(sums '.normal[1]')" 20 1e-5
 ok "and the floor carries both" near "$(sums '.normal[0]')" "20 + 9.81" 1e-4
 scene "dt: 1e-3, gravity: [0, 0, 0], density: 1000, mu: 0, e_n: 0.5, $cube, bodies: [{ shape: \"it\", size: 0.1, x: [0, 0, 0.052] }],
@@ -126,7 +126,7 @@ scene 'dim: 2, dt: 1e-3, gravity: [0, 0], density: 2500, mu: 0.3, e_n: 0.2, wall
     bodies: [range(5) as $i | range(5) as $j | { shape: "it", size: 0.004, x: [0.005 + 0.0099 * $i, 0.005 + 0.0099 * $j], orientation: ($i + $j) }]'
 small_alone 400
 cp "$tmp/out.h5" "$tmp/in.h5"
-small_alone 20 --sums
+small_alone 20 --wall-loads
 ok "a room around pentagons comes to rest at the mean pressure" near "$(sums '.normal | add') / $(load .face) / 4" 500 1e-3
 
 # ---- attraction ----
@@ -175,7 +175,7 @@ scene "$mesh, mu: 0.3, bodies: [{ radius: 0.1, x: [-0.5, 0, 0.1], v: [1, 0.2, 0]
 small_alone 700
 ok "a ball rolls over the edges of a surface" near "$(body '.v[0]')" "5 / 7" 1e-4
 ok "without a bump" near "$(body '.v[2]')" 0 1e-6
-small_alone 700 --sums
+small_alone 700 --wall-loads
 ok "friction on the triangles takes 2/7 of its energy" near "$(sums '.friction | add') / (1000 * 4 / 3 * 3.14159265 * 1e-3 * 1.04 / 7)" 1 1e-3
 ok "and straight" near "$(body '.v[1] / .v[0]')" 0.2 1e-5
 boxes='shapes: { it: { box: [2, 1, 0.5] } }, mu: 0.3, bodies: [{ shape: "it", size: 0.1, x: [-0.5, 0, 0.025], v: [1, 0.2, 0] }]'

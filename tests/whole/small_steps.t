@@ -191,7 +191,7 @@ done <<'END'
 --cold
 --warm
 -j 2
---contacts --sums
+--contacts --wall-loads
 END
 nsd-step --protocol paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5" && mv "$tmp/paper.h5" "$tmp/in.h5"
 ok "one solve per step: a document with another rule of overlaps" makes once

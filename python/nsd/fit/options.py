@@ -18,7 +18,7 @@ that was stopped.
   -j, --jobs N                  run N evaluations at a time [number of processors]
   -n, --evaluations N           stop after N evaluations [of PROBLEM.json, or 60 per parameter]
   -o, --output FOLDER           write into FOLDER, and continue the run in it [PROBLEM.fit]
-      --timeout S               end an evaluation after S seconds of real time [never]
+      --timeout T               end an evaluation after T of real time: 90 or 90s, 10min [never]
       --quiet                   write no progress
 
   -h, --help                    print this text
@@ -62,6 +62,12 @@ class Options(argparse.ArgumentParser):
         sys.exit(64)
 
 
+def seconds(text: str) -> float:
+    """As the other tools read times: 90 or 90s, 5ms, 10min, 2h."""
+    match = re.fullmatch(r"([-+.0-9eE]+)(ms|s|min|h)?", text)
+    return float(match[1] if match else text) * {"ms": 1e-3, "min": 60, "h": 3600}.get(match[2] or "s", 1)
+
+
 def read_options(version: str) -> argparse.Namespace:
     """Ends where there is nothing to run."""
     if sys.argv[1:2] == ["--completion"] and sys.argv[2:] in (["bash"], ["zsh"]):
@@ -72,7 +78,7 @@ def read_options(version: str) -> argparse.Namespace:
     p.add_argument("-j", "--jobs", type=int, default=len(os.sched_getaffinity(0)))
     p.add_argument("-n", "--evaluations", type=int)
     p.add_argument("-o", "--output")
-    p.add_argument("--timeout", type=float)
+    p.add_argument("--timeout", type=seconds)
     p.add_argument("--quiet", action="store_true")
     p.add_argument("-h", "--help", action="help")
     p.add_argument("-V", "--version", action="version", version=f"nsd-fit {version}")
