@@ -90,7 +90,7 @@ step -n 10 --dt 5e-4 ten.h5 | step -n 10 >pieces.h5
 ok "in pieces the same bits" cmp <(nsd-info -p --last half.h5) <(nsd-info -p --last pieces.h5)
 step --until 1 --dt 3e-4 --every 10000 ten.h5 >third.h5
 is "--until with another dt" "$(nsd-info --last third.h5 | jq '.step == 3310 and (.time - 1 | fabs) < 1e-15')" true
-for bad in 0 -1 nan inf 1e-3s '' auto auto: auto:0 auto:-1 auto:2 auto:nan; do
+for bad in 0 -1 nan inf 1e-3x '' auto auto: auto:0 auto:-1 auto:2 auto:nan; do
     refuses 64 "--dt '$bad' is refused" nsd-step --dt "$bad" ten.h5
 done
 step -n 1 -o one.h5 ten.h5
