@@ -64,6 +64,12 @@ static inline vec3 v3_cross(vec3 a, vec3 b)
 {
     return v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
+/* t += s a b^T */
+static inline void v3_outer(double t[3][3], double s, vec3 a, vec3 b)
+{
+    const double p[3] = { s * a.x, s * a.y, s * a.z }, q[3] = { b.x, b.y, b.z };
+    for (int k = 0; k < 9; k++) t[k / 3][k % 3] += p[k / 3] * q[k % 3];
+}
 /* A unit vector across the unit vector n, the same for the same n */
 static inline vec3 v3_across(vec3 n)
 {

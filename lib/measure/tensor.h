@@ -10,12 +10,7 @@ struct tensor {
 /* T += s a b^T */
 static inline void tensor_add(struct tensor *T, double s, vec3 a, vec3 b)
 {
-    const double row[3] = { s * a.x, s * a.y, s * a.z };
-    for (int i = 0; i < 3; i++) {
-        T->x[i][0] += row[i] * b.x;
-        T->x[i][1] += row[i] * b.y;
-        T->x[i][2] += row[i] * b.z;
-    }
+    v3_outer(T->x, s, a, b);
 }
 
 static inline void tensor_scale(struct tensor *T, double s)

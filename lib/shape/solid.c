@@ -20,13 +20,6 @@ struct solid_sums {
     double volume, first[3], second[3][3];
 };
 
-static void add_outer(double t[3][3], double s, vec3 a, vec3 b)
-{
-    const double p[3] = { a.x, a.y, a.z }, q[3] = { b.x, b.y, b.z };
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) t[i][j] += s * p[i] * q[j];
-}
-
 /* The tetrahedron 0, a, b, c; in the plane (dim 2) the triangle 0, a, b */
 static void add_simplex(struct solid_sums *t, int dim, vec3 a, vec3 b, vec3 c)
 {
@@ -37,8 +30,8 @@ static void add_simplex(struct solid_sums *t, int dim, vec3 a, vec3 b, vec3 c)
     t->volume += volume;
     t->first[0] += mean * sum.x, t->first[1] += mean * sum.y, t->first[2] += mean * sum.z;
     double part = det / (dim == 2 ? 24 : 120);
-    add_outer(t->second, part, sum, sum);
-    for (int k = 0; k < dim; k++) add_outer(t->second, part, corner[k], corner[k]);
+    v3_outer(t->second, part, sum, sum);
+    for (int k = 0; k < dim; k++) v3_outer(t->second, part, corner[k], corner[k]);
 }
 
 /* Something of this volume and with these second moments about its own centre at c */
@@ -46,7 +39,7 @@ static void solid_add_part(struct solid_sums *t, double volume, vec3 c, double o
 {
     t->volume += volume;
     t->first[0] += volume * c.x, t->first[1] += volume * c.y, t->first[2] += volume * c.z;
-    add_outer(t->second, volume, c, c);
+    v3_outer(t->second, volume, c, c);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) t->second[i][j] += own[i][j];
 }
@@ -73,7 +66,7 @@ static void add_capsule(struct solid_sums *t, int dim, vec3 a, vec3 b, double r)
     double across = trunk * r * r / (dim + 1) + ends * r * r / (dim + 2);
     double along = trunk * l * l / 12 + ends * (h * h + 2 * h * out + r * r / (dim + 2));
     double own[3][3] = { { across, 0, 0 }, { 0, across, 0 }, { 0, 0, dim == 2 ? 0 : across } };
-    if (l > 0) add_outer(own, (along - across) / (l * l), d, d);
+    if (l > 0) v3_outer(own, (along - across) / (l * l), d, d);
     solid_add_part(t, trunk + ends, middle, own);
 }
 
@@ -263,7 +256,7 @@ static int integrate(struct solid *out, const struct shape *s, int dim, struct f
     double m = 1 / t.volume;
     vec3 c = out->centre = v3(m * t.first[0], m * t.first[1], m * t.first[2]);
     memcpy(out->second, t.second, sizeof out->second);
-    add_outer(out->second, -t.volume, c, c);
+    v3_outer(out->second, -t.volume, c, c);
     return 0;
 }
 

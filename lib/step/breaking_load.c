@@ -17,12 +17,6 @@ struct breaking_body {
     double stress[3][3];        /* N m: - sum of arm x force, the stress times the volume */
 };
 
-static void add_stress(struct breaking_body *b, vec3 arm, vec3 force)
-{
-    const double l[3] = { arm.x, arm.y, arm.z }, f[3] = { force.x, force.y, force.z };
-    for (int k = 0; k < 9; k++) b->stress[k / 3][k % 3] -= l[k / 3] * f[k % 3];
-}
-
 static void ask_strength(struct breaking_body *b, const struct packing *p, int64_t i)
 {
     if (b->strength > 0) return;
@@ -79,7 +73,7 @@ static void add_pair(struct packing *p, struct breaking_body *b, const struct co
         const vec3 at = side > 0 ? v3_sub(c->x, cell_shift(p->cell.edge, c->shift)) : c->x;
         sum = v3_add(sum, f);
         if (b->how->by == BREAKAGE_STRESS || b->how->by == BREAKAGE_SHEAR)
-            add_stress(b, v3_sub(at, p->x[i]), f);
+            v3_outer(b->stress, -1, v3_sub(at, p->x[i]), f);
     }
     b->force = fmax(b->force, v3_norm(sum));
     if (b->how->by == BREAKAGE_ENERGY && energy > 0) breaking_hit(p, b, i, energy / p->mass[i]);

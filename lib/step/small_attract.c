@@ -1,5 +1,5 @@
-/* step/small_attract.c: attraction at the points of meetings [step/small_attract.h]. */
-#include "step/small_attract.h"
+/* step/small_attract.c: attraction at the points of meetings [step/small_meet.h]. */
+#include "step/small_run.h"
 
 #include "base/array.h"
 #include "state/attraction.h"

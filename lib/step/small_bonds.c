@@ -2,7 +2,6 @@
 #include "step/small_bonds.h"
 
 #include "contact/contact_law.h"
-#include "step/small_attract.h"
 #include "step/small_wall.h"
 
 #include <stdlib.h>

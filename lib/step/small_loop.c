@@ -2,7 +2,6 @@
 #include "step/small_loop.h"
 
 #include "base/team.h"
-#include "step/small_attract.h"
 #include "step/small_cell.h"
 #include "step/small_converge.h"
 #include "step/small_error.h"

@@ -6,7 +6,6 @@
 #include "contact/detect.h"
 #include "contact/internal_edge.h"
 #include "state/rotation.h"
-#include "step/small_attract.h"
 
 #include <math.h>
 #include <stdlib.h>

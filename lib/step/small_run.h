@@ -59,7 +59,7 @@ struct small_scratch {
     int64_t room;
 };
 
-/* The places where bodies are held [step/small_attract.h] */
+/* The places where bodies are held [step/small_meet.h] */
 struct small_shares {
     struct contacts places;
     struct small_point **point; /* [places.n] */

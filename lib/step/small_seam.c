@@ -4,9 +4,10 @@
 #include "contact/internal_edge.h"
 #include "step/small_wall.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-enum { SEAM_WALLS = 16 }; /* near a ball, at most: the others are not looked at */
+enum { SEAM_WALLS = 16 }; /* near a ball without asking for memory */
 
 static bool ends(const struct small_run *r, const struct small_touch *t)
 {
@@ -18,15 +19,20 @@ bool small_at_seam(struct small_run *r, int64_t i, double reach)
 {
     const struct small_list *l = r->l;
     const int32_t body = l->touch[i].body;
-    struct contact at[SEAM_WALLS];
-    struct contacts all = { .c = at };
+    struct contact few[SEAM_WALLS], *at = few;
     int64_t first = i, end = i + 1, mine = -1;
     if (!ends(r, &l->touch[i])) return false;
     while (first > 0 && l->touch[first - 1].body == body) first--;
     while (end < l->touches && l->touch[end].body == body) end++;
     if (end - first < 2) return false;
+    if (end - first > SEAM_WALLS) at = malloc((size_t)(end - first) * sizeof *at);
+    struct contacts all = { .c = at };
+    if (!at) {
+        r->lost = true;
+        return false;
+    }
     r->x[body] = small_vec(l->s.place[body].x);
-    for (int64_t k = end - 1; k >= first && all.n < SEAM_WALLS; k--) { // the last wall comes first
+    for (int64_t k = end - 1; k >= first; k--) { // the last wall comes first
         struct small_touch t = l->touch[k];
         if (!small_look_at_touch(r, &t, reach)) continue;
         if (k == i) mine = all.n;
@@ -42,5 +48,7 @@ bool small_at_seam(struct small_run *r, int64_t i, double reach)
     const struct situation o = {
         .p = r->p, .x = r->x, .t = r->p->t + r->ahead, .surface = l->surface
     };
-    return mine >= 0 && all.n > 1 && seams_has(&all, &o, body, mine);
+    const bool seam = mine >= 0 && all.n > 1 && seams_has(&all, &o, body, mine);
+    if (at != few) free(at);
+    return seam;
 }

@@ -52,12 +52,6 @@ double small_stress_forces(const struct packing *p)
 
 /* ---- the sum over contacts ---- */
 
-static void add_push(double to[3][3], vec3 f, vec3 d)
-{
-    const double x[3] = { f.x, f.y, f.z }, y[3] = { d.x, d.y, d.z };
-    for (int k = 0; k < 9; k++) to[k / 3][k % 3] += x[k / 3] * y[k % 3];
-}
-
 /* m: from what moves of a to what moves of the image of b; what does not move does not follow the cell. */
 static vec3 branch_between(const struct small_run *r, int32_t a, int32_t b, const int8_t shift[3])
 {
@@ -81,19 +75,19 @@ static void sum_pushes(const struct small_run *r, double to[3][3])
         const struct pair *q = &l->pairs.pair[i];
         const vec3 f = small_slot_force(&l->s, l->slot[i]);
         if (f.x != 0 || f.y != 0 || f.z != 0)
-            add_push(to, f, branch_between(r, q->a, q->b, q->shift));
+            v3_outer(to, 1, f, branch_between(r, q->a, q->b, q->shift));
     }
     for (int64_t i = 0; i < l->touches; i++) {
         const struct small_touch *t = &l->touch[i];
         const vec3 f = v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], t->n);
-        add_push(to, f, branch_between(r, -1, t->body, none));
+        v3_outer(to, 1, f, branch_between(r, -1, t->body, none));
     }
     for (int64_t i = 0; i < l->meetings.n; i++) {
         const struct small_meeting *m = &l->meetings.of[i];
         vec3 f = v3(0, 0, 0);
         for (int64_t k = 0; k < m->points; k++)
             f = v3_add(f, v3_add(small_vec(m->point[k].f), m->point[k].pull));
-        add_push(to, f, branch_between(r, m->key.a, m->key.b, m->key.shift));
+        v3_outer(to, 1, f, branch_between(r, m->key.a, m->key.b, m->key.shift));
     }
 }
 
