@@ -128,9 +128,7 @@ static void show_document(const struct frame *f, int64_t frames)
         json_object_set_new(j, "dim", json_integer(p->dim));
         json_object_set_new(j, "bodies", json_integer(p->n));
         json_object_set_new(j, "walls", json_integer(p->walls));
-        json_object_set_new(j, "dt", json_number(packing_whole_dt(p)));
-        if (p->tolerance > 0)
-            json_object_set_new(j, "time_step_tolerance", json_number(p->tolerance));
+        json_object_set_new(j, "dt", json_number(p->dt));
         json_object_set_new(j, "theta", json_number(p->theta));
         if (p->overlap)
             json_object_set_new(j, "overlap_rule", json_string(overlap_name[p->overlap]));
@@ -184,7 +182,6 @@ static void show_moment(const struct frame *f)
         const struct energy e = energy_of(p);
         json_object_set_new(j, "step", json_integer(p->step));
         json_object_set_new(j, "time", json_number(p->t));
-        if (p->adapts) json_object_set_new(j, "dt", json_number(p->dt));
         json_object_set_new(j, "bodies", json_integer(p->n));
         json_object_set_new(j, "contacts", f->detected ? json_integer(f->contacts.n) : json_null());
         json_object_set_new(j, "kinetic_energy", json_number(e.kinetic));
@@ -437,9 +434,8 @@ static void show(const struct frame *f)
 /* A scene of the same parameters, of a packing that keeps none */
 static json_t *scene_of_parameters(const struct packing *p)
 {
-    json_t *j = json_pack("{s:i, s:o, s:I}", "dim", p->dim, "dt",
-                          p->tolerance > 0 ? json_string("auto") : json_real(packing_whole_dt(p)),
-                          "seed", (json_int_t)p->seed);
+    json_t *j = json_pack("{s:i, s:o, s:I}", "dim", p->dim, "dt", json_real(p->dt), "seed",
+                          (json_int_t)p->seed);
     const double g[3] = { p->g.x, p->g.y, p->g.z };
     json_t *materials = json_object();
     for (int32_t k = 0; k < p->materials; k++)

@@ -12,7 +12,6 @@
 #include "scene/inlet.h"
 #include "scene/stiffness.h"
 #include "state/breakable.h"
-#include "step/adapt.h"
 #include "step/small_step.h"
 
 #include <float.h>
@@ -31,20 +30,19 @@ enum {
     KEEP_MEMORY = 1 << 28 /* bytes that are kept */
 };
 
-static int64_t steps = 1, expected; /* to make; as far as can be foreseen, where dt adapts */
+static int64_t steps = 1; /* to make */
 static struct cli_every every = { 1, 0 };
 static double until;             /* s of the motion */
 static double lines, save_every; /* s of real time */
 static bool contacts, forces, sums, in_place;
 static const char *output;
-static double tol; /* radii: TOL; 0: dt does not adapt */
 
 static const struct cli_option own[] = {
     { CLI_INT, 'n', "steps", &steps, "N", "make N steps [1]", .max = 1e15 },
     { CLI_TIME, 0, "until", &until, "T", "make steps until the time is T: 2 or 2s, 5ms [by -n]",
       .min = -1e300, .max = 1e300 },
-    { CLI_TEXT, 0, "dt", &options.dt, "DT|auto:TOL",
-      .help = "set the time step: 1e-4 or 0.1ms; auto: overlaps of TOL [document]" },
+    { CLI_TEXT, 0, "dt", &options.dt, "DT",
+      .help = "set the time step, 1e-4 or 0.1ms: one solve per step [document's, small steps]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
@@ -84,7 +82,6 @@ const struct cli_tool tool = {
     "  nsd-gen 500 | nsd-step -n 1000 > out.h5\n"
     "  nsd-step -n 100 -o more.h5 out.h5\n"
     "  nsd-step -n 100 --in-place out.h5\n"
-    "  nsd-step -n 100 --dt auto:0.01 -o more.h5 out.h5\n"
     "  nsd-step -n 20 --with 'jq -c --unbuffered {gravity:[1,0,-9.81]}' a.h5 > leaning.h5\n"
 };
 
@@ -96,7 +93,6 @@ static struct {
     double eps;                   /* and what was asked of it */
     int64_t growing;              /* of those the ones whose reactions grow and only seem good */
     double approach;              /* m/s: of bodies in these steps, the largest */
-    int64_t shortest;             /* times that dt has become the least that it may be */
     int64_t abandoned;            /* steps whose solver knew no further way */
     int64_t divided, substeps;    /* steps that were divided, and into how many in all */
     int64_t small, small_steps;   /* steps that were made in small ones, and in how many in all; */
@@ -125,8 +121,6 @@ static bool words_are_output(void)
 static const char *cure(enum account_row row, const struct report *r)
 {
     if (row == ACCOUNT_OVERLAP && r->small) return "a smaller R of --small-steps leaves less";
-    if (row == ACCOUNT_OVERLAP && tol > 0)
-        return "a smaller TOL of --dt auto leaves less, unless walls press bodies together";
     if (row == ACCOUNT_UNCONVERGED && err_no_solution(r))
         return "no solution, reactions grow without end: walls leave bodies no way out";
     if (row == ACCOUNT_UNCONVERGED && r->given_up) return r->given_up;
@@ -311,7 +305,7 @@ static void tell(const struct report *r, int64_t made, const struct writer *out)
 {
     double rate = speed(made);
     if (!progress_due()) return;
-    double left = (double)(expected - made) / rate, hours = floor(left / 3600);
+    double left = (double)(steps - made) / rate, hours = floor(left / 3600);
     double minutes = floor(left / 60) - 60 * hours;
     char clock[40];
     if (hours >= 1)
@@ -320,10 +314,9 @@ static void tell(const struct report *r, int64_t made, const struct writer *out)
         snprintf(clock, sizeof clock, "%.0f:%02.0f", minutes, floor(left - 60 * minutes));
     progress_now("step %lld, %.0f %% of %lld, %.3g/s, %s left: %lld contacts, %d sweeps, %s %.2g, "
                  "%.3g MB of memory, %.3g MB written",
-                 (long long)r->step, floor(100.0 * (double)made / (double)expected),
-                 (long long)expected, rate, clock, (long long)r->err.contacts, r->sweeps,
-                 options_error(r->criterion), err_of(&r->err, r->criterion), memory_now(),
-                 1e-6 * (double)writer_size(out));
+                 (long long)r->step, floor(100.0 * (double)made / (double)steps), (long long)steps,
+                 rate, clock, (long long)r->err.contacts, r->sweeps, options_error(r->criterion),
+                 err_of(&r->err, r->criterion), memory_now(), 1e-6 * (double)writer_size(out));
 }
 
 /* ---- the end that comes from outside ---- */
@@ -460,42 +453,22 @@ static void say_broken(const struct packing *p)
              (long long)total.waited, (long long)b.waiting);
 }
 
-/* The step to come begins, with the dt that it has. */
+/* The step to come begins. */
 static void begin_step(struct run *r)
 {
     struct failure failure = { 0 };
     struct packing *p = &r->f.packing;
-    const double had = p->dt;
     say_lacks(r, p);
-    if (driver_begin(&r->driver, p, tol, &r->f.contacts, &failure)) die_why(&failure);
+    if (driver_begin(&r->driver, p, &r->f.contacts, &failure)) die_why(&failure);
     count_waiting(p);
-    if (p->dt != had && p->halved == ADAPT_MOST && !total.shortest++)
-        warn("step %lld: dt is %.3g s, and is not halved any more: bodies that are jammed, or too "
-             "fast "
-             "for that",
-             (long long)p->step + 1, p->dt);
 }
 
-/* Does dt adapt until a time, and is it this step's? How many steps that takes nobody knows before. */
-static bool is_then(const struct packing *p, int64_t step)
-{
-    return tol > 0 && cli_given(&until) && packing_time(p, step) >= until - driver_slack(p, until);
-}
-
-/* Does the run end with this step, the k-th? */
-static bool is_last(const struct packing *p, int64_t step, int64_t k)
-{
-    return k == steps || is_then(p, step);
-}
-
-/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it,
-   or all steps where dt adapts, for which the leader needs all bodies. */
+/* Is the balance of the step read? Where each process has its own bodies it takes an exchange, and only kept frames have it. */
 static bool is_bare(const struct run *r, int64_t k, bool last)
 {
     const struct packing *p = &r->f.packing;
     const bool gathers = processes_size() > 1 && r->driver.o.order == ORDER_BLOCK;
     if (loop_asks() || options.log || last || (options_end_on_failure() && !gathers)) return false;
-    if (tol > 0 && gathers) return false;
     return !is_kept(p, p->step + 1, k);
 }
 
@@ -507,7 +480,7 @@ static bool advance(struct run *r, int64_t k, bool saves)
     struct report *rep = &f->report;
     begin_step(r);
     const struct packing *p = &f->packing;
-    bool last = is_last(p, p->step + 1, k);
+    bool last = k == steps;
     r->driver.o.bare = !saves && is_bare(r, k, last);
     r->driver.o.compare = (contacts || forces) && !r->driver.o.bare && is_kept(p, p->step + 1, k);
     const struct changes changes = { r->driver.other_bodies,
@@ -623,7 +596,7 @@ static int64_t run(struct run *r)
         bool saves = save_due(r);
         if (!(good = advance(r, made + 1, saves))) break;
         const struct packing *p = &r->f.packing;
-        ends = is_last(p, p->step, ++made) || r->fails;
+        ends = ++made == steps || r->fails;
         tell(&r->f.report, made, r->out);
         if (ends && r->driver.o.bare)
             keep_last(r, made);
@@ -644,7 +617,6 @@ static int64_t run(struct run *r)
    depends on where the time is counted from and not on where this run began */
 static void count_steps(const struct packing *p)
 {
-    expected = steps;
     if (!cli_given(&until)) return;
     double n = ceil((until - p->t) / p->dt), reached = until - driver_slack(p, until);
     if (n > 1e15) die_usage("--until %g: more than 1e15 steps of %g s", until, p->dt);
@@ -653,40 +625,27 @@ static void count_steps(const struct packing *p)
     while (packing_time(p, p->step + steps) < reached &&
            !packing_check_clock(p, &(struct failure){ 0 }))
         steps++;
-    expected = steps;
-    if (steps && tol > 0) steps = INT64_MAX; // is_then() sees
 }
 
 /* ---- from where, and where to ---- */
 
-/* --dt, and its TOL */
 static double read_dt(void)
 {
-    bool adapts;
+    struct failure failure = { 0 };
     double x;
     if (!options.dt) return 0;
-    if (!driver_read_dt(options.dt, &adapts, &x))
-        die_usage(
-            "--dt: '%s' is neither a number of seconds above 0 nor auto:TOL, TOL a share of a "
-            "radius above 0 and at most 1",
-            options.dt);
-    if (adapts) tol = x;
-    return adapts ? 0 : x;
+    if (driver_read_dt(options.dt, &x, &failure)) die_usage("--dt: %s", failure.text);
+    return x;
 }
 
 /* Sets the time step of --dt; path: of a trajectory that the run is appended to, else NULL. */
 static void set_dt(struct packing *p, double asked, const char *path)
 {
     struct failure failure = { 0 };
-    if (!options.dt && p->tolerance > 0) tol = p->tolerance;
-    if (path && tol > 0 && !p->adapts)
-        die_usage("--dt: %s has one time step for all its frames: use -o FILE for others", path);
-    if (tol > 0) p->adapts = true;
     if (!(asked > 0)) return;
-    if (path && asked != packing_whole_dt(p))
+    if (path && asked != p->dt)
         die_usage("--dt: %s has %g s, and a trajectory has one: use -o FILE for another", path,
-                  packing_whole_dt(p));
-    if (!path) p->adapts = false, p->tolerance = 0;
+                  p->dt);
     if (driver_set_dt(p, asked, &failure)) die_why(&failure);
 }
 
@@ -777,9 +736,8 @@ int tool_main(int argc, char **argv)
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);
     reader_copies(in);
     // a program in the loop needs all bodies, and their contacts, in one place; --dt auto and springs all bodies
-    struct distributed *others =
-        processes_take_bodies(contacts || forces || sums || loop_asks(), !options.dt);
-    const bool whole = loop_asks() || tol > 0 || options_adds_springs();
+    struct distributed *others = processes_take_bodies(contacts || forces || sums || loop_asks());
+    const bool whole = loop_asks() || options_adds_springs();
     reader_hands_over(in, whole ? NULL : others);
     if (output && reader_reads(argc, argv, output))
         die_usage("%s: is also the input; -i appends to it", output);
@@ -820,13 +778,13 @@ int tool_main(int argc, char **argv)
     say_worst(&r.f.packing.names);
     reader_close(in);
     if (r.ended.status) die_why(&r.ended);
-    bool stopped = stopped_by && made < wanted && !is_then(&r.f.packing, r.f.packing.step);
+    bool stopped = stopped_by && made < wanted;
     if (r.told_to_stop && !stopped)
         warn("stopped by the program after step %lld", (long long)r.f.packing.step);
     if (stopped)
         warn("stopped by signal %d after step %lld, which is kept", (int)stopped_by,
              (long long)r.f.packing.step);
-    if (total.ended && made < wanted && !is_then(&r.f.packing, r.f.packing.step))
+    if (total.ended && made < wanted)
         warn("step %lld, which is kept, fails and ends the run: --keep-going makes all steps",
              (long long)total.ended);
     if (*r.end) warn("%s: the run ends before it", r.end);

@@ -146,21 +146,6 @@ static int read_overlap(struct source *doc, struct packing *p, struct failure *f
                : failure_set(failure, EX_DATAERR, "/nsd@overlap: no such treatment of overlap");
 }
 
-/* Whether dt is automatic; a document need not say it. */
-static int read_tolerance(struct source *doc, struct packing *p, struct failure *failure)
-{
-    double tolerance = 0;
-    struct failure none = { 0 };
-    if (source_attribute(doc, "/nsd", LAYOUT_TOLERANCE,
-                         (struct numbers){ COLUMN_F64, -1, &tolerance }, &none))
-        return 0;
-    if (!(tolerance > 0 && tolerance <= 1))
-        return failure_set(failure, EX_DATAERR,
-                           "/nsd@" LAYOUT_TOLERANCE ": not a number above 0 and at most 1");
-    p->tolerance = tolerance, p->adapts = true;
-    return 0;
-}
-
 static int read_parameters(struct source *doc, struct packing *p, struct failure *failure)
 {
     double g[3] = { 0 };
@@ -173,27 +158,23 @@ static int read_parameters(struct source *doc, struct packing *p, struct failure
         return failure->status;
     p->g = v3(g[0], g[1], g[2]);
     p->seed = (uint64_t)seed;
-    if (read_overlap(doc, p, failure) || read_tolerance(doc, p, failure)) return failure->status;
+    if (read_overlap(doc, p, failure)) return failure->status;
     p->scene = source_text(doc, "/nsd/scene", NULL, failure);
     return failure->status;
 }
 
-/* The dt of frame k, where each has its own: the document's, halved. Times are counted from t0 all the
-   same. */
+/* The dt of frame k, where each has its own: none is longer than the document's. Times are counted from t0 all the same. */
 static int read_time_step(struct frame_read *r, int64_t k, double t0, struct packing *p,
                           struct failure *failure)
 {
     double dt;
-    int halved = 0;
     if (source_rows(r->source, LAYOUT_TIME_STEP, (struct slab){ COLUMN_F64, k, 1, 1 }, &dt,
                     failure))
         return failure->status;
-    bool good = dt > 0 && frexp(p->dt / dt, &halved) == 0.5 && halved >= 1 &&
-                halved <= HALVED_MOST + 1 && ldexp(dt, halved - 1) == p->dt;
-    if (!good)
+    if (!(dt > 0 && dt <= p->dt))
         return failure_set(failure, EX_DATAERR,
-                           LAYOUT_TIME_STEP ": not /nsd@dt, halved at most %d times", HALVED_MOST);
-    p->adapts = true, p->halved = halved - 1, p->t0 = t0;
+                           LAYOUT_TIME_STEP ": not above 0 and at most /nsd@dt");
+    p->t0 = t0;
     packing_set_dt(p, dt);
     return 0;
 }

@@ -38,15 +38,13 @@ static int write_parameters(hid_t file, const struct frame *f, struct failure *f
     if (f->foreign) return 0;
     const double g[3] = { p->g.x, p->g.y, p->g.z };
     int64_t seed = (int64_t)p->seed;
-    double dt = packing_whole_dt(p);
+    double dt = p->dt;
     if (h5_attr(file, "/nsd", "dim", h5_scalar(H5T_NATIVE_INT, &p->dim), failure) ||
         h5_attr(file, "/nsd", "dt", h5_scalar(H5T_NATIVE_DOUBLE, &dt), failure) ||
         h5_attr(file, "/nsd", "theta", h5_scalar(H5T_NATIVE_DOUBLE, &p->theta), failure) ||
         h5_attr(file, "/nsd", "gravity", h5_vector(H5T_NATIVE_DOUBLE, 3, g), failure) ||
         h5_attr(file, "/nsd", "seed", h5_scalar(H5T_NATIVE_INT64, &seed), failure) ||
-        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], failure)) ||
-        (p->tolerance > 0 && h5_attr(file, "/nsd", LAYOUT_TOLERANCE,
-                                     h5_scalar(H5T_NATIVE_DOUBLE, &p->tolerance), failure)))
+        (p->overlap && h5_attr_text(file, "/nsd", "overlap", overlap_name[p->overlap], failure)))
         return failure->status;
     const double origin[2] = { p->t0, (double)p->step0 };
     if ((p->t0 != 0 || p->step0) &&
@@ -151,30 +149,12 @@ static int write_particles_clock(struct table_write *s, bool step, const struct 
     return table_write_link(s, from, name, particles, box_fields, failure);
 }
 
-static int write_time_step(struct table_write *s, const struct packing *p, struct failure *failure)
-{
-    return p->adapts ? table_write_number(s, LAYOUT_TIME_STEP, COLUMN_F64, &p->dt, "s", failure)
-                     : 0;
-}
-
-/* After the first frame's step: its clock is that of the particles. */
-static int link_time_step(struct table_write *s, const struct packing *p, struct failure *failure)
-{
-    static const struct field it[] = { { .name = "time_step" }, { 0 } };
-    const char *step = "/particles/all/position/step", *time = "/particles/all/position/time";
-    return p->adapts && (table_write_link(s, step, "step", "/nsd", it, failure) ||
-                         table_write_link(s, time, "time", "/nsd", it, failure))
-               ? failure->status
-               : 0;
-}
-
 int frame_write_moment(struct table_write *s, const struct frame *f, struct failure *failure)
 {
     if (f->packed &&
         (write_motion(s, &f->packing, failure) || cell_tables_write(s, &f->packing, failure) ||
          write_particles_clock(s, false, &f->packing, failure) ||
-         write_time_step(s, &f->packing, failure) || flow_write(s, &f->packing, failure) ||
-         shape_tables_write(s, &f->packing, failure) ||
+         flow_write(s, &f->packing, failure) || shape_tables_write(s, &f->packing, failure) ||
          breakage_tables_write(s, &f->packing, failure)))
         return failure->status;
     if (f->packed &&
@@ -194,8 +174,7 @@ int frame_write_step(struct table_write *s, const struct frame *f, struct failur
     bool first = !table_write_grows(s, "/particles/all/position/step");
     if (write_particles_clock(s, true, &f->packing, failure)) return failure->status;
     if (!first) return 0;
-    return link_time_step(s, &f->packing, failure) || flow_link(s, &f->packing, failure) ||
-                   breakage_tables_link(s, &f->packing, failure)
+    return flow_link(s, &f->packing, failure) || breakage_tables_link(s, &f->packing, failure)
                ? failure->status
                : 0;
 }

@@ -28,9 +28,7 @@ static inline void layout_body_path(const struct field *b, char path[80])
  * The group of the solver's reports. Not among H5MD's /observables: readers take each member of that
  * for an element with a value in every frame. LAYOUT_REPORT_0_1: where it was until nsd 0.1.
  */
-/* Radii: TOL of an automatic time step; of /nsd, only of documents that have one */
-#define LAYOUT_TOLERANCE "time_step_tolerance"
-/* Where the time step adapts, each frame's: [F], s */
+/* Each frame's, in documents of versions whose time step adapted: [F], s */
 #define LAYOUT_TIME_STEP "/nsd/time_step/value"
 
 #define LAYOUT_REPORT     "/nsd/solver"

@@ -464,16 +464,10 @@ static int writer_check_same(const struct writer *s, const struct frame *f, stru
     if (!packing_varies(q) && s->first.n != n)
         return failure_set(failure, EX_DATAERR, "%lld bodies, and the trajectory has %lld",
                            (long long)n, (long long)s->first.n);
-    const double dt = packing_whole_dt(q), first_dt = packing_whole_dt(p);
+    const double dt = q->dt, first_dt = p->dt;
     if (dt != first_dt)
         return failure_set(failure, EX_DATAERR, "dt is %.15g s, and the trajectory's is %.15g s",
                            dt, first_dt);
-    if (p->adapts != q->adapts)
-        return failure_set(failure, EX_DATAERR,
-                           "frames with a time step of their own and others in one trajectory");
-    if (p->tolerance != q->tolerance)
-        return failure_set(failure, EX_DATAERR,
-                           "frames with an automatic time step and others in one trajectory");
     if (p->overlap && q->overlap && p->overlap != q->overlap) // that of a scene is not said yet
         return failure_set(failure, EX_DATAERR, "overlap differs from the trajectory's");
     if (packing_same_settings(p, q, failure)) return failure->status;

@@ -46,18 +46,6 @@ void rank_step_begin_again(struct rank_step *y, const struct packing *whole)
     subdomain_begin_again(&y->part, whole);
 }
 
-void rank_step_set_dt(struct rank_step *y, const struct packing *whole)
-{
-    struct packing *p = &y->part.p;
-    struct {
-        double dt, t0;
-        int64_t step0;
-    } now = { whole->dt, whole->t0, whole->step0 };
-    MPI_Bcast(&now, sizeof now, MPI_BYTE, 0, y->part.comm->mpi);
-    p->dt = now.dt, p->t0 = now.t0, p->step0 = now.step0;
-    y->part.margin = -1; // of bodies that go farther in a step: they are dealt again
-}
-
 void rank_step_act(struct rank_step *y, const struct packing *whole)
 {
     subdomain_act(&y->part, whole, y->scattered);

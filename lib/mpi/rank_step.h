@@ -49,8 +49,6 @@ void rank_step_begin(struct rank_step *y, struct comm *t, struct decomposition *
 bool rank_step_scatters(const struct packing *settings, const struct step_opt *o);
 /* After the first rank's packing has got other bodies */
 void rank_step_begin_again(struct rank_step *y, const struct packing *whole);
-/* After dt of the first rank's packing has changed, which adapts */
-void rank_step_set_dt(struct rank_step *y, const struct packing *whole);
 /* After a program has changed the first rank's packing, or put forces on it, for the step to come */
 void rank_step_act(struct rank_step *y, const struct packing *whole);
 /* As step_advance(): whole, s, rep are those of the first rank. Returns 0, or a status at the first, which

@@ -3,7 +3,6 @@
 #include "base/option.h"
 #include "base/text.h"
 #include "scene/breaking.h"
-#include "step/adapt.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,7 +11,6 @@
 void driver_forget(struct driver *d)
 {
     step_forget(&d->memory);
-    neighbours_free(&d->ahead);
 }
 
 void driver_free(struct driver *d)
@@ -23,44 +21,34 @@ void driver_free(struct driver *d)
     *d = (struct driver){ 0 };
 }
 
-static int driver_adapt(struct driver *d, struct packing *p, double tol, struct failure *failure)
-{
-    const double had = p->dt;
-    if (!(tol > 0)) return 0;
-    if (adapt_step(p, tol, &d->ahead, failure)) return failure->status;
-    d->o.solve.local.newton_abs *= p->dt / had;
-    return 0;
-}
-
-int driver_begin(struct driver *d, struct packing *p, double tol, struct contacts *last,
+int driver_begin(struct driver *d, struct packing *p, struct contacts *last,
                  struct failure *failure)
 {
-    if (driver_adapt(d, p, tol, failure) ||
-        flow_step(&d->flow, p, last, &d->other_bodies, failure) ||
+    if (flow_step(&d->flow, p, last, &d->other_bodies, failure) ||
         breaking_step(p, last, &d->other_bodies, failure))
         return failure->status;
     if (d->other_bodies) driver_forget(d);
     return control_begin(&d->acts, p, failure);
 }
 
-bool driver_read_dt(const char *text, bool *adapts, double *x)
+int driver_read_dt(const char *text, double *x, struct failure *failure)
 {
-    static const char word[] = "auto:";
-    *adapts = !strncmp(text, word, sizeof word - 1);
-    const char *number = *adapts ? text + sizeof word - 1 : text;
-    char *end = NULL;
-    bool read =
-        *adapts ? (*x = number_read(number, &end), end != number && !*end) : time_parse(x, number);
-    return read && *x > 0 && *x <= (*adapts ? 1 : DBL_MAX);
+    if (!strncmp(text, "auto", 4))
+        return failure_set(failure, EX_USAGE,
+                           "'%.60s' is no longer available: leave dt out, for small steps, which "
+                           "bound overlaps",
+                           text);
+    if (!time_parse(x, text) || !(*x > 0 && *x <= DBL_MAX))
+        return failure_set(failure, EX_USAGE, "'%.60s' is no time above 0, as 1e-4 or 0.1ms", text);
+    return 0;
 }
 
 int driver_set_dt(struct packing *p, double dt, struct failure *failure)
 {
     const struct packing was = *p;
-    p->halved = 0;
     packing_set_dt(p, dt);
     if (packing_check_clock(p, failure)) {
-        p->dt = was.dt, p->halved = was.halved, p->t0 = was.t0, p->step0 = was.step0;
+        p->dt = was.dt, p->t0 = was.t0, p->step0 = was.step0;
         return failure->status;
     }
     memory_scale(&p->memory, dt / was.dt);

@@ -11,7 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, OTHER_DT, ACT, STEP, TAKE, FILL };
+enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, TAKE, FILL };
 
 static struct {
     struct comm comm;
@@ -21,7 +21,6 @@ static struct {
     struct distributed distributed;
     bool begun;
     bool contacts; /* are wanted of steps that are kept */
-    bool adapts;   /* dt does, where the document says so */
 } self;
 
 /* Where a process of the run ends before its time mpirun stops the others by this signal. */
@@ -84,8 +83,7 @@ static bool wants(struct distributed *e, const struct packing *settings, int64_t
 {
     const struct step_opt o = options_step(settings->dt, false);
     e->n = n;
-    return rank_step_scatters(settings, &o) && !(self.adapts && settings->tolerance > 0) &&
-           !settings->breakage;
+    return rank_step_scatters(settings, &o) && !settings->breakage;
 }
 
 static int mpi_processes_take(struct distributed *e, const struct packing *block, int64_t first,
@@ -105,9 +103,9 @@ static int mpi_processes_give(struct distributed *e, hid_t file, const char *pat
     return mpi_processes_fill(file, path, place, places, failure);
 }
 
-struct distributed *processes_take_bodies(bool contacts, bool adapts)
+struct distributed *processes_take_bodies(bool contacts)
 {
-    self.contacts = contacts, self.adapts = adapts;
+    self.contacts = contacts;
     self.distributed = (struct distributed){ .wants = wants,
                                              .take = mpi_processes_take,
                                              .give = mpi_processes_give };
@@ -128,7 +126,6 @@ int processes_follow(void)
         if (w == FILL)
             mpi_processes_fill(-1, NULL, NULL, 0, &failure); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
-        if (w == OTHER_DT) rank_step_set_dt(&self.step, &none);
         if (w == ACT) rank_step_act(&self.step, &none);
         if (w != STEP) continue;
         const struct step_opt o = options_step(self.step.part.p.dt, false);
@@ -149,8 +146,6 @@ static int mpi_processes_step(struct frame *f, struct changes changes, int64_t p
         mpi_processes_next(OTHER_BODIES), rank_step_begin_again(&self.step, &f->packing);
     const bool moved = self.moved;
     self.moved = false;
-    if (f->packing.dt != self.step.part.p.dt)
-        mpi_processes_next(OTHER_DT), rank_step_set_dt(&self.step, &f->packing);
     if (changes.acts || moved) mpi_processes_next(ACT), rank_step_act(&self.step, &f->packing);
     self.step.contacts = self.contacts, self.step.may_end = options_end_on_failure();
     self.step.parts = parts;

@@ -57,9 +57,9 @@ int processes_follow(void)
     return 0;
 }
 
-struct distributed *processes_take_bodies(bool contacts, bool adapts)
+struct distributed *processes_take_bodies(bool contacts)
 {
-    (void)contacts, (void)adapts;
+    (void)contacts;
     return NULL;
 }
 

@@ -20,9 +20,8 @@ int processes_size(void);
 /* Those who do not lead: makes the steps until processes_leave(), and returns the exit status. */
 int processes_follow(void);
 /* The leader: who takes the bodies of what it reads, where no process shall have all of them; NULL: nobody. contacts: of
-   steps that are kept they are wanted; adapts: so does dt, where the document says so, for which the leader needs all
-   bodies */
-struct distributed *processes_take_bodies(bool contacts, bool adapts);
+   steps that are kept they are wanted */
+struct distributed *processes_take_bodies(bool contacts);
 /* What has happened to the leader's packing since the step before */
 struct changes {
     bool bodies; /* it has others */

@@ -117,7 +117,7 @@ void rollback_back(struct rollback *u, struct packing *p, struct control *acts)
     }
     if (u->walls) memcpy(p->wall, u->wall, (size_t)u->walls * sizeof *u->wall);
     p->step = u->was.step, p->t = u->was.t, p->t0 = u->was.t0, p->step0 = u->was.step0;
-    p->dt = u->was.dt, p->halved = u->was.halved, p->cell = u->was.cell;
+    p->dt = u->was.dt, p->cell = u->was.cell;
     free(p->memory.recall); // another than it was, perhaps
     p->memory = (struct memory){ u->was.memory.on, u->was.memory.n, u->room, u->recall };
     u->recall = NULL, u->room = 0;

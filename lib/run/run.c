@@ -10,7 +10,6 @@
 #include "scene/scene_build.h"
 #include "scene/stiffness.h"
 #include "solve/err.h"
-#include "step/adapt.h"
 
 #include <errno.h>
 #include <float.h>
@@ -257,25 +256,19 @@ static int no_such_option(const char *name, struct failure *failure)
                        near.name ? "?" : "");
 }
 
-/* "1e-4", "auto:0.01" */
+/* "1e-4" */
 static int run_set_dt(struct nsd_run *r, const char *text, struct failure *failure)
 {
     struct packing *p = &r->f.packing;
-    bool adapts;
+    struct failure why = { 0 };
     double x;
-    if (!driver_read_dt(text, &adapts, &x))
-        return failure_set(
-            failure, NSD_USAGE,
-            "dt: '%.60s' is neither a number of seconds above 0 nor auto:TOL, TOL a share "
-            "of a radius above 0 and at most 1",
-            text);
+    if (driver_read_dt(text, &x, &why))
+        return failure_set(failure, NSD_USAGE, "dt: %.300s", why.text);
     if (r->out)
         return failure_set(failure, NSD_USAGE, "dt: a trajectory has one: nsd_finish() ends it");
-    if (!adapts && driver_set_dt(p, x, failure)) return failure->status;
+    if (driver_set_dt(p, x, failure)) return failure->status;
     options_give(&r->options, &options.dt);
     r->chosen = false;
-    r->tol = adapts ? x : 0, p->adapts = adapts;
-    if (!adapts) p->tolerance = 0;
     return 0;
 }
 
@@ -367,7 +360,7 @@ static int run_advance(struct nsd_run *r, struct report *rep, struct failure *fa
     struct packing *p = &r->f.packing;
     struct driver *d = &r->driver;
     d->o.compare = r->compares;
-    if (driver_begin(d, p, r->tol > 0 ? r->tol : p->tolerance, NULL, failure) ||
+    if (driver_begin(d, p, NULL, failure) ||
         step_advance(p, &r->spare, &d->memory, &d->o, rep, failure))
         return failure->status;
     if (report_made(rep)) return 0;

@@ -28,7 +28,6 @@ struct nsd_run {
 
     struct options options;
     bool chosen;           /* driver.o is what they come to */
-    double tol;            /* radii: of dt auto:TOL; 0: the document's, if its dt is automatic */
     bool contacts, forces; /* what is saved */
     bool compares; /* reactions of small steps are compared with converged ones in each step */
     struct asked asked;

@@ -250,16 +250,13 @@ static int name_wall(const struct scene *s, struct failure *failure)
     return failure->status;
 }
 
-/* The dt of a scene that leaves it to us; "auto" adapts from then on */
+/* The dt of a scene that leaves it to us */
 static int scene_build_set_dt(struct packing *p, const struct scene *s, struct failure *failure)
 {
     struct time_step t;
     if (s->dt > 0) return 0;
     time_step_of(&t, s, p);
-    if (isnan(s->dt))
-        p->dt = t.interval;
-    else
-        p->dt = t.best, p->adapts = true, p->tolerance = TIME_STEP_TOLERANCE;
+    p->dt = isnan(s->dt) ? t.interval : t.best;
     return isfinite(p->dt) && p->dt > 0
                ? 0
                : failure_set(failure, EX_DATAERR,

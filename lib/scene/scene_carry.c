@@ -208,7 +208,7 @@ struct scene_lost scene_lost(const struct packing *p, const struct scene *s)
         const struct packing *from = s->bodies[g].document;
         if (!from || s->bodies[g].foreign) continue;
         const struct lasting *had = &from->outside.lasts;
-        const double dt = packing_whole_dt(from);
+        const double dt = from->dt;
         if (!lost.file) lost.file = s->bodies[g].file;
         lost.bonds += scene_carry_ties(&from->bonds);
         lost.forces |= (had->force && !has->force) || (had->torque && !has->torque) ||

@@ -79,7 +79,7 @@ static const struct key scene_key[] = {
       .always = true, .read = read_dim },
     { "dt", &key_dt, AT(dt), "s", "chosen", "5e-4",
       "Time step, which nsd-step makes of small ones. The default follows from the accelerations. "
-      "\"auto\": the one that nsd-gen --check suggests for one solve per step, adapted in the run.",
+      "\"auto\": the one that nsd-gen --check suggests for one solve per step.",
       .read = read_dt },
     { "theta", &key_share, AT(theta), "-", "0.5", "0.5",
       "Parameter of the theta-method, see nsd-methods(7)." },

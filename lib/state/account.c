@@ -36,7 +36,7 @@ static double unconverged(const struct report *r, double bodies[2])
 
 const struct watched account_watched[ACCOUNT_ROWS] = {
     [ACCOUNT_OVERLAP] = { "overlap", "overlap", "1", "overlap %.3g of a radius", NULL, false, 2,
-                          0.01, 0.1, overlap, "a smaller dt leaves less: --dt, or --dt auto:0.01" },
+                          0.01, 0.1, overlap, "a smaller dt leaves less, and so do small steps" },
     [ACCOUNT_APPROACH] = { "approach", "approach", "m s-1", "approach %.3g m/s", NULL, false, 0,
                            INFINITY, INFINITY, approach, "" },
     [ACCOUNT_PINCHED] = { "pinched", "wedged", "1", "%.0f pinched", NULL, false, 1, 0, 0, pinched,

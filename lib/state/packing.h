@@ -123,11 +123,8 @@ struct packing {
     double t, dt; /* s; t = t0 + (step - step0) dt, which no step adds up: packing_time() */
     double t0;    /* s: the time at step0, from which the time is counted with this dt */
     int64_t step0;
-    bool adapts;      /* dt is of this step: that of the document, halved so many times */
-    int32_t halved;   /* 0 .. HALVED_MOST */
-    double tolerance; /* radii: TOL of an automatic dt [step/adapt.h]; 0: dt is not automatic */
-    double theta;     /* of the theta-method; 1/2 is the paper's midpoint */
-    vec3 g;           /* m/s^2 */
+    double theta; /* of the theta-method; 1/2 is the paper's midpoint */
+    vec3 g;       /* m/s^2 */
     uint64_t seed;
     enum overlap overlap;
 
@@ -268,12 +265,6 @@ static inline double packing_time(const struct packing *p, int64_t step)
 static inline double packing_next_time(const struct packing *p)
 {
     return packing_time(p, p->step + 1);
-}
-enum { HALVED_MOST = 30 }; /* a billionth */
-/* s: the time step that all frames of a document have, or halve */
-static inline double packing_whole_dt(const struct packing *p)
-{
-    return ldexp(p->dt, p->halved);
 }
 /* Goes on with another dt from the packing's time on, counted from the same t0 where that gives the same
    times. With half of a dt it always does, and with twice a dt after an even number of steps: times that are

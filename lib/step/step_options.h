@@ -20,7 +20,7 @@ struct options {
     double bound; /* of what is missing of their reactions; 0: none */
     bool warm, every_sweep, history, strict, keep_going;
     const char *log;    /* or NULL */
-    const char *dt;     /* s, or auto:TOL; or NULL */
+    const char *dt;     /* s; or NULL */
     const char *device; /* that makes the sweeps, as device_open() has it; NULL: the CPU */
     uint64_t given;     /* which of them were, by options_give() */
 };

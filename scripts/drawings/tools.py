@@ -128,7 +128,7 @@ def choose():
     c.line(20, 466, 620, 466, PALE, 1)
     c.words(20, 490, 'dt of one solve per step: nsd-gen --check prints every limit', bold=True, size=13.5)
     rows = [('flow of grains in contact', 'limit gravity: g dt² <= 0.002 r, dt = 0.045 sqrt(r/g)'),
-            ('impacts and falls', 'limit fall: v dt <= 0.05 r, or nsd-step --dt auto:0.01'),
+            ('impacts and falls', 'limit fall: v dt <= 0.05 r'),
             ('to be sure', 'half of dt: compare with the scatter between seeds')]
     for k, (name, text) in enumerate(rows):
         c.words(20, 514 + 21 * k, name, INK, 12.5, bold=True)

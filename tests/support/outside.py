@@ -56,7 +56,7 @@ with open(path("scene.json"), "w") as f:
 gen = tool("nsd-gen", path("scene.json"))
 with open(path("begin.h5"), "wb") as f:
     f.write(gen)
-for options in ({}, {"contacts": True}, {"forces": True, "tolerance": 1e-6, "criterion": "natural"}, {"dt": "auto:0.01"},
+for options in ({}, {"contacts": True}, {"forces": True, "tolerance": 1e-6, "criterion": "natural"},
                 {"local": "exact", "relax": 1.2, "overlap_rule": "keep"}, {"small_steps": 0.01, "threads": 2}, {"threads": 2, "cold": True}):
     words = [w for key, x in options.items()
              for w in (["--" + key] if x is True else ["--" + key.replace("_", "-"), str(x)])]

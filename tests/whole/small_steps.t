@@ -187,7 +187,6 @@ done <<'END'
 --gap 0
 --overlap-rule project
 --dt 5e-5
---dt auto:0.01
 --stiffness 1e3
 END
 while read -ra option; do
@@ -206,8 +205,6 @@ nsd-step --protocol paper -m sbp -n 1 "$tmp/in.h5" 2>"$tmp/err" >"$tmp/paper.h5"
 ok "one solve per step: a document with another rule of overlaps" makes once
 nsd-gen 20 | nsd-step --solver auto -n 1 2>"$tmp/err" >"$tmp/in.h5"
 ok "small steps: one with the default rule" makes small
-scene "$floor, bodies: [{ x: [0, 0, 0.0105], radius: 0.01, v: [0, 0, -1] }] } | .dt = \"auto\" | { walls, gravity, dt, bodies"
-ok "one solve per step: a scene with dt \"auto\"" makes once
 scene "$floor, stiffness: 1e5, bodies: [{ x: [0, 0, 0.02], radius: 0.01 }]"
 ok "and one with contacts that have a stiffness" makes once
 
