@@ -199,7 +199,7 @@ def main():
             refuse("cell whose corner is not the origin")
         with open(os.path.join(work, "start.txt"), "w", encoding="ascii") as file:
             for body in bodies:
-                if body["kind"] not in ("ball", "disc"):
+                if body.get("shape", "ball") != "ball":
                     refuse("shapes")
                 numbers = [*body["x"], body["radius"], body["mass"], *body["v"], *body["w"]]
                 print(*(f"{n:.17g}" for n in numbers), 0 if body["mass"] > 0 else 1, file=file)

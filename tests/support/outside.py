@@ -173,7 +173,7 @@ for kind, words, call in (
         (nsd.Error, "did you mean pixels?", lambda: run.set(pixel=3)),
         (nsd.Error, "not load-controlled", lambda: run.push_wall(0, 1)),
         (nsd.Error, "no wall", lambda: run.move_wall(17, [0, 0, 1])),
-        (nsd.Error, "no kind", lambda: run.friction("ball", "cheese", 1)),
+        (nsd.Error, "no material", lambda: run.friction("ball", "cheese", 1)),
         (nsd.Error, "steps cannot", lambda: run.step(-1)),
         (nsd.Error, "", lambda: run.save("/nowhere/a.h5")),
         (nsd.Error, "", lambda: nsd.Run.from_document(gen[:1000])),
@@ -314,7 +314,7 @@ for name, call in {"force": lambda x: run.apply_force(0, x), "velocity": lambda 
     for x in ["1", "2", "3"], [True, False, True], [1j, 0, 0], [None, 0, 0], [10 ** 400, 0, 0]:
         ok(raises((TypeError, ValueError), name, lambda: call(x)), f"{name}: {x!r:.40} is refused by name")
 for name, call in {"path": run.save, "document": nsd.Run.from_document, "scene": nsd.Run.from_scene, "name": run.array,
-                   "names": run.measure, "kind": lambda x: run.friction(x, "wall", 1), "line": run.note, "source": nsd.last,
+                   "names": run.measure, "material": lambda x: run.friction(x, "wall", 1), "line": run.note, "source": nsd.last,
                    "tolerance": lambda x: run.set(tolerance=x)}.items():
     ok(raises(ValueError, f"{name}: ", lambda: call("a\0b")), f"{name}: a zero byte is refused by name")
     ok(raises(TypeError, f"{name}: ", lambda: call(3j)), f"{name}: so is what is no text")

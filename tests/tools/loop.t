@@ -119,10 +119,10 @@ for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{
     '{"forces":{"0":[0,0,1],"00":[0,0,2]}}:body .00.' '{"forces":{"+1":[0,0,1]}}:body .+1.' '{"forces":{" 1":[0,0,1]}}:body . 1.' \
     '{"forces":{"":[0,0,1]}}:body ..' '{"boundaries":{"00":{"force":1}}}:no wall is named .00.' \
     '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces, and there are 2' \
-    '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no boundary 9' \
+    '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no wall 9' \
     '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"boundaries":{"roof":{"force":1}}}:no wall is named .roof.' '{"boundaries":{"-1":{"force":1}}}:no wall is named .-1.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
     '{"gravity":9.81}:gravity is a vector' \
-    '{"friction":[["ball","cheese",1]]}:no kind .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
+    '{"friction":[["ball","cheese",1]]}:no material .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
     '{"gravity":[0,0,1],"gravity":[0,0,2]}:not JSON'; do
     stops "the answer ${answer%:*}" "$(answering "${answer%:*}")" "[0]" 69 "step 1: --with: .*${answer##*:}"
 done

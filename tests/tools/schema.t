@@ -117,7 +117,7 @@ cell = {
 # nsd-gen's reasons that a schema sees, and those that follow from several values, or from names
 seen = re.compile("unknown key|is missing|needs |must be positive|must not be negative|must lie in|must be at least|must not be zero|"
                   "goes with|does not go with|is given too|is no choice|only a |must be below 2 pi|must be less than pi/2|types are whole")
-unseen = re.compile("no kind|no wall|no shape|a name|the name|needs a box|needs [0-9]+ to |needs \\[min|needs .walls|closed box|needs a height|"
+unseen = re.compile("no material|no wall|no shape|a name|the name|needs a box|needs [0-9]+ to |needs \\[min|needs .walls|closed box|needs a height|"
                     "must be below|needs two points|needs two kinds|names of walls|needs the name|two adjacent|only a servo with .* grows|"
                     "stress-controlled and needs a mass|only a plane|cell: needs one of|drives.*from: is missing|box: is missing")
 def gen(scene):
