@@ -16,7 +16,7 @@
 # Objects, tools and tests are under build/; SAN=1 makes the same with ASan and UBSan in build/san/,
 # at -O1: the sanitizers treble the code, and -O3 of that takes minutes.
 
-VERSION := 1.0
+VERSION := 2.0
 # $(call Q,CC,FILE) before a command: a line that names the file instead of the command; V=1: the command
 Q        = $(if $(V),,@printf '%-4s%s\n' $1 $2;)
 PREFIX  ?= /usr/local
@@ -87,7 +87,7 @@ LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/run/main.c lib/mpi/%.c l
 COMMAND_LINE := $(addprefix run/,cli completion loop partner options processes tool_filter)
 PUBLIC := $(filter-out $(COMMAND_LINE:%=$B/lib/%.o),$(filter $B/lib/run/%,$(LIB)))
 HIDDEN := -fPIC -fvisibility=hidden
-SONAME := libnsd.so.1
+SONAME := libnsd.so.2
 TOOLS := $(patsubst tools/%.c,$B/%,$(wildcard tools/*.c))
 
 # Where there are Open MPI, whose mpicc shows its flags, and Zoltan, nsd-step-mpi: what nsd-step becomes under
@@ -471,7 +471,7 @@ uninstall:
 	rm -rf $(TO)/share/nsd $(TO)/share/doc/nsd $(TO)/include/nsd.h $(DESTDIR)$(PYTHONDIR)/nsd
 	rm -f $(addprefix $(DESTDIR)$(LIBDIR)/,libnsd.a libnsd.so $(SONAME) $(SONAME).0 pkgconfig/nsd.pc)
 
-# Debian packages in build/deb, of a copy of the sources: nsd-tools; libnsd1, and libnsd-dev for programs; python3-nsd
+# Debian packages in build/deb, of a copy of the sources: nsd-tools; libnsd2, and libnsd-dev for programs; python3-nsd
 deb:
 	scripts/deb.sh
 

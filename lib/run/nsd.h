@@ -51,7 +51,7 @@ enum nsd_status {
     NSD_OUTPUT = 74    /* a file cannot be written */
 };
 
-/* The version, for example "1.0" */
+/* The version, for example "2.0" */
 const char *nsd_version(void);
 /* The reason for the failure of the last call with this run, "" if it succeeded. NULL: of the last call of this thread
    without a run. Valid until the next call. */

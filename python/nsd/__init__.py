@@ -7,7 +7,7 @@
     for frame in nsd.frames("out.h5"):          # frames of documents [nsd-format(5)]
         print(frame.step, frame.time, frame.position[:, 2].max())
 
-It needs libnsd.so.1 and numpy, which are loaded when they are first used.
+It needs libnsd.so.2 and numpy, which are loaded when they are first used.
 """
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""libnsd.so.1 by ctypes: what nsd.h declares."""
+"""libnsd.so.2 by ctypes: what nsd.h declares."""
 from __future__ import annotations
 
 import _thread
@@ -66,9 +66,9 @@ _functions = {  # name: what it takes; each returns a status but for those below
 def _load() -> ctypes.CDLL:
     """NSD_LIBRARY; else the library next to the installed or built module; else that of the system."""
     here = Path(__file__).resolve()
-    near = [here.parents[3] / "libnsd.so.1", here.parents[2] / "build" / "libnsd.so.1"]
+    near = [here.parents[3] / "libnsd.so.2", here.parents[2] / "build" / "libnsd.so.2"]
     named = os.environ.get("NSD_LIBRARY")
-    found = named or next((str(path) for path in near if path.exists()), "libnsd.so.1")
+    found = named or next((str(path) for path in near if path.exists()), "libnsd.so.2")
     library = ctypes.CDLL(found)
     for name, takes in _functions.items():
         function = getattr(library, name)

@@ -3,7 +3,7 @@
 # with 96 colours, which is a third of their size (package pngquant); the cookbook of the site shows them.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
-export PATH=$PWD/build:$PATH PYTHON=/usr/bin/python3 PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
+export PATH=$PWD/build:$PATH PYTHON=/usr/bin/python3 PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.2}
 
 tmp=$(mktemp -d)
 trap 'rm -rf "$tmp"' EXIT

@@ -317,7 +317,7 @@ status 0 "who copies nothing reads it" nsd-info "$tmp/compound.h5"
 
 module() # whatever it makes of these documents: nothing of the file "secret", and the status is that of the tools
 {
-    PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$(dirname "$(command -v nsd-gen)")/libnsd.so.1} timeout 120 /usr/bin/python3 - "$tmp" <<'PYTHON'
+    PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$(dirname "$(command -v nsd-gen)")/libnsd.so.2} timeout 120 /usr/bin/python3 - "$tmp" <<'PYTHON'
 import glob, os, sys, nsd
 refused = other = 0
 for path in sorted(glob.glob(sys.argv[1] + "/hostile.*.h5")):

@@ -115,7 +115,7 @@ if command -v dh >/dev/null && command -v dpkg-buildpackage >/dev/null; then
     version=$(sed -n 's/^VERSION := //p' Makefile)
     arch=$(dpkg --print-architecture)
     tools_deb=build/deb/nsd-tools_${version}_$arch.deb dev_deb=build/deb/libnsd-dev_${version}_$arch.deb
-    lib_deb=build/deb/libnsd1_${version}_$arch.deb python_deb=build/deb/python3-nsd_${version}_all.deb
+    lib_deb=build/deb/libnsd2_${version}_$arch.deb python_deb=build/deb/python3-nsd_${version}_all.deb
     if command -v lintian >/dev/null; then
         is "lintian says nothing" "$(lintian --allow-root --fail-on error "$tools_deb" "$dev_deb" "$lib_deb" "$python_deb" 2>&1)" ""
     else
@@ -127,7 +127,7 @@ if command -v dh >/dev/null && command -v dpkg-buildpackage >/dev/null; then
             dpkg-deb -x "$lib_deb" "$tmp/deb" && dpkg-deb -x "$python_deb" "$tmp/deb" &&
             (PATH=$tmp/deb/usr/bin:$PATH && nsd-gen 4 | nsd-step -n 5 2>/dev/null | nsd-info --last | jq -e '.step == 5') &&
             [ -s "$tmp/deb/usr/share/doc/nsd-tools/copyright" ] && [ -s "$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.a" ] &&
-            NSD_LIBRARY=$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.so.1 PYTHONPATH=$tmp/deb/usr/lib/python3/dist-packages \
+            NSD_LIBRARY=$tmp/deb/usr/lib/$(gcc -print-multiarch)/libnsd.so.2 PYTHONPATH=$tmp/deb/usr/lib/python3/dist-packages \
                 /usr/bin/python3 -c "import nsd; nsd.Run.from_scene('scenes/press.json').step()"
     }
     ok "unpacked, the tools run" unpacked
@@ -141,7 +141,7 @@ if command -v dh >/dev/null && command -v dpkg-buildpackage >/dev/null; then
                 /usr/bin/python3 -c "import nsd; nsd.Run.from_scene('scenes/press.json').step()"
         }
         ok "used" used
-        ok "removed" dpkg -P python3-nsd nsd-tools libnsd-dev libnsd1
+        ok "removed" dpkg -P python3-nsd nsd-tools libnsd-dev libnsd2
         is "and nothing is left" "$(ls /usr/bin/nsd-gen /usr/include/nsd.h /usr/share/nsd 2>/dev/null)" ""
     else
         skip "installed, used, removed" "not root, or it is installed"

@@ -49,7 +49,7 @@ is "nsd.h declares these functions: one that is gone or changed is another libns
 if nm "$build/libnsd.a" 2>/dev/null | grep -q __asan; then
     skip "symbols" "a sanitizer has its own"
 else
-    is "libnsd.so.1 exports them, and nothing else" "$(nm -D --defined-only "$build/libnsd.so.1" | awk '{ print $3 }' | sort)" "$(<"$tmp/list")"
+    is "libnsd.so.2 exports them, and nothing else" "$(nm -D --defined-only "$build/libnsd.so.2" | awk '{ print $3 }' | sort)" "$(<"$tmp/list")"
     is "libnsd.a defines them, and nothing else" "$(nm -g --defined-only "$build/libnsd.a" | awk 'NF == 3 { print $3 }' | sort)" "$(<"$tmp/list")"
 fi
 undocumented() { while read -r name; do grep -q "Fn $name\\b" man/nsd.3 || echo "$name"; done <"$tmp/list"; }

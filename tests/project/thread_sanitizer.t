@@ -8,7 +8,7 @@ if ! command -v clang >/dev/null; then
     exit 0
 fi
 
-built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view libnsd.so.1)
+built=build/tsan flags=(-O1 -g1 -fsanitize=thread -DNSD_STEADY) tools=(nsd-solve nsd-step nsd-view libnsd.so.2)
 ok "the tools build" make -j2 SAN= B=$built CC=clang CFLAGS="${flags[*]}" LDFLAGS="-fsanitize=thread -Wl,-z,undefs" \
     "IDLE=4 8" "${tools[@]/#/$built/}"
 
@@ -122,7 +122,7 @@ int main(int n, char **path)
     return sum;
 }
 EOF
-clang -Ilib/run "${flags[@]}" -o "$tmp/runs" "$tmp/runs.c" $built/libnsd.so.1 -Wl,-rpath,"$PWD/$built"
+clang -Ilib/run "${flags[@]}" -o "$tmp/runs" "$tmp/runs.c" $built/libnsd.so.2 -Wl,-rpath,"$PWD/$built"
 status 0 "runs and documents in three threads, and children of fork()" "$tmp/runs" "$tmp/1.h5" "$tmp/2.h5" "$tmp/3.h5"
 ok "with the same result" cmp "$tmp/1.h5" "$tmp/2.h5"
 status 0 "a picture" $built/nsd-view -j 4 "$tmp/heap.h5"

@@ -68,7 +68,7 @@ jq --slurpfile w "$tmp/walls" '.walls = $w[0].walls | .bodies = [{x: [0, 0, 0], 
 nsd-gen "$tmp/mixed.json" >"$tmp/mixed.h5"
 nsd-gen 60 | nsd-step -n 400 --every 400 --contacts >"$tmp/heap.h5" 2>/dev/null
 facts() { nsd-info -p "$1" | jq -cS 'del(.step)'; }
-export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
+export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.2}
 ondem() { /usr/bin/python3 -m nsd.ondem "$@"; }
 refuses 65 "nsd-gen reads no HDF5 file" nsd-gen --from "$tmp/heap.h5"
 like "with the cure" "$(cat "$tmp/err")" 'python3 -m nsd.ondem read FILE'

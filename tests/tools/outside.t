@@ -6,7 +6,7 @@
 
 export PYTHONPATH=$PWD/python
 [ -z "${NSD_LIBRARY-}" ] || unset NSD_LIBRARY
-library=$(dirname "$(command -v nsd-gen)")/libnsd.so.1
+library=$(dirname "$(command -v nsd-gen)")/libnsd.so.2
 within() # TOLERANCE KEY: each line of $tmp/lines has this key within it of what is expected
 {
     jq -es --argjson tolerance "$1" --arg key "$2" \

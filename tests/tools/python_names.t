@@ -3,7 +3,7 @@
 . tests/support/tap.sh
 
 if ! /usr/bin/python3 -c 'import numpy' 2>/dev/null; then echo "1..0 # SKIP no numpy"; exit; fi
-export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
+export PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.2}
 
 jq -n '{ dt: 1e-3, gravity: [0, 0, 0], materials: { steel: {} }, shapes: { cube: { box: [0.2, 0.2, 0.2] } },
     walls: [{ point: [0, 0, -1], normal: [0, 0, 1], name: "floor" }, { point: [-1, 0, 0], normal: [1, 0, 0], name: "side" },

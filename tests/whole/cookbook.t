@@ -3,7 +3,7 @@
 # shellcheck source=tests/support/tap.sh disable=SC2317 # functions called by name
 . tests/support/tap.sh
 
-export PYTHON=/usr/bin/python3 PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.1}
+export PYTHON=/usr/bin/python3 PYTHONPATH=$PWD/python NSD_LIBRARY=${NSD_LIBRARY-$PWD/build/libnsd.so.2}
 processor=60 bound=900 # s: of the processor, for each program of a recipe; of the clock, other tests run meanwhile
 
 described() # DIR: a title, and two to eight lines about it

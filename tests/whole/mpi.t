@@ -123,7 +123,7 @@ ends() { ranks 2 -n 5 --with 'read -r l; echo "{}"; exit 3' -o "$tmp/ended.h5" "
 status 69 "a program that ends, ends the run of all" ends
 is "with whole frames" "$(nsd-info "$tmp/ended.h5" | jq -sc 'map(select(.step != null).step)')" "[901]"
 if /usr/bin/python3 -c 'import numpy' 2>/dev/null && ! grep -q __asan_init "$(command -v nsd-gen)"; then
-    PYTHONPATH=python NSD_LIBRARY=$(dirname "$(command -v nsd-gen)")/libnsd.so.1 /usr/bin/python3 - "$tmp/heap.h5" "$tmp/lasting.h5" <<'EOF'
+    PYTHONPATH=python NSD_LIBRARY=$(dirname "$(command -v nsd-gen)")/libnsd.so.2 /usr/bin/python3 - "$tmp/heap.h5" "$tmp/lasting.h5" <<'EOF'
 import sys, nsd
 run = nsd.Run.from_document(sys.argv[1])
 run.force[:] = [1e-6, 0, 0]
