@@ -19,9 +19,20 @@ struct row {
     size_t at;
 };
 
+/* By its name, or by that of version 1 */
+static jnode value_of(const jnode *o, const char *name)
+{
+    const jnode value = json_node_key(o, name);
+    const struct renamed *r = NULL;
+    for (int k = 0; !value.json && (r = renamed_at(k)); k++)
+        if (r->accepted && words_have(r->in, "scene", 5) && !strcmp(r->is, name))
+            return json_node_key(o, r->was);
+    return value;
+}
+
 bool keys_has(const jnode *o, const char *key)
 {
-    return json_object_get(o->json, key);
+    return value_of(o, key).json;
 }
 
 /* Has o one of these keys? */
@@ -31,7 +42,9 @@ static bool has_one(const jnode *o, const char *names)
     json_t *value;
     json_object_foreach(o->json, key, value)
     {
-        if (words_have(names, key, strlen(key))) return true;
+        const struct renamed *r = renamed_find("scene", key, strlen(key));
+        const char *is = r && r->accepted ? r->is : key;
+        if (words_have(names, is, strlen(is))) return true;
     }
     return false;
 }
@@ -119,7 +132,7 @@ static bool is_elsewhere(const jnode *o, const struct key *k, const struct row *
 /* A key of version 1: refused, or accepted where its new name is not given too */
 static int check_renamed(jnode o, const char *key, const struct renamed *r)
 {
-    if (r->accepted && !keys_has(&o, r->is)) return 0;
+    if (r->accepted && !json_object_get(o.json, r->is)) return 0;
     return json_node_fault(
         json_node_key(&o, key),
         r->accepted ? "now called \"%s\", which is given, too" : "now called \"%s\"", r->is);
@@ -205,17 +218,6 @@ static int finish(const struct keys *t, jnode o, struct scene *s, char *out)
     for (const struct key *k = t->key; k->name; k++)
         if (k->type == &key_include && finish(k->object, o, s, out + k->at)) return 1;
     return t->finish && t->finish(o, s, out);
-}
-
-/* By its name, or by that of version 1 */
-static jnode value_of(const jnode *o, const char *name)
-{
-    const jnode value = json_node_key(o, name);
-    const struct renamed *r = NULL;
-    for (int k = 0; !value.json && (r = renamed_at(k)); k++)
-        if (r->accepted && !strcmp(r->in, "scene") && !strcmp(r->is, name))
-            return json_node_key(o, r->was);
-    return value;
 }
 
 int keys_read(jnode o, const struct keys *t, struct scene *s, void *out)

@@ -109,7 +109,7 @@ def walls():
             c.line(*q[a], *q[b], WALL, 1.5)
     x, y = panel(11, 'every wall', [])
     x -= w / 2 - 10
-    rows = [('"name"', 'of the wall'), ('"kind"', 'its material'), ('"velocity"', 'm/s'), ('"belt"', 'm/s, the surface'),
+    rows = [('"name"', 'of the wall'), ('"material"', 'what it is made of'), ('"velocity"', 'm/s'), ('"belt"', 'm/s, the surface'),
             ('"drives"', 'its motion'), ('"load"', 'force on it'), ('"until"', 's, a gate'), ('"wear"', '1/Pa')]
     for k, (key, text) in enumerate(rows):
         c.words(x, y - 42 + 17.5 * k, key, CHOICE, 12, mono=True)

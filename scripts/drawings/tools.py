@@ -66,7 +66,7 @@ def document():
             (2, 'status', '0 free, 1 stick, 2 slide, 3 jammed, 4 summed', FORCE),
             (1, 'nsd', 'data that only nsd reads', INK),
             (2, 'scene, history', 'the scene; the commands that made this', CHOICE),
-            (2, 'material, cell', 'mu, en, et by kinds; gradient and stress', CHOICE),
+            (2, 'material, cell', 'mu, en, et by materials; gradient and stress', CHOICE),
             (2, 'solver', 'the report of each frame', INK),
             (2, 'account', 'the largest errors of all steps', INK),
             (2, 'memory, bonds', 'state for a resumed run', INK),

@@ -223,7 +223,7 @@ ok "nsd-stat, nsd-view and nsd-export read each frame" \
     eval 'nsd-stat "$tmp/out.h5" >/dev/null && nsd-view -o "$tmp/view" "$tmp/out.h5" && nsd-export --to xyz -o "$tmp/x" "$tmp/out.h5"'
 # balls that fall on a floor at 1 m/s, by energy
 scene '{ "by": "energy", "strength": 0.1, "smallest": 2.6e-3, "into": "balls" }' \
-    '[{ "count": 8, "radius": 2e-3, "kind": "g", "v": [0, 0, -1], "box": { "x": [0, 0.02], "y": [0, 0.02], "z": [0, 0.02] } }]' \
+    '[{ "count": 8, "radius": 2e-3, "material": "g", "v": [0, 0, -1], "box": { "x": [0, 0.02], "y": [0, 0.02], "z": [0, 0.02] } }]' \
     "$floor" | nsd-gen - >"$tmp/soft.h5"
 for j in 1 3; do step -j $j -n 30 "$tmp/rain.h5" --every 30 >"$tmp/small$j.h5"; done
 ok "with small steps, too, 3 threads give the bytes of one" same_particles "$tmp/small3.h5" "$tmp/small1.h5"

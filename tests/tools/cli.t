@@ -24,7 +24,7 @@ for tool in "${tools[@]}"; do
         case $option in
         --newton-abs | --log | --fclib) continue ;;
         esac
-        like "$tool $option: the default is in brackets" "$(grep -A 1 -e "$option " <<<"$help" | tr '\n' ' ')" '\[[^]]+\]'
+        like "$tool $option: the default is in brackets" "$(grep -A 2 -e "$option " <<<"$help" | tr '\n' ' ')" '\[[^]]+\]'
     done <"$tmp/options"
     refuses 64 "$tool --help=x" "$tool" --help=x
     status 0 "$tool --version" "$tool" --version

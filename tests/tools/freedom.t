@@ -183,7 +183,7 @@ if have_h5py; then
     foreign "$tmp/push.h5" "$tmp/loose.h5"
     py -c 'import h5py, sys; h5py.File(sys.argv[1], "r+")["/particles/boundary/load/way"][:] = 0' "$tmp/loose.h5"
     refuses 65 "a push of a boundary that is not load-controlled is refused" nsd-cat "$tmp/loose.h5"
-    like "and named" "$(cat "$tmp/err")" 'push 0: its boundary is not load-controlled'
+    like "and named" "$(cat "$tmp/err")" 'push 0: its wall is not load-controlled'
 else
     skip "a push of a boundary that is not load-controlled" "no h5py"
 fi

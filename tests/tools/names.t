@@ -188,4 +188,16 @@ without the groups of its bodies|del f["particles/all/group"]
 without the name|t = f["nsd/names/text"][()]; del f["nsd/names/text"]; f["nsd/names/text"] = t.replace(b"first", b"third")
 END
 fi
+# ---- scenes of version 1 say kind and kinds ----
+
+jq -n '{ dt: 1e-3, gravity: [0, 0, 0], materials: { steel: { density: 7800 } }, walls: [{ point: [0, 0, -1], normal: [0, 0, 1], material: "steel" }],
+    bodies: [{ x: [0, 0, 0], radius: 0.1, material: "steel" }, { count: 3, radius: 0.1, material: "steel", box: { x: [1, 2], y: [1, 2], z: [1, 2] } }],
+    pour: [{ rate: 1, radius: 0.1, material: "steel", opening: { box: { x: [4, 5], y: [4, 5], z: [4, 5] } } }], remove: [{ material: "steel", from: 1 }] }' >"$tmp/new.json"
+sed 's/material/kind/' "$tmp/new.json" >"$tmp/old.json"
+ok "the old words are there" grep -q '"kinds"' "$tmp/old.json"
+ok "and make the packing of the new ones" cmp <(nsd-gen "$tmp/old.json" | nsd-info -p -w) <(nsd-gen "$tmp/new.json" | nsd-info -p -w)
+is "of that material" "$(nsd-gen "$tmp/old.json" | nsd-info -p -w | jq -s -c 'map(.material) | unique')" '["steel"]'
+printf '# x y z r kind\n0 0 0 1 steel\n' >"$tmp/old.txt"
+is "so does a column of a table of grains" \
+    "$(jq --arg f "$tmp/old.txt" '.bodies = [{ file: $f }]' "$tmp/old.json" | nsd-gen - | nsd-info -p | jq -r .material)" steel
 done_testing
