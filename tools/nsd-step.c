@@ -42,7 +42,7 @@ static const struct cli_option own[] = {
     { CLI_TIME, 0, "until", &until, "T", "make steps until the time is T: 2 or 2s, 5ms [by -n]",
       .min = -1e300, .max = 1e300 },
     { CLI_TEXT, 0, "dt", &options.dt, "DT",
-      .help = "set the step, 1e-4, 0.1ms: one solve per step [document's, small steps]" },
+      .help = "set dt, 1e-4 or 0.1ms: one solve per step [document's, small steps]" },
     { CLI_REAL, 0, "small-steps", &options.small, "R", .min = 0, .max = 0.1,
       .help = "make small steps of R radii; 0: one solve", .usual = options_usual },
     { CLI_REAL, 0, "missing-impulse", &options.bound, "B", .min = 0, .max = 1,
