@@ -47,7 +47,7 @@ try:
     seen['away'] = browser.execute_script('return nsd.eye.away')
     time.sleep(0.6)
     seen['hash'] = browser.execute_script('return location.hash')
-    open_page(page + '#t=0.08&az=77&el=10&away=2.5&x=0.01&y=0.02&z=0.03&colour=kind')
+    open_page(page + '#t=0.08&az=77&el=10&away=2.5&x=0.01&y=0.02&z=0.03&colour=material')
     seen['asked'] = browser.execute_script('return [nsd.frame.m.t, nsd.eye.azimuth, nsd.eye.elevation, nsd.eye.away, document.getElementById("colour").value, nsd.fitted]')
     time.sleep(0.6)
     seen['again'] = browser.execute_script('return location.hash')
@@ -65,7 +65,7 @@ seen() { jq -c "$1" "$tmp/seen"; }
 is "the first frames are empty, and it begins with one that is not" "$(seen '[.first[0] > 0, .first[1] > 0, .first[2], .first[3]]')" '[true,true,0,true]'
 is "all grains are in view" "$(seen .reach)" true
 is "the address has the time, and no view where it is the fitted one" "$(seen '[(.hash | test("^#t=0.0")), (.hash | test("az="))]')" '[true,false]'
-is "an address with time and view is heeded" "$(seen '[(.asked[0] - 0.08 | fabs) < 1e-6, .asked[1:]]')" '[true,[77,10,2.5,"kind",false]]'
+is "an address with time and view is heeded" "$(seen '[(.asked[0] - 0.08 | fabs) < 1e-6, .asked[1:]]')" '[true,[77,10,2.5,"material",false]]'
 is "and is the page's own then" "$(seen '.again | test("t=0.08.*az=77&el=10&away=2.5")')" true
 is "one that makes no sense is not" "$(seen '[.nonsense[0] > 0, .nonsense[1], .nonsense[2]]')" '[true,30,true]'
 is "nothing is wrong on the console" "$(seen .console)" '[]'

@@ -667,7 +667,8 @@ function tell_address() {
 function heed_address() {
   const says = new URLSearchParams(location.hash.slice(1)), number = k => says.has(k) ? Number(says.get(k)) : NaN;
   const view = ['az', 'el', 'away', 'x', 'y', 'z'].map(number);
-  if (colours[says.get('colour')]) by_id('colour').value = says.get('colour');
+  const colour = says.get('colour') === 'kind' ? 'material' : says.get('colour'); // 'kind': of version 1
+  if (colours[colour]) by_id('colour').value = colour;
   if (view.every(isFinite) && view[2] > 0) {
     fitted = false;
     eye.azimuth = view[0], eye.elevation = Math.min(Math.max(view[1], -89), 89), eye.away = Math.min(Math.max(view[2], 0.01), 40);
