@@ -96,7 +96,7 @@ through() # WALL-OR-BOX SHAPE SPEED [OPTION ...]: it stays above for 0.2 s, or i
     printf '%s\n' "$1" | jq -c --argjson s "$2" --argjson v "$3" '. as $p | {dt: 0.0166666, e_n: 0.3, shapes: ({a: {box: [1, 1, 1]}} + (if $p.is then {f: $p.is} else {} end) + (if $s then {s: $s} else {} end)),
         walls: (if $p.is then [] else [$p] end), bodies: ([{x: [0.01, 0.02, 1.07], v: [0.1, 0, -$v]} + (if $s then {shape: "s"} else {radius: 0.05} end)] + (if $p.is then [{x: $p.x, shape: "f", fixed: true}] else [] end))}' >"$tmp/t.json"
     nsd-gen "$tmp/t.json" | nsd-step --until 0.2 "${@:4}" 2>"$tmp/said" | nsd-info -p | jq -s 'map(select(.body == 0 or .id == 0).x[2]) | min > 0' >"$tmp/above"
-    grep -q '[1-9][0-9]* too fast' "$tmp/said" && echo said || cat "$tmp/above"
+    if grep -q '[1-9][0-9]* too fast' "$tmp/said"; then echo said; else cat "$tmp/above"; fi
 }
 thin='{"is": {"box": [0.6, 0.6, 0.004]}, "x": [0, 0, -0.002]}'
 for shape in null '{"box": [0.1, 0.1, 0.1]}' '{"capsule": {"length": 0.1, "radius": 0.04}}'; do
