@@ -14,6 +14,6 @@
 /* An interval begins: are the gains of its small steps bounded? Not where something attracts, or loads or a cell move: these
    exchange energy that is not that of bodies. */
 bool small_gain_is_bounded(const struct small_run *r);
-/* By one thread, between sweeps: has the small step gained energy, and, when it has been swept before for that, less than half of *last
+/* By one thread, between sweeps: has the small step gained energy, and, when it has been swept before for that, less than 0.9 of *last
    (J)? *last gets the gain. */
 bool small_gain_exceeds(const struct small_run *r, double *last);
