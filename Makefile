@@ -399,6 +399,10 @@ drawings:
 manuals-list: $(MANUALS)
 	@echo $^
 
+# The manuals as pages that forges show, which README.md links to
+manuals-keep: setup-site $(MANUALS)
+	scripts/man/rendered.py docs/manual $(MANUALS)
+
 # Completion in bash and zsh, out of each tool's table of options
 COMPLETIONS := $(foreach t,$(notdir $(TOOLS)) nsd-fit,$B/completion/bash/$t $B/completion/zsh/_$t)
 
@@ -481,5 +485,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list manuals-keep completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -48,11 +48,12 @@ class Site:
         self.manuals = {path.basename(m): m for m in manuals}  # nsd-gen.1: where its source is
         self.recipes = sorted(path.dirname(a) for a in self.find('cookbook/*/about'))
         texts = [f for g in ('*.md', 'docs/*/README.md', 'bench/README.md', 'bench/results/*/*.md', 'lib/README.md', 'tests/README.md')
-                 for f in self.find(g)]
+                 for f in self.find(g) if f != 'docs/manual/README.md']
         self.page = {f: re.sub(r'README\.md$', 'index.md', f)[:-3] + '.html' for f in texts}
         self.page |= {'man/' + m: f'man/{m}.html' for m in self.manuals}
+        self.page |= {f'docs/manual/{m}.md': f'man/{m}.html' for m in self.manuals}  # as the repository has them
         self.page |= {r: r + '.html' for r in self.recipes}
-        self.page |= {'cookbook/README.md': 'cookbook/index.html', 'man': 'man/index.html'}
+        self.page |= {'cookbook/README.md': 'cookbook/index.html', 'man': 'man/index.html', 'docs/manual/README.md': 'man/index.html'}
         self.page |= {path.dirname(f): p for f, p in self.page.items() if f.endswith('/README.md')}
         self.folders = []  # that pages link to, and that have no page of their own
         self.index = []    # of the search: page, anchor, title, heading, text
@@ -257,7 +258,7 @@ class Site:
 
     def make(self):
         self.out.mkdir(parents=True)
-        jobs = [(self.text_page, f) for f in self.page if f.endswith('.md') and f != 'cookbook/README.md']
+        jobs = [(self.text_page, f) for f in self.page if f.endswith('.md') and f != 'cookbook/README.md' and not f.startswith('docs/manual/')]
         jobs += [(self.manual_page, m) for m in self.manuals] + [(self.recipe_page, r) for r in self.recipes]
         with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
             for page in pool.map(lambda job: job[0](job[1]), jobs):

@@ -50,7 +50,7 @@ claim() # NAME PAGES COMMAND PRINTS, PAGES: PAGE: WORDS, one per line
         page=${words%%: *} words=${words#*: }
         ok "$page has: $words" has "$page" "$words"
         # the second step of a question: the row of README.md leads to this page
-        [ -z "$first" ] || ok "README.md: $first: leads to $page" eval 'grep -F -- "$first" README.md | grep -qF "]($page)"'
+        [ -z "$first" ] || ok "README.md: $first: leads to $page" eval 'grep -F -- "$first" README.md | grep -qF "](${page/#man\/*/docs\/manual\/${page#man\/}.md})"'
         [ "$page" = README.md ] && [[ $1 == question* ]] && first=$words
     done <<<"$2"
     case $1 in

@@ -192,6 +192,10 @@ named() # tests that texts name
 }
 is "every test that a text names exists" "$(named)" ""
 
+read -ra manuals < <(make -s manuals-list | tail -n 1)
+ok "the manuals are rendered" scripts/man/rendered.py "$tmp/manual" "${manuals[@]}"
+is "docs/manual has them (else: make manuals-keep)" "$(diff -rq "$tmp/manual" docs/manual)" ""
+
 version=$(sed -n 's/^VERSION := //p' Makefile)
 is "the tools' version" "$(nsd-gen --version)" "nsd-gen (nsd) $version"
 is "CITATION.cff's" "$(sed -n 's/^version: "\(.*\)"/\1/p' CITATION.cff)" "$version"
