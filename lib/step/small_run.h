@@ -96,7 +96,7 @@ struct small_run {
     struct small_list *l;
     const struct small_kernels *kernel;
     struct small_wall *wall; /* [walls] */
-    vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
+    vec3 *x, *v, *turned;    /* [n] m, m/s; rad: by which bodies have turned */
     struct small_pull *pull; /* [n] NULL: no forces on bodies, and no cell that moves */
     struct small_cell cell;
     struct small_loads loads;
@@ -128,7 +128,8 @@ struct small_run {
     _Atomic bool far; /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock; /* of what follows */
     double fastest;       /* m^2/s^2: of bodies */
-    int64_t shaken;       /* by how much the last step has changed velocities [step/small_loop.c] */
+    double strays; /* m^2: the square of how far bodies are beside their ways [step/small_list.h] */
+    int64_t shaken; /* by how much the last step has changed velocities [step/small_loop.c] */
 };
 
 /* Does a load move the wall of a touch? */

@@ -151,13 +151,22 @@ static void give_bodies(const struct small_run *r)
 static int small_steps(struct small_run *r, const struct small_opt *o, struct report *rep,
                        struct failure *failure)
 {
-    for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
+    for (int64_t i = 0; i < r->p->n; i++) {
+        r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
+        r->v[i] = r->p->v[i];
+    }
     small_list_free(r->l);
     r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
-        if (small_list_make(r->l, r->p, r->x, r->cell.edge, r->p->t + r->ahead, failure)) break;
+        const struct small_start start = { .x = r->x,
+                                           .v = r->meets || r->cell.moves ? NULL : r->v,
+                                           .edge = r->cell.edge,
+                                           .t = r->p->t + r->ahead,
+                                           .span = (double)(r->n - r->made) * r->h,
+                                           .wall = small_wall_speed(r->p) };
+        if (small_list_make(r->l, r->p, &start, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_set_rates(r), take_bodies(r), small_walls_set(r);
@@ -175,7 +184,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         r->stop = false;
         team_do(o->threads, small_loop, r);
         if (r->lost) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-        for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
+        for (int64_t i = 0; i < r->p->n; i++) {
+            r->x[i] = small_vec(r->l->s.place[i].x);
+            r->v[i] = small_vec(r->l->s.body[i].v);
+        }
+        r->strays = 0;
     }
     small_walls_set(r);
     if (r->cell.moves) small_cell_images(r, 0, 1);
@@ -347,11 +360,12 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
-    r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
+    r.x = calloc(n, sizeof *r.x), r.v = calloc(n, sizeof *r.v);
+    r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     r.meets = p->shape || p->mesh.elements, r.thin = small_sizes(p).least;
     small_cell_init(&r);
-    if (!r.wall || !r.x || !r.turned)
+    if (!r.wall || !r.x || !r.v || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
              !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
@@ -383,6 +397,6 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_loads_free(&r, !*made), small_stress_free(&r);
     small_points_free(&r), small_error_free(&r);
-    free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
+    free(r.wall), free(r.x), free(r.v), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }
