@@ -106,6 +106,7 @@ struct small_run {
     struct small_shapes shapes;
     double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
     double h, ahead;         /* s */
+    double overlap;          /* radii of the smallest body: what is permitted */
     double fall;             /* m/s: in a small step, by all forces that are not reactions */
     double weight, load;     /* N s: of all bodies, in it; of the mean body, over its weight */
     int64_t free;            /* bodies that move */

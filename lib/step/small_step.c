@@ -17,6 +17,7 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
+#include "step/small_near.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_stress.h"
@@ -79,6 +80,93 @@ static struct small_sizes small_sizes(const struct packing *p)
     return s;
 }
 
+/* ---- their number ---- */
+
+/* The mass of the heaviest body over that of the lightest, by how many of the smallest find room below it */
+static double small_heaviest(const struct packing *p)
+{
+    const struct whole all = packing_whole(p);
+    double least = INFINITY, most = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double wide = p->radius[i] / all.small;
+        if (p->mass[i] > 0) least = fmin(least, p->mass[i]);
+        if (p->mass[i] > 0) most = fmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
+    }
+    return most > 0 ? most / least : 0;
+}
+
+/* Of the heaviest body: what a column carries besides its own grains. More would cost small steps, less overlap. */
+#define CARRIES 0.25
+/* s: in which a body that a column of grains as high as the packing pushes, with the heaviest body on it, and forces on bodies,
+   moves by STEADY of the smallest radius */
+#define STEADY 1e-3
+static double small_steady(const struct packing *p)
+{
+    const double g = v3_norm(p->g);
+    const struct small_sizes size = small_sizes(p);
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
+    for (int64_t i = 0; i < p->n; i++) {
+        const double z = v3_dot(p->g, p->x[i]);
+        if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
+    }
+    if (g > 0 && hi >= lo)
+        pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
+    return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
+}
+
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
+static double small_carries(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        const struct recall *c = &p->memory.recall[i];
+        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
+        most = fmax(most, w * v3_norm(c->r));
+    }
+    return most / p->dt;
+}
+
+/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W. Only where loads push: overlaps change with h, and a packing that flows would
+   be shaken by a number of small steps that follows its largest reaction. */
+static const double CARRIED[2] = { 1, 0.4 };
+/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
+enum { CARRIED_MOST = 4 };
+
+/* The same where nothing that is near something else is faster than `fastest` (m/s) against it */
+static int64_t small_count_at(const struct packing *p, double overlap, double fastest)
+{
+    const double way = p->dt * (fastest + packing_most_fall(p) + small_tie_speed(p));
+    const double least = small_sizes(p).least,
+                 permits = CARRIED[p->shape != NULL] * overlap * least;
+    double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
+    if (freedoms_in(p))
+        n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
+    return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
+}
+
+int64_t small_count(const struct packing *p, double overlap)
+{
+    return small_count_at(p, overlap, small_fastest(p));
+}
+
+/* Where the list has been made: fewer, longer small steps, if what is fast closes no gaps fast */
+static void small_count_near(struct small_run *r)
+{
+    struct packing *p = r->p;
+    const double was = r->ahead, dt = (double)r->n * r->h;
+    p->dt = dt;
+    const int64_t n = small_count_at(p, r->overlap, small_near_speed(r));
+    p->dt = r->h;
+    if (!n || n >= r->n) return;
+    r->n = n, r->h = p->dt = dt / (double)n, r->ahead = (1 - p->theta) * r->h;
+    r->l->since = r->ahead - was;
+    for (int64_t i = 0; i < p->n; i++) r->x[i] = v3_axpy(p->x[i], r->ahead, p->v[i]);
+}
+
+/* ---- the first list ---- */
+
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
@@ -95,7 +183,7 @@ static void small_set_rates(struct small_run *r)
         if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
-    const double change = fmax(fastest, UNSEEN * r->thin / r->h);
+    const double change = fmax(fmin(fastest, r->overlap * r->thin / r->h), UNSEEN * r->thin / r->h);
     r->l->s.rate = (struct small_rates){ .h = r->h,
                                          .per_h = 1 / r->h,
                                          .relax = 1 / ((1 + RELAXES) * r->h),
@@ -169,7 +257,9 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         if (small_list_make(r->l, r->p, &start, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
-            small_set_rates(r), take_bodies(r), small_walls_set(r);
+            small_walls_set(r);
+            if (start.v && !freedoms_in(r->p)) small_count_near(r);
+            take_bodies(r), small_set_rates(r), small_walls_set(r);
             if ((!o->bare || o->bound > 0) && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
             if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
@@ -271,69 +361,6 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .small_limited = r->unsolved };
 }
 
-/* The mass of the heaviest body over that of the lightest, by how many of the smallest find room below it */
-static double small_heaviest(const struct packing *p)
-{
-    const struct whole all = packing_whole(p);
-    double least = INFINITY, most = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        const double wide = p->radius[i] / all.small;
-        if (p->mass[i] > 0) least = fmin(least, p->mass[i]);
-        if (p->mass[i] > 0) most = fmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
-    }
-    return most > 0 ? most / least : 0;
-}
-
-/* Of the heaviest body: what a column carries besides its own grains. More would cost small steps, less overlap. */
-#define CARRIES 0.25
-/* s: in which a body that a column of grains as high as the packing pushes, with the heaviest body on it, and forces on bodies,
-   moves by STEADY of the smallest radius */
-#define STEADY 1e-3
-static double small_steady(const struct packing *p)
-{
-    const double g = v3_norm(p->g);
-    const struct small_sizes size = small_sizes(p);
-    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
-    for (int64_t i = 0; i < p->n; i++) {
-        const double z = v3_dot(p->g, p->x[i]);
-        if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
-    }
-    if (g > 0 && hi >= lo)
-        pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
-    return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
-}
-
-/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
-static double small_carries(const struct packing *p)
-{
-    double most = 0;
-    for (int64_t i = 0; i < p->memory.n; i++) {
-        const struct recall *c = &p->memory.recall[i];
-        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
-        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
-        most = fmax(most, w * v3_norm(c->r));
-    }
-    return most / p->dt;
-}
-
-/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
-   and where points with their levers have more W. Only where loads push: overlaps change with h, and a packing that flows would
-   be shaken by a number of small steps that follows its largest reaction. */
-static const double CARRIED[2] = { 1, 0.4 };
-/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
-enum { CARRIED_MOST = 4 };
-
-int64_t small_count(const struct packing *p, double overlap)
-{
-    const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double least = small_sizes(p).least,
-                 permits = CARRIED[p->shape != NULL] * overlap * least;
-    double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
-    if (freedoms_in(p))
-        n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
-    return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
-}
-
 int64_t small_parts(const struct packing *p, double overlap)
 {
     const double way = p->dt * (small_fastest(p) + packing_most_fall(p));
@@ -356,7 +383,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
-    r.n = count, r.kernel = backend_widest()->small;
+    r.n = count, r.overlap = o->overlap, r.kernel = backend_widest()->small;
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
