@@ -140,7 +140,7 @@ static double small_carries(const struct packing *p)
 static const double CARRIED[2] = { 1, 0.4 };
 /* Without loads, of h: overlaps change with h, and a packing that flows would be shaken by a number of small steps that follows its
    largest reaction, which in drums and silos is below this; what walls squeeze exceeds it. */
-static const double SPARED = 1.5;
+static const double SPARED[2] = { 2, 1.5 };
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
 
@@ -151,7 +151,7 @@ static int64_t small_count_at(const struct packing *p, double overlap, double fa
     const double least = small_sizes(p).least,
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
-    const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED);
+    const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED[p->shape != NULL]);
     n = fmax(n, fmin(carried, CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
