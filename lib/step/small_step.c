@@ -151,7 +151,8 @@ static int64_t small_count_at(const struct packing *p, double overlap, double fa
     const double least = small_sizes(p).least,
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
-    const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED[p->shape != NULL]);
+    const double carried =
+        p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED[p->shape != NULL]);
     n = fmax(n, fmin(carried, CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
