@@ -85,12 +85,14 @@ static struct small_sizes small_sizes(const struct packing *p)
     return s;
 }
 
-/* In a small step a body goes R of its own size, and COARSE R of the least one, at most: a few small bodies that are slow do not set
-   the number of small steps, and what a large one leaves of an overlap with a small one is bounded. */
+/* m: in a small step a body goes R of its own size and of this one at most. Among shapes and grains that break, few small bodies
+   that are slow do not set the number of small steps; what a large one leaves of an overlap with a small one is bounded. */
 #define COARSE 4
-static double small_coarse(struct small_sizes s)
+static double small_coarse(const struct packing *p)
 {
-    return fmin(s.most, COARSE * s.least);
+    const struct small_sizes s = small_sizes(p);
+    const bool own = p->breakage || small_has_shapes(p);
+    return own ? fmin(s.most, COARSE * s.least) : s.least;
 }
 
 /* m/s: of a point of a body, of balls the centre; of walls */
@@ -106,7 +108,7 @@ static double small_fastest(const struct packing *p)
 static double small_hurry(const struct packing *p, double more)
 {
     const struct small_flow flow = small_cell_flow(p);
-    const double coarse = small_coarse(small_sizes(p));
+    const double coarse = small_coarse(p);
     double most = (small_wall_speed(p) + more) / coarse;
     for (int64_t i = 0; i < p->n; i++) {
         const double size = fmin(small_size(p, i), coarse);
@@ -323,7 +325,7 @@ static double small_steady(const struct packing *p)
     }
     if (g > 0 && hi >= lo)
         pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
-    return pressed > 0 ? sqrt(STEADY * small_coarse(size) / pressed) : INFINITY;
+    return pressed > 0 ? sqrt(STEADY * small_coarse(p) / pressed) : INFINITY;
 }
 
 /* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
