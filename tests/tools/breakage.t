@@ -196,6 +196,18 @@ ok "it becomes 13, of which each is of generation 1, with its parent and the tim
 kept "a disc in pieces" '{ "by": "force", "strength": 1e3, "smallest": 1e-4 }' "$flat" '"dim": 2, "gravity": [0, 0]'
 
 
+# ---- the balance of a run ----
+
+hail='"walls": [{ "box": { "x": [0, 12e-3], "y": [0, 12e-3], "z": [0, null] } }], "gravity": [0, 0, -9.81], "mu": 0.4'
+scene '{ "by": "energy", "strength": 0.3, "smallest": 2e-3, "pieces": 4 }' '[{ "count": 12, "radius": 2e-3, "material": "g", "v": [0, 0, -1],
+    "box": { "x": [0, 12e-3], "y": [0, 12e-3], "z": [0, 0.05] } }]' "$hail" | nsd-gen - | step -n 60 --every 1 >"$tmp/hail.h5"
+nsd-info "$tmp/hail.h5" | jq -c 'select(.step != null).balance | select(. != null)' >"$tmp/hail"
+ok "from step to step the energy changes by what the balance has, with that of breaking" holds -s '
+    . as $b | [range(1; length) | $b[. - 1] as $was | $b[.] | select(.small_steps > 0)
+        | (.kinetic + .potential - $was.kinetic - $was.potential - (.drives + .loads - .dissipation - .breaking)) / ($was.kinetic + $was.potential)
+        | fabs] | length > 30 and max < 1e-13' "$tmp/hail"
+ok "which is the energy of the dust" holds -s '(map(.breaking) | add) as $sum | $sum > 1e-7' "$tmp/hail"
+
 # ---- threads, resuming, streams: grains of two kinds that fall into a box and break, again and again ----
 
 cat >"$tmp/rain.json" <<'END'
@@ -211,7 +223,7 @@ END
 nsd-gen "$tmp/rain.json" >"$tmp/rain.h5"
 run() { nsd-step --small-steps 0 --every 20 --contacts "$@"; }
 run -n 160 -o "$tmp/out.h5" "$tmp/rain.h5" 2>"$tmp/said"
-like "what has broken is said at the end" "$(cat "$tmp/said")" 'grains have broken into [0-9]+ fragments and [0-9.e-]+ kg of dust'
+like "what has broken is said at the end" "$(cat "$tmp/said")" 'grains have broken into [0-9]+ fragments and [0-9.e-]+ kg of dust, which had [0-9.e-]+ J'
 ok "grains of both kinds have broken, some twice" \
     holds -s '[.[] | select(.generation > 0)] | map(.material) | unique == ["grain", "soft"]' < <(nsd-info --last -p "$tmp/out.h5")
 total=$(nsd-info -p "$tmp/rain.h5" | jq -s 'map(.mass // 0) | add')
