@@ -6,8 +6,8 @@ in DIR/JOB/VARIANT.json is not made again: remove the file to repeat it. The pag
 these files alone. In the environment: NSD_STARTS, a folder with starts that others have made [../shared/benchmarks]; LIGGGHTS, YADE,
 other names of these programs; N_JOB, T_JOB, another number of balls, another span in s, as N_DOSTA_SILO=10000.
 
-  cost    CPU and wall seconds, memory and observables of each code   check   nsd beside its own dt/4 with a small tolerance
-  effort  what dt and tolerance cost and change: QUICK's jobs         growth  CPU against the number of balls
+  cost    CPU and wall seconds, memory, observables, overlaps          check   nsd beside its own run with four times as many small steps
+  effort  what the size of small steps costs and changes: QUICK's jobs growth  CPU against the number of balls
   rest    a pile at rest over 1e5 steps                               profile where nsd's CPU goes, by perf
   page    DIR's page, of what is there                                keep    that in docs/peers
 """
@@ -31,7 +31,7 @@ except ImportError as trouble:
     sys.exit(f"peers: {trouble}: apt-get install python3-h5py")
 
 VARIANTS = {  # in the order in which they are run: code, threads, what is different
-    "nsd": ("nsd", 1, {}), "nsd-small": ("nsd", 1, {"small": True}), "liggghts-soft": ("liggghts", 1, {"modulus": 0}), "nsd-auto": ("nsd", 1, {"auto": True}),
+    "nsd": ("nsd", 1, {}), "liggghts-soft": ("liggghts", 1, {"modulus": 0}), "nsd-one": ("nsd", 1, {"options": ["--small-steps", "0"]}),
     "liggghts-stiff": ("liggghts", 1, {"modulus": 1}), "nsd-2": ("nsd", 2, {}), "liggghts-soft-2": ("liggghts", 2, {"modulus": 0}),
     "yade-soft": ("yade", 1, {"modulus": 0}), "yade-soft-2": ("yade", 2, {"modulus": 0}),
 }
@@ -53,12 +53,6 @@ def number(x, digits=5):
     return x if isinstance(x, (int, str)) or x == 0 else round(x, digits - 1 - math.floor(math.log10(abs(x))))
 
 
-def suggested(scene):
-    """The dt of nsd-gen --check."""
-    said = subprocess.run(["nsd-gen", "--check", "-"], input=json.dumps(scene).encode(), capture_output=True, check=True).stdout
-    return json.loads(said)["dt"]
-
-
 def prepare(name, count, seed, quick, folder):
     """start.h5, the run's document, and its scene; what observables need."""
     job = JOBS[name]
@@ -72,7 +66,7 @@ def prepare(name, count, seed, quick, folder):
         first = codes.gen(start, folder, "fill.h5")
         if job.settle:
             with open(settled + ".new", "wb") as out:
-                fall = subprocess.Popen(["nsd-step", "--small-steps", "0", "-j", "2", "--until", repr(job.settle), "--every", "1000000", first],
+                fall = subprocess.Popen(["nsd-step", "-j", "2", "--until", repr(job.settle), "--every", "1000000", first],
                                         stdout=subprocess.PIPE, stderr=open(os.path.join(folder, "settle.log"), "w"))
                 subprocess.run(["nsd-cat", "--last"], stdin=fall.stdout, stdout=out, check=True)
                 if fall.wait():
@@ -90,14 +84,16 @@ def prepare(name, count, seed, quick, folder):
 
 
 def series(job, frames, about):
-    """The observables over time: {"t": [...], NAME: [...]}."""
-    out = {"t": []}
+    """The observables over time: {"t": [...], NAME: [...]}, and the largest overlap of two balls in these frames, without the start."""
+    out, overlap = {"t": []}, 0.0
     for t, frame in frames:
         row = getattr(observe, job.observe)(frame, about)
+        if out["t"]:
+            overlap = max(overlap, observe.overlap(frame["x"], frame["radius"]))
         out["t"].append(number(t))
         for key, value in row.items():
             out.setdefault(key, []).append(number(value))
-    return out
+    return out, overlap
 
 
 def one(name, variant, scene, document, about, span, folder, options, bound=None):
@@ -107,17 +103,13 @@ def one(name, variant, scene, document, about, span, folder, options, bound=None
     work = os.path.join(folder, "work")
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
-    extra = list(options)
-    if other.get("auto"):
-        extra += ["--dt", repr(suggested(scene))]
-    elif code == "nsd" and not other.get("small"):
-        extra += ["--small-steps", "0"]
-    given = {"options": extra} if code == "nsd" else {"scene": scene, "modulus": job.modulus[other["modulus"]],
+    given = {"options": other.get("options", []) + options} if code == "nsd" else {"scene": scene, "modulus": job.modulus[other["modulus"]],
                                                       "velocities": True, "skin": job.skin}
     say(f"{name}: {variant}, {span} s")
     cost, frames = codes.RUN[code](work, document, span, threads=threads, bound=bound or BOUND, **given)
+    curve, pairs = series(job, frames, about)
     result = {"variant": variant, "code": code, "threads": threads, **{k: v if v is None else number(v) for k, v in cost.items()},
-              "series": series(job, frames, about)}
+              "pairs": number(pairs), "series": curve}
     if code != "nsd":
         result["modulus"] = job.modulus[other["modulus"]]
     shutil.rmtree(work)
@@ -148,7 +140,7 @@ def cost(name, quick, out, rounds, chosen):
                 alone = runs(v[:-2])[-1]["span"] if v.endswith("-2") and runs(v[:-2]) else span
                 try:
                     result = one(name, v, scene, document, about, min(span, alone), folder, [],
-                                 BOUND if v in ("nsd", "nsd-2", "nsd-small", "liggghts-soft") else BOUND / 3)
+                                 BOUND if v in ("nsd", "nsd-2", "liggghts-soft") else BOUND / 3)
                 except codes.TooSlow as why:
                     save(path[v], {"variant": v, "balls": count, "runs": [], "why": str(why)})
                     say(f"{name}: {v}: {why}")
@@ -224,11 +216,11 @@ if __name__ == "__main__":
     parser.add_argument("--variants", default=",".join(VARIANTS))
     parser.add_argument("--bound", type=float, help="CPU seconds of a run of nsd and of LIGGGHTS, soft; others get a third")
     parser.add_argument("--rounds", type=int, default=1)
-    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--sizes", default="1000,3000,10000,30000,100000")
     parser.add_argument("--mode", default="cost,page")
     args = parser.parse_args()
-    QUICK, BOUND = args.quick, args.bound or (8 if args.quick else 60)
+    QUICK, BOUND = args.quick, args.bound or (8 if args.quick else 600)
     OUT = os.path.abspath(args.out or os.path.join("build", "peers" + ("-quick" if args.quick else "")))
     peers = sys.modules[__name__]
     each = {

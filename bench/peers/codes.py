@@ -118,38 +118,24 @@ def balls_of(document):
             "kind": np.array([names[k] for k in frame.material])}
 
 
-def made(folder, out, log, dt, bound):
+def made(folder, out, dt, bound):
     """What a run of nsd has made: dt, span, steps, sweeps a step; the largest overlap and the steps that have not converged."""
-    if os.path.exists(log):  # what was killed may have half of a line
-        lines = [json.loads(line) for line in open(log) if line.endswith("}\n")]
-        if not lines:
-            raise TooSlow(f"not a step in {bound:.3g} CPU s")
-        dt, span, steps, sweeps = lines[0].get("dt", dt), lines[-1]["time"], len(lines), sum(line["sweeps"] for line in lines)
-        account = lines[-1].get("account", {})  # what was killed has none
-    else:  # in small steps a log would judge each of them, which costs a third of the run
-        said = re.search(r"(\d+) steps?, (\d+) sweeps", open(os.path.join(folder, "said")).read())
-        steps, sweeps = map(int, said.groups()) if said else (0, 0)
-        if not steps:
-            raise TooSlow(f"not a step in {bound:.3g} CPU s")
-        kept = subprocess.run(["nsd-info", "--last", "-l", out], capture_output=True, text=True, check=True).stdout.splitlines()
-        last = [line for line in map(json.loads, kept) if "account" in line][-1]
-        span, account = last["time"], last["account"]
-    return {"dt": dt, "span": span, "steps": steps, "sweeps": sweeps / steps,
-            **{key: account.get(key, {}).get("value") for key in ("overlap", "unconverged")}}
+    said = re.search(r"(\d+) steps?, (\d+) sweeps", open(os.path.join(folder, "said")).read())
+    steps, sweeps = map(int, said.groups()) if said else (0, 0)
+    if not steps:
+        raise TooSlow(f"not a step in {bound:.3g} CPU s")
+    kept = subprocess.run(["nsd-info", "--last", "-l", out], capture_output=True, text=True, check=True).stdout.splitlines()
+    last = [line for line in map(json.loads, kept) if "account" in line][-1]
+    return {"dt": dt, "span": last["time"], "steps": steps, "sweeps": sweeps / steps,
+            **{key: last["account"].get(key, {}).get("value") for key in ("overlap", "unconverged")}}
 
 
 def run_nsd(folder, start, span, options, threads, bound, **_):
     """Of the document start; frames have what is there."""
-    out, log = os.path.join(folder, "out.h5"), os.path.join(folder, "log")
-    dt = nsd.last(start).dt
-    if "--dt" in options:
-        dt = float(options[options.index("--dt") + 1])
-    every = max(1, round(span / FRAMES / dt))  # a multiple of dt, whatever it is
-    if os.path.exists(log):
-        os.remove(log)
-    logs = ["--log", log] if "--small-steps" in options or "--dt" in options else []
-    cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), *logs, "-o", out, *options, start], folder, bound)
-    cost.update(made(folder, out, log, dt, bound))
+    out, dt = os.path.join(folder, "out.h5"), nsd.last(start).dt
+    every = max(1, round(span / FRAMES / dt))  # no log: small steps would be judged, which costs a third of the run
+    cost = timed(["nsd-step", "-j", str(threads), "--until", repr(span), "--every", str(every), "-o", out, *options, start], folder, bound)
+    cost.update(made(folder, out, dt, bound))
 
     def frames():
         yield 0.0, nsd.last(start)

@@ -116,7 +116,7 @@ def dosta_silo(count, seed):
                     rows.append([i * edge + chance.uniform(-1e-4, 1e-4), j * edge + chance.uniform(-1e-4, 1e-4), z])
         z += edge
     start = {**DOSTA, "seed": seed, "walls": walls + [plug],
-             "table": "# x y z r kind\n" + "".join("%.6f %.6f %.6f 0.002 M1\n" % tuple(row) for row in rows),
+             "table": "# x y z r material\n" + "".join("%.6f %.6f %.6f 0.002 M1\n" % tuple(row) for row in rows),
              "bodies": [{"file": "TABLE"}]}
     return start, {"walls": walls, "remove": [{"below": {"point": [0, 0, low - 0.02], "normal": [0, 0, 1]}}]}, \
         {"orifice": low, "count": count}
@@ -164,7 +164,7 @@ def given(job, path, axes, shift, span):
         start, run, about = job.scenes(count, seed)
         with (gzip.open if path.endswith(".gz") else open)(path, "rt") as f:
             rows = [line.split() for line in f if not line.startswith("#")]
-        table = "# x y z r" + " kind" * (len(rows[0]) > 4) + "\n"
+        table = "# x y z r" + " material" * (len(rows[0]) > 4) + "\n"
         for row in rows:
             x = [float(row[c]) if c >= 0 else -float(row[0]) for c in axes]
             table += " ".join(["%.12g" % (x[0] + shift), "%.12g" % x[1], "%.12g" % x[2], *row[3:]]) + "\n"

@@ -1,5 +1,5 @@
-"""What nsd is held against besides other codes: itself with a quarter of the time step and tolerance 1e-6; piles that rest;
-CPU against the number of balls; where the CPU goes."""
+"""What nsd is compared with besides other codes: itself with four times as many small steps; piles that rest; CPU against the number
+of balls; where the CPU goes."""
 import os
 import shutil
 import subprocess
@@ -8,9 +8,7 @@ import codes
 import numpy as np
 from jobs import COMPARED, JOBS
 
-# The finer run: a tenth of the default tolerance, in a velocity |g| dt that a quarter of dt makes a quarter. (A natural map of
-# 1e-6 takes 200 balls that settle 5400 sweeps a step, and 53 of 800 steps do not come to it in 20 000.)
-FINE = ["--tolerance", "0.1"]
+FINE = ["--small-steps", "0.0025"]  # the finer run: a quarter of the default
 
 
 def compared(name, curve):
@@ -30,7 +28,7 @@ def check(name, peers, seeds):
         folder = os.path.join(peers.OUT, "check", f"{name}-{count}-{seed}")
         scene, document, about = peers.prepare(name, count, seed, 1, folder)
         pair = []
-        for k, options in enumerate(([], ["--dt", repr(scene["dt"] / 4), *FINE])):
+        for k, options in enumerate(([], FINE)):
             result = peers.one(name, "nsd", scene, document, about, span, folder, options, bound=20 * peers.BOUND)
             if result["cut"]:
                 raise RuntimeError(f"{name}: stopped at the bound of {20 * peers.BOUND} s: a larger --bound")
@@ -45,30 +43,27 @@ def check(name, peers, seeds):
             "cost": cost[1] / cost[0]}
 
 
-# What the effort is varied by: dt over the job's, or the tolerance
+# What the effort is varied by: the way of the fastest body in a small step, in radii; one solve per step
 VARIED = "settling", "drum"
-SETTINGS = [("dt", 2), ("dt", 1), ("dt", 0.5), ("dt", 0.25),
-            ("tolerance", 10), ("tolerance", 3), ("tolerance", 0.3), ("tolerance", 0.1), ("tolerance", 0.01)]
+SETTINGS = 0.04, 0.02, 0.01, 0.005, 0.0025, 0
 
 
 def effort(name, peers, seeds):
-    """The observable, the CPU and the largest overlap by dt and by tolerance, means over seeds."""
+    """The observable, the CPU and the largest overlap by the size of small steps, means over seeds."""
     job = JOBS[name]
     rows = []
-    for what, value in SETTINGS:
+    for value in SETTINGS:
         found, cpu, sweeps, overlap = [], 0, 0, 0
         for seed in range(1, seeds + 1):
             scene, document, about = peers.prepare(name, job.balls[1], seed, 1, os.path.join(peers.OUT, "check", f"{name}-{job.balls[1]}-{seed}"))
-            options = ["--dt", repr(scene["dt"] * value)] if what == "dt" else ["--tolerance", repr(value)]
-            result = peers.one(name, "nsd", scene, document, about, job.span[1], os.path.join(peers.OUT, "effort", name), options,
+            result = peers.one(name, "nsd", scene, document, about, job.span[1], os.path.join(peers.OUT, "effort", name), ["--small-steps", repr(value)],
                                bound=20 * peers.BOUND)
             found.append(compared(name, result["series"])[1])
             cpu += result["cpu"] / result["span"] / seeds
             sweeps += result["sweeps"] / seeds
             overlap = max(overlap, result["overlap"])
-        rows.append({"what": what, "value": scene["dt"] * value if what == "dt" else value, "default": (what, value) == ("dt", 1),
-                     "found": float(np.mean(found)), "error": float(np.std(found, ddof=1) / seeds ** 0.5), "cpu": cpu, "sweeps": sweeps,
-                     "overlap": overlap})
+        rows.append({"value": value, "default": value == 0.01, "found": float(np.mean(found)), "error": float(np.std(found, ddof=1) / seeds ** 0.5),
+                     "cpu": cpu, "sweeps": sweeps, "overlap": overlap})
     return {"job": name, "balls": job.balls[1], "seeds": seeds, "observable": compared(name, result["series"])[0], "rows": rows}
 
 
@@ -77,8 +72,8 @@ def rest(peers, balls=500, settle=3.0, steps=100000):
     folder = os.path.join(peers.OUT, "rest")
     scene, document, about = peers.prepare("settling", balls, 1, 0, folder)
     settled, long = os.path.join(folder, "bed.h5"), os.path.join(folder, "long.h5")
-    codes.timed(["nsd-step", "--small-steps", "0", "--until", repr(settle), "--every", "1000000", "-o", settled, document], folder, 600)
-    codes.timed(["nsd-step", "--small-steps", "0", "-n", str(steps), "--every", str(steps // 10), "-o", long, settled], folder, 3600)
+    codes.timed(["nsd-step", "--until", repr(settle), "--every", "1000000", "-o", settled, document], folder, 600)
+    codes.timed(["nsd-step", "-n", str(steps), "--every", str(steps // 10), "-o", long, settled], folder, 3600)
     # a ball that touches fewer than three others or walls may roll for ever: nothing brakes that
     solved = os.path.join(folder, "solved.h5")
     with open(solved, "wb") as out:
@@ -89,7 +84,7 @@ def rest(peers, balls=500, settle=3.0, steps=100000):
         np.add.at(touch, side[(side >= 0) & (contacts.reaction[:, 0] > 0)], 1)
     held = touch >= 3
     first = codes.nsd.last(settled)
-    start, r = first.x[:], first.radius[:]
+    start, r = first.position[:], first.radius[:]
     rows = []
     for frame in codes.nsd.frames(long):
         way = np.sqrt(((frame.position[:] - start) ** 2).sum(1)) / (2 * r.mean())
@@ -110,14 +105,12 @@ def growth(peers, sizes, steps=50):
         scene, document, about = peers.prepare("settling", count, 1, 0, folder)
         # until three times the time in which the highest falls
         until = 3 * (2 * 3 * about["side"] * 0.58 / about["g"]) ** 0.5
-        settled, log = os.path.join(folder, "bed.h5"), os.path.join(folder, "log")
-        fall = codes.timed(["nsd-step", "--small-steps", "0", "--until", repr(until), "--every", "1000000", "-o", settled, document], folder, 3600)
+        settled, out = os.path.join(folder, "bed.h5"), os.path.join(folder, "out.h5")
+        fall = codes.timed(["nsd-step", "--until", repr(until), "--every", "1000000", "-o", settled, document], folder, 3600)
         none = codes.timed(["nsd-step", "-n", "0", "-o", os.path.join(folder, "none.h5"), settled], folder, 600)
-        at_rest = codes.timed(["nsd-step", "--small-steps", "0", "-n", str(steps), "--every", "1000000", "--log", log, "-o", os.path.join(folder, "out.h5"), settled],
-                              folder, 600)
-        lines = [codes.json.loads(line) for line in open(log)]
+        at_rest = codes.timed(["nsd-step", "-n", str(steps), "--every", "1000000", "-o", out, settled], folder, 600)
         rows.append({"balls": count, "steps": steps, "cpu": at_rest["cpu"] - none["cpu"], "falling": fall["cpu"] / (until / scene["dt"]),
-                     "sweeps": sum(line["sweeps"] for line in lines) / steps})
+                     "sweeps": codes.made(folder, out, scene["dt"], 600)["sweeps"]})
         peers.say(f"growth: {rows[-1]}")
         shutil.rmtree(folder)
 
@@ -135,8 +128,7 @@ def profile(name, peers, count):
     _, document, _ = peers.prepare(name, count, 1, int(peers.QUICK), folder)
     span = min(JOBS[name].span[int(peers.QUICK)], 0.3)
     data = os.path.join(folder, "perf.data")
-    codes.timed(["perf", "record", "-q", "-F", "400", "-o", data, "nsd-step", "--small-steps", "0", "--until", repr(span), "--every", "1000000",
-                 "-o", os.path.join(folder, "perf.h5"), document], folder, peers.BOUND)
+    codes.timed(["perf", "record", "-q", "-F", "400", "-o", data, "nsd-step", "--until", repr(span), "--every", "1000000", "-o", os.path.join(folder, "perf.h5"), document], folder, peers.BOUND)
     said = subprocess.run(["perf", "report", "-i", data, "--stdio", "--no-children", "--sort", "symbol", "--percent-limit", "2"],
                           capture_output=True, text=True, check=True).stdout
     os.remove(data)
