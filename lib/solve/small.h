@@ -39,6 +39,7 @@
 
 #include "solve/bundle.h"
 #include "solve/small_hold.h"
+#include "solve/small_spring.h"
 
 /* Where a body is, in the place of its struct body */
 struct small_place {
@@ -69,6 +70,11 @@ struct small_holds {
     double x[HOLD_COUNT][BUNDLE];
 };
 
+/* The springs of the pairs of a bundle [solve/small_spring.h] */
+struct small_springs {
+    double x[SPRING_COUNT][BUNDLE];
+};
+
 /* Static and kinetic friction of a bundle, of which mu is one in each step [contact/contact_law.h] */
 struct small_stick {
     double mu[2][BUNDLE]; /* mu_s and mu */
@@ -93,6 +99,7 @@ struct small_rates {
     double reach;    /* m: pairs that are farther apart do not touch in this step */
     double pulls;    /* m/s: no pair is pulled faster in a step */
     double holds;    /* m: nor are held together without a bridge; 0 */
+    double rise;     /* m: in a step, of overlaps that springs have not made */
     double gone;     /* m: by how much two bodies may have come nearer in this interval */
     double allowed
         [2]; /* m/s: a change of a velocity that is not followed up, in the first sweep and in others */
@@ -108,11 +115,12 @@ struct small {
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
     int64_t *group;                  /* [groups + 1] */
     struct small_bundle *bundle;
-    struct small_turn *turn;   /* NULL: nothing rolls */
-    struct small_shift *shift; /* NULL: no images */
-    bool moves;                /* images do not move as their bodies */
-    struct small_holds *hold;  /* NULL: nothing attracts */
-    struct small_stick *stick; /* NULL: no static friction */
+    struct small_turn *turn;      /* NULL: nothing rolls */
+    struct small_shift *shift;    /* NULL: no images */
+    bool moves;                   /* images do not move as their bodies */
+    struct small_holds *hold;     /* NULL: nothing attracts */
+    struct small_stick *stick;    /* NULL: no static friction */
+    struct small_springs *spring; /* NULL: no contact has a stiffness */
     uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */
     double *until; /* [8 bundles] m: lanes are looked at when rate.gone and the reach exceed it */
     double slack;  /* m: above the rounding of places */
@@ -216,6 +224,27 @@ ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
     for (int i = 0; i < 3; i++) {
         vd f = l->rn * l->n[i] + rt[i];
         df[i] = f - l->f[i], l->f[i] = f;
+    }
+}
+
+/* The same, where pairs may have springs x; q of these: of small_spring_begin() */
+ALWAYS_INLINE void small_solve_springs(struct small_law *l, const vd x[SPRING_COUNT], vd df[3])
+{
+    struct small_law y = *l;
+    vd un, qn, rn, ut[3], qt[3], rt[3], zero = splat(0);
+    vm springs = lt(zero, x[SPRING_KN]);
+    small_solve(l, df);
+    small_split(y.n, y.u, &un, ut), small_split(y.n, y.q, &qn, qt), small_split(y.n, y.f, &rn, rt);
+    vd fn = rn - (rn + qn + x[SPRING_GN] * un) / (1 + x[SPRING_GN] * y.wn);
+    fn = pick(lt(qn, zero), larger(fn, zero), zero);
+    vd s = 1 / (1 + x[SPRING_GT] * y.wt);
+    for (int i = 0; i < 3; i++) rt[i] -= s * (rt[i] + qt[i] + x[SPRING_GT] * ut[i]);
+    small_cut(y.mu * fn, rt);
+    l->rn = pick(springs, fn, l->rn);
+    for (int i = 0; i < 3; i++) {
+        vd f = fn * y.n[i] + rt[i];
+        l->rt[i] = pick(springs, rt[i], l->rt[i]), l->f[i] = pick(springs, f, l->f[i]);
+        df[i] = pick(springs, f - y.f[i], df[i]);
     }
 }
 

@@ -260,6 +260,26 @@ ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct smal
     return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
 }
 
+/* Springs of pairs in the first sweep: q, in place of that of rigid ones, of which kept is `had` */
+ALWAYS_INLINE void small_spring_pairs(const struct small_pairs *y, const struct small *s,
+                                      struct small_law *l, vd x[SPRING_COUNT], const vd had[3])
+{
+    double(*to)[BUNDLE] = s->spring[y->i].x;
+    const int k = y->k;
+    struct bodies a, b;
+    struct twist ma, mb;
+    vd u[3], q[3];
+    vm springs = lt(splat(0), x[SPRING_KN]);
+    bodies_load(&a, s->before, y->c->a + k, &ma), bodies_load(&b, s->before, y->c->b + k, &mb);
+    small_velocity_image(y, s, &ma, &mb, u);
+    small_spring_begin(x, l->n, l->gap, u, l->spin, l->mu, s->rate.rise, s->rate.h, q);
+    for (int j = SPRING_REST; j < SPRING_COUNT; j++)
+        vstore(to[j] + k, pick(springs, x[j], vload(to[j] + k)));
+    for (int j = 0; j < 3; j++) l->q[j] = pick(springs, q[j], l->q[j]);
+    small_store(y->c->q, k, l->q);
+    vstore(y->c->kept + k, pick(springs, dot3(l->n, had), vload(y->c->kept + k)));
+}
+
 /* mu of the step, by the velocities before it */
 ALWAYS_INLINE void small_stick_pairs(const struct small_pairs *y, const struct small *s,
                                      struct small_law *l)
@@ -310,7 +330,14 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     else
         small_begin(&y, s, &l), small_turned(&y, &l, couple);
     l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
-    small_solve(&l, df);
+    if (rich && s->spring) {
+        vd x[SPRING_COUNT];
+        for (int j = 0; j < SPRING_COUNT; j++) x[j] = vload(s->spring[i].x[j] + k);
+        if (!hot) small_spring_pairs(&y, s, &l, x, had);
+        small_solve_springs(&l, x, df);
+    } else {
+        small_solve(&l, df);
+    }
     small_keep(&y, &l, had, couple, acts, df, dc);
     small_store(y.c->f, k, l.f), small_store(y.c->couple, k, couple);
     if (rolls) small_turn_pairs(&y, s, &l, acts, !hot, dc, dm);
@@ -338,7 +365,7 @@ ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bo
 
 static bool small_sweep_bundles(struct small *s, int64_t first, int64_t end, bool again)
 {
-    if (s->hold || s->stick || s->moves)
+    if (s->hold || s->stick || s->moves || s->spring)
         return again ? small_bundles(s, first, end, true, s->turn, true)
                      : small_bundles(s, first, end, false, s->turn, true);
     if (s->turn)
@@ -389,8 +416,12 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     if (s->hold) l.calm += 2 * l.wn * vload(s->hold[i].x[HOLD_PULL] + k);
     l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     for (int j = 0; j < 3; j++) l.f[j] = had[j];
-    vd pushes = norm3(had);
-    small_solve(&l, df);
+    vd pushes = norm3(had), x[SPRING_COUNT];
+    for (int j = 0; j < SPRING_COUNT && s->spring; j++) x[j] = vload(s->spring[i].x[j] + k);
+    if (s->spring)
+        small_solve_springs(&l, x, df);
+    else
+        small_solve(&l, df);
     vstore(far, pick(near | lt(zero, pushes), norm3(df), zero)), vstore(load, pushes);
     for (int j = 0; j < LANES; j++) {
         if (!(far[j] > 0) && !(load[j] > 0)) continue;

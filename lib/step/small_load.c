@@ -149,8 +149,14 @@ static double loaded_at(const struct small_loaded *y, double ds, struct small_la
     double f2, top;
     *l = y->l;
     l->u[0] -= ds * y->D.x, l->u[1] -= ds * y->D.y, l->u[2] -= ds * y->D.z;
-    small_solve(l, df);
+    small_touch_solve(y->t, l, df);
     f2 = dot3(l->f, l->f) - l->rn * l->rn, top = l->mu * l->rn;
+    if (y->t->spring[SPRING_KN] > 0) {
+        const double *x = y->t->spring, gn = x[SPRING_GN], gt = x[SPRING_GT];
+        if (l->rn > 0) *slope += v3_dot(along, along) * gn / (1 + gn * l->wn);
+        if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) * gt / (1 + gt * l->wt);
+        return v3_dot(y->D, small_vec(df));
+    }
     if (l->rn > 0) *slope += v3_dot(along, along) / (l->wn + l->cn);
     if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) / (l->wt + l->ct);
     return v3_dot(y->D, small_vec(df));

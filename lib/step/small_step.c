@@ -19,6 +19,7 @@
 #include "step/small_loop.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_springs.h"
 #include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
@@ -48,7 +49,8 @@ const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (packing_has_springs(p)) return "contacts with a stiffness";
+    if (small_springs_stiff(p))
+        return "contacts so stiff that a step has more than 1000 small ones";
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
         if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
     return NULL;
@@ -104,6 +106,7 @@ static void small_set_rates(struct small_run *r)
                                          .gives = r->uneven ? INFINITY : 0,
                                          .calm = freedoms_calm(p),
                                          .pulls = 2 * r->h * small_tie_most(p),
+                                         .rise = r->h * fall,
                                          .holds = small_tie_range(p, r->h),
                                          .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
 }
@@ -154,6 +157,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
     for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
     small_list_free(r->l);
     r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
+    r->l->interval = r->h * (double)r->n;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
@@ -167,10 +171,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
                 break;
             }
-            small_bonds_recall(r, o->warm);
+            small_bonds_recall(r, o->warm), small_springs_recall(r);
             r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
-            r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
+            r->stored = ties.stored - ties.joined +
+                        small_springs_stored(r); // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
@@ -228,7 +233,9 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
+    b->bond_energy =
+        ties.stored + small_springs_stored(r) + small_springs_stored_points(r, l->s.body);
+    b->bond_change = b->bond_energy - r->stored;
     b->broken = -ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
@@ -252,6 +259,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
+                            .soft = packing_has_springs(r->p),
                             .tied = r->p->law != NULL,
                             .sheared = energy_has_peculiar(r->p),
                             .small = r->n,
@@ -316,6 +324,7 @@ int64_t small_count(const struct packing *p, double overlap)
     const double least = small_sizes(p).least,
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
+    n = fmax(n, small_springs_count(p));
     if (freedoms_in(p))
         n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));

@@ -41,7 +41,20 @@ static void begin_touch(const struct small_run *r, struct small_touch *t, struct
     small_press(l, &s->rate);
     small_array(before, small_touch_before(r, t));
     small_meet(l, &s->rate, before, &t->kept, t->e[0], t->e[1]);
+    if (t->spring[SPRING_KN] > 0) {
+        small_spring_begin(t->spring, l->n, l->gap, before, l->spin, t->mu, s->rate.rise, r->h,
+                           l->q);
+        t->kept = dot3(l->n, l->f);
+    }
     memcpy(t->q, l->q, sizeof t->q);
+}
+
+void small_touch_solve(const struct small_touch *t, struct small_law *l, double df[3])
+{
+    if (t->spring[SPRING_KN] > 0)
+        small_solve_springs(l, t->spring, df);
+    else
+        small_solve(l, df);
 }
 
 /* dc: the change of the couple, which leaves dm to be made */
@@ -95,6 +108,7 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
     if (pushed) small_body_push(&r->l->s.body[t->body], f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     for (int k = 0; k < 3; k++) t->f[k] = t->couple[k] = t->m[k] = 0;
+    for (int k = SPRING_X; k < SPRING_COUNT; k++) t->spring[k] = 0;
     t->kept = 0, t->near = false;
 }
 
@@ -152,6 +166,7 @@ vec3 small_touch_end(struct small_run *r, struct small_touch *t)
     if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
     if (small_is_zero(t->f)) return none;
     t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
+    if (t->spring[SPRING_KN] > 0) return none;
     const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
     const double held = t->kept + 2 * t->hold[HOLD_PULL];
     const double most = small_persists(&l->s.rate, held, w, rn);
