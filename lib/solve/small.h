@@ -227,25 +227,51 @@ ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
     }
 }
 
-/* The same, where pairs may have springs x; q of these: of small_spring_begin() */
-ALWAYS_INLINE void small_solve_springs(struct small_law *l, const vd x[SPRING_COUNT], vd df[3])
+/* f of pairs with springs x; q: of small_spring_begin() */
+ALWAYS_INLINE void small_solve_soft(const struct small_law *l, const vd x[SPRING_COUNT], vd *fn,
+                                    vd rt[3])
 {
-    struct small_law y = *l;
-    vd un, qn, rn, ut[3], qt[3], rt[3], zero = splat(0);
-    vm springs = lt(zero, x[SPRING_KN]);
-    small_solve(l, df);
-    small_split(y.n, y.u, &un, ut), small_split(y.n, y.q, &qn, qt), small_split(y.n, y.f, &rn, rt);
-    vd fn = rn - (rn + qn + x[SPRING_GN] * un) / (1 + x[SPRING_GN] * y.wn);
-    fn = pick(lt(qn, zero), larger(fn, zero), zero);
-    vd s = 1 / (1 + x[SPRING_GT] * y.wt);
+    vd un, qn, rn, ut[3], qt[3], zero = splat(0);
+    small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
+    small_split(l->n, l->f, &rn, rt);
+    *fn = rn - (rn + qn + x[SPRING_GN] * un) / (1 + x[SPRING_GN] * l->wn);
+    *fn = pick(lt(qn, zero), larger(*fn, zero), zero);
+    vd s = 1 / (1 + x[SPRING_GT] * l->wt);
     for (int i = 0; i < 3; i++) rt[i] -= s * (rt[i] + qt[i] + x[SPRING_GT] * ut[i]);
-    small_cut(y.mu * fn, rt);
-    l->rn = pick(springs, fn, l->rn);
+    small_cut(l->mu * *fn, rt);
+}
+
+/* small_solve() where pairs may have springs or a bond x, in steps of h; rn is without what a bond pulls. A bond alone gives f = b;
+   r moves its pair by W/(1 + G W), and the bond, G = h^2 S beta^2 c, takes the rest of r. */
+ALWAYS_INLINE void small_solve_springs(struct small_law *l, const vd x[SPRING_COUNT], double h,
+                                       vd df[3])
+{
+    const struct small_law was = *l;
+    vd un, rn, ut[3], rt[3], p[3], pn, pt[3], b[3], fn, ft[3], one = splat(1), zero = splat(0);
+    vm springs = small_spring_acts(x), bonded = small_bond_holds(x);
+    vd beta2 = x[SPRING_BETA] * x[SPRING_BETA], gn = h * beta2 * x[SPRING_SN];
+    vd gt = h * beta2 * x[SPRING_ST], sn = 1 / (1 + gn * l->wn), st = 1 / (1 + gt * l->wt);
+    small_solve_soft(l, x, &fn, ft);
+    small_bond_pull(x, l->n, l->gap, p), small_split(l->n, p, &pn, pt);
+    small_split(l->n, l->u, &un, ut), small_split(l->n, l->f, &rn, rt);
+    vd bn = sn * (pn + gn * (l->wn * rn - un));
     for (int i = 0; i < 3; i++) {
-        vd f = fn * y.n[i] + rt[i];
-        l->rt[i] = pick(springs, rt[i], l->rt[i]), l->f[i] = pick(springs, f, l->f[i]);
-        df[i] = pick(springs, f - y.f[i], df[i]);
+        b[i] = st * (pt[i] + gt * (l->wt * rt[i] - ut[i]));
+        vd moved = l->wn * (bn - rn) * l->n[i] + l->wt * (b[i] - rt[i]);
+        l->u[i] = pick(bonded, l->u[i] + moved, l->u[i]), l->f[i] = pick(bonded, zero, l->f[i]);
     }
+    l->wn = pick(bonded, sn * l->wn, l->wn), l->wt = pick(bonded, st * l->wt, l->wt);
+    l->mu = l->mu * (one - x[SPRING_BETA]);
+    small_solve(l, df);
+    vd rigid = l->rn;
+    l->rn = pick(springs, fn, rigid);
+    for (int i = 0; i < 3; i++) {
+        l->rt[i] = pick(bonded, b[i] + st * l->rt[i], pick(springs, ft[i], l->rt[i]));
+        vd along = pick(bonded, bn + sn * rigid, l->rn);
+        l->f[i] = along * l->n[i] + l->rt[i], df[i] = l->f[i] - was.f[i];
+        l->u[i] = was.u[i];
+    }
+    l->wn = was.wn, l->wt = was.wt;
 }
 
 /* m of rolling and pivoting friction, where it makes w of b against a; wr (1/(kg m^2)), dm: its change */

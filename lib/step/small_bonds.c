@@ -163,20 +163,20 @@ static struct bond bond_of(struct contact_key key)
     return b;
 }
 
-/* Keeps it, with the bridge of its pair, where there is one, or its springs; false when memory is short. */
-static bool keep_bond(struct bonds *kept, struct bond *b, const double x[HOLD_COUNT], double gap,
-                      vec3 n)
+/* Keeps it where its springs last, or with the bridge of its pair, where there is one; false when memory is short. */
+static bool keep_bond(struct bonds *kept, struct bond *b, bool lasts, const double x[HOLD_COUNT],
+                      double gap, vec3 n)
 {
     if (x[HOLD_WET] > 0 && gap < x[HOLD_REACH]) b->wet = BOND_WET, b->gap = gap, b->n = n;
-    return (!b->wet && !b->pressed) || bonds_add(kept, b) != NULL;
+    return (!b->wet && !lasts) || bonds_add(kept, b) != NULL;
 }
 
 static bool keep_touch(struct small_run *r, struct bonds *kept, struct small_touch *t)
 {
     struct bond b = bond_of((struct contact_key){ .a = -1 - t->wall, .b = t->body });
     if (!small_look_at_touch(r, t, r->l->margin)) return true;
-    small_springs_keep_touch(r, t, &b);
-    return keep_bond(kept, &b, t->hold, t->arm - r->l->s.place[t->body].r, t->n);
+    const bool lasts = small_springs_keep_touch(r, t, &b);
+    return keep_bond(kept, &b, lasts, t->hold, t->arm - r->l->s.place[t->body].r, t->n);
 }
 
 static bool keep_pair(const struct small_run *r, struct bonds *kept, int64_t i)
@@ -187,8 +187,8 @@ static bool keep_pair(const struct small_run *r, struct bonds *kept, int64_t i)
     vec3 n;
     const double gap = slot_gap(&l->s, l->slot[i], &n);
     if (l->s.hold) hold_of(&l->s, l->slot[i], x);
-    small_springs_keep_slot(r, l->slot[i], &b);
-    return keep_bond(kept, &b, x, gap, n);
+    const bool lasts = small_springs_keep_slot(r, l->slot[i], &b);
+    return keep_bond(kept, &b, lasts, x, gap, n);
 }
 
 static bool keep_points(const struct small_run *r, struct bonds *kept,
@@ -201,8 +201,8 @@ static bool keep_points(const struct small_run *r, struct bonds *kept,
         key.feature = t->feature;
         struct bond b = bond_of(key);
         if (!t->there || t->seam) continue;
-        small_springs_keep_point(r, m, t, &b);
-        room = keep_bond(kept, &b, m->hold, t->gap, t->n);
+        const bool lasts = small_springs_keep_point(r, m, t, &b);
+        room = keep_bond(kept, &b, lasts, m->hold, t->gap, t->n);
     }
     return room;
 }

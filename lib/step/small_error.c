@@ -41,7 +41,7 @@ static void judge_touches(struct small_run *r, int64_t first, int64_t end)
         if (!t->near) continue;
         small_touch_law(r, t, &l);
         s->load[t->body] += norm3(l.f);
-        small_touch_solve(t, &l, df);
+        small_touch_solve(t, &l, r->h, df);
         s->missing[t->body] += norm3(df);
     }
 }

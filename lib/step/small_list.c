@@ -234,7 +234,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 struct small_past {
     double f[3], couple[3], m[3], sum[3], turned[3];
     double held[HOLD_COUNT];     /* from HOLD_WET on */
-    double spring[SPRING_COUNT]; /* from SPRING_REST on */
+    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -277,7 +277,7 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     }
     for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
         s->hold[slot / BUNDLE].x[j][k] = x->held[j];
-    for (int j = SPRING_REST; j < SPRING_COUNT && s->spring; j++)
+    for (int j = SPRING_REST; j <= SPRING_GIVEN && s->spring; j++)
         s->spring[slot / BUNDLE].x[j][k] = x->spring[j];
     if (!small_is_zero(x->f) || x->held[HOLD_WET] > 0 || x->held[HOLD_PULL] > 0)
         small_list_wake(s, slot);
@@ -371,7 +371,8 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
         const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 ||
-                           x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0;
+                           x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0 ||
+                           x.spring[SPRING_HELD] > 0;
         if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
         if (found) set_past(&to->s, to->slot[k], &x);

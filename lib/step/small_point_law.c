@@ -93,6 +93,18 @@ static double friction_at(const struct packing *p, const struct small_meeting *m
     return mu[v3_norm(ut) > v_s];
 }
 
+/* Its springs; u: before the step (m/s) */
+static void spring_point(struct small_point *t, struct small_law *l, const double u[3],
+                         const struct small_rates *o)
+{
+    struct small_stretch at = {
+        .gap = l->gap, .mu = t->mu, .spin = l->spin, .h = o->h, .rise = o->rise
+    };
+    memcpy(at.n, l->n, sizeof at.n), memcpy(at.u, u, sizeof at.u);
+    small_spring_begin(t->spring, &at, l->q);
+    t->soft = o->soft, t->kept = dot3(l->n, l->f);
+}
+
 /* The law in the first sweep of a step */
 static void begin_point(const struct small_run *r, const struct small_meeting *m,
                         struct small_point *t)
@@ -124,9 +136,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
     if (r->l->stiffness) {
         small_springs_set(t->spring, r->l, r->p, m->key.a, m->key.b, l.wn, l.wt);
-        if (t->spring[SPRING_KN] > 0)
-            small_spring_begin(t->spring, l.n, l.gap, before, l.spin, t->mu, o->rise, o->h, l.q),
-                t->soft = o->soft, t->kept = dot3(l.n, l.f);
+        if (t->spring[SPRING_KN] > 0) spring_point(t, &l, before, o);
     }
     memcpy(t->q, l.q, sizeof t->q);
 }
@@ -167,7 +177,7 @@ static void spring_law(const struct small_run *r, const struct small_meeting *m,
     double df[3];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
     small_array(l.u, small_point_velocity(r, m, t, r->l->s.body));
-    small_solve_springs(&l, t->spring, df);
+    small_solve_springs(&l, t->spring, r->h, df);
     for (int k = 0; k < 3; k++) is[k] = v3_dot(e[k], small_vec(l.f));
 }
 

@@ -1,6 +1,7 @@
 /* step/small_springs.c: springs of contacts in small steps [step/small_springs.h]. */
 #include "step/small_springs.h"
 
+#include "contact/contact_law.h"
 #include "contact/spring.h"
 #include "state/rotation.h"
 #include "step/small_point.h"
@@ -51,7 +52,7 @@ static void set_zeta(double zeta[2], double e)
 bool small_springs_table(struct small_list *l, const struct packing *p)
 {
     const int32_t n = p->materials * p->materials;
-    if (l->stiffness || !packing_has_springs(p)) return true;
+    if (l->stiffness || !(packing_has_springs(p) || packing_adheres(p))) return true;
     l->stiffness = calloc((size_t)n + 1, sizeof *l->stiffness);
     for (int32_t k = 0; l->stiffness && k < n; k++) {
         struct small_stiffness *y = &l->stiffness[k];
@@ -74,6 +75,17 @@ static double damping(const double zeta[2], double h, double k, double w)
     return 2 * (zeta[0] + part * (zeta[1] - zeta[0])) * step / w;
 }
 
+static void set_bond(double x[SPRING_COUNT], const struct packing *p, int32_t a, int32_t b)
+{
+    const struct pair_law *l = &p->law[packing_pair(p, a, b)];
+    const struct contact c = { .a = a, .b = b };
+    const double S = pair_law_adheres(l) ? contact_laws_area(p, &c) : 0;
+    x[SPRING_SN] = p->dt * S * l->cn, x[SPRING_ST] = p->dt * S * l->ct;
+    x[SPRING_SW] = S * l->w, x[SPRING_SETA] = S * l->eta;
+    x[SPRING_FRESH] = S > 0 && l->forever ? l->beta : 0,
+    x[SPRING_TOUCH] = contact_laws_touch(p, &c);
+}
+
 void small_springs_set(double x[SPRING_COUNT], const struct small_list *l, const struct packing *p,
                        int32_t a, int32_t b, double wn, double wt)
 {
@@ -82,6 +94,7 @@ void small_springs_set(double x[SPRING_COUNT], const struct small_list *l, const
     double kn = k->kn, kt = k->kt;
     if (k->soft > 0) kn = 1 / (k->soft * W * l->interval * l->interval), kt = SPRING_ACROSS * kn;
     x[SPRING_KN] = x[SPRING_KT] = x[SPRING_GN] = x[SPRING_GT] = 0;
+    set_bond(x, p, a, b);
     if (!(kn > 0) || !isfinite(kn)) return;
     x[SPRING_KN] = h * kn, x[SPRING_KT] = h * kt;
     x[SPRING_GN] = damping(k->zeta[0], h, kn, wn);
@@ -108,18 +121,37 @@ static struct lightest lightest_of(const struct packing *p)
     return y;
 }
 
+/* m^2/kg: the largest S/m of bonds with this law, where the lighter of two bodies decides their area */
+static double bond_per_mass(const struct packing *p, const struct pair_law *l,
+                            const struct lightest *y)
+{
+    double most = 0;
+    if (!pair_law_adheres(l)) return 0;
+    if (l->area > 0) return l->area * y->im;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double r = p->radius[i], S = p->dim == 2 ? 2 * r : M_PI * r * r;
+        if (p->mass[i] > 0) most = fmax(most, S / p->mass[i]);
+    }
+    return most;
+}
+
+/* 1/s^2: the largest k W of a pair of materials */
+static double stiffest(const struct packing *p, const struct pair_law *l, const struct lightest *y)
+{
+    const double soft = l->soft > 0 ? 1 / (l->soft * p->dt * p->dt) : 0;
+    const double along = l->soft > 0 ? soft : 2 * l->kn * y->im;
+    const double across = l->soft > 0 ? SPRING_ACROSS * soft : 2 * l->kt * y->im;
+    const double S = 2 * bond_per_mass(p, l, y), turns = p->shape ? y->turns : 1;
+    return fmax(turns * fmax(along, S * l->cn), y->turns * fmax(across, S * l->ct));
+}
+
 double small_springs_count(const struct packing *p)
 {
-    const struct lightest y = lightest_of(p);
     double most = 0;
-    if (!packing_has_springs(p)) return 0;
-    for (int32_t k = 0; k < p->materials * p->materials; k++) {
-        const struct pair_law *l = &p->law[k];
-        const double soft = l->soft > 0 ? 1 / (l->soft * p->dt * p->dt) : 0; // k/W
-        const double across = l->soft > 0 ? SPRING_ACROSS * soft : 2 * l->kt * y.im;
-        const double along = l->soft > 0 ? soft : 2 * l->kn * y.im;
-        most = fmax(most, fmax(p->shape ? y.turns * along : along, y.turns * across));
-    }
+    if (!packing_has_springs(p) && !packing_adheres(p)) return 0;
+    const struct lightest y = lightest_of(p);
+    for (int32_t k = 0; k < p->materials * p->materials; k++)
+        most = fmax(most, stiffest(p, &p->law[k], &y));
     return p->dt * sqrt(most / RESOLVED);
 }
 
@@ -130,23 +162,37 @@ bool small_springs_stiff(const struct packing *p)
 
 /* ---- where springs are ---- */
 
-/* A contact with springs, where its bodies are */
+/* A contact with springs or bonds, where its bodies are */
 struct spring_place {
-    double x[SPRING_COUNT], n[3], u[3]; /* u: m/s */
-    double gap, spin, mu;
+    double x[SPRING_COUNT];
+    struct small_stretch at;
 };
 
-/* rad: by which bodies with these spins turn about n in a small step */
-static double spin_about(const struct small_run *r, vec3 a, vec3 b, const double n[3])
+static bool may_act(double kn, double sn)
 {
-    return 0.5 * r->h * v3_dot(v3_add(a, b), small_vec(n));
+    return kn > 0 || sn > 0;
+}
+
+/* rad: by which bodies with these spins turn about n in a small step */
+static double spin_about(const struct small_run *r, vec3 a, vec3 b, vec3 n)
+{
+    return 0.5 * r->h * v3_dot(v3_add(a, b), n);
+}
+
+/* But for the gap and mu; g_0 does not rise */
+static void set_stretch(const struct small_run *r, struct small_stretch *at, vec3 n, vec3 u,
+                        double spin, bool pushed)
+{
+    small_array(at->n, n), small_array(at->u, u);
+    at->spin = spin, at->pushed = pushed ? -1 : 0, at->h = r->h, at->rise = 0;
 }
 
 static bool place_touch(const struct small_run *r, struct small_touch *t, struct spring_place *y)
 {
     const struct small *s = &r->l->s;
     const struct body *b = &s->body[t->body];
-    if (!t->near || !(t->spring[SPRING_KN] > 0) || !small_look_at_touch(r, t, r->l->margin))
+    if (!t->near || !(may_act(t->spring[SPRING_KN], t->spring[SPRING_SN])) ||
+        !small_look_at_touch(r, t, r->l->margin))
         return false;
     vec3 u = small_touch_velocity(t, b);
     if (small_is_loaded(r, t)) {
@@ -155,9 +201,9 @@ static bool place_touch(const struct small_run *r, struct small_touch *t, struct
         u = v3_axpy(u, -speed, small_load_direction(r, t));
     }
     memcpy(y->x, t->spring, sizeof y->x);
-    small_array(y->n, t->n), small_array(y->u, u);
-    y->gap = t->arm - s->place[t->body].r, y->mu = t->mu;
-    y->spin = spin_about(r, r->wall[t->wall].spin, small_vec(b->w), y->n);
+    const double spin = spin_about(r, r->wall[t->wall].spin, small_vec(b->w), t->n);
+    set_stretch(r, &y->at, t->n, u, spin, v3_dot(small_vec(t->f), t->n) > 0);
+    y->at.gap = t->arm - s->place[t->body].r, y->at.mu = t->mu;
     return true;
 }
 
@@ -168,19 +214,20 @@ static bool place_slot(const struct small_run *r, int64_t slot, struct spring_pl
     const struct small_bundle *c = &s->bundle[slot / BUNDLE];
     const int64_t ia = body_index(c->a[k]), ib = body_index(c->b[k]);
     const struct body *a = &s->body[ia], *b = &s->body[ib];
-    if (!(s->spring[slot / BUNDLE].x[SPRING_KN][k] > 0)) return false;
+    const struct small_springs *x = &s->spring[slot / BUNDLE];
+    if (!may_act(x->x[SPRING_KN][k], x->x[SPRING_SN][k])) return false;
     const vec3 d = small_branch(s, slot), n = small_normal(d);
     const double ra = s->place[ia].r, rb = s->place[ib].r;
-    y->gap = v3_norm(d) - ra - rb, y->mu = c->mu[k];
-    if (y->gap > r->l->margin) return false;
+    y->at.gap = v3_norm(d) - ra - rb, y->at.mu = c->mu[k];
+    if (y->at.gap > r->l->margin) return false;
     for (int j = 0; j < SPRING_COUNT; j++) y->x[j] = s->spring[slot / BUNDLE].x[j][k];
-    const vec3 wa = small_vec(a->w), wb = small_vec(b->w), half = v3_scale(0.5 * y->gap, n);
+    const vec3 wa = small_vec(a->w), wb = small_vec(b->w), half = v3_scale(0.5 * y->at.gap, n);
     const vec3 arms = v3_add(v3_scale(ra, wa), v3_scale(rb, wb));
     vec3 u = v3_sub(v3_sub(small_vec(b->v), small_vec(a->v)), v3_cross(arms, n));
     u = v3_sub(u, v3_cross(v3_add(wa, wb), half));
     if (s->moves) u = v3_add(u, small_image_velocity(s, slot));
-    small_array(y->n, n), small_array(y->u, u);
-    y->spin = spin_about(r, wa, wb, y->n);
+    const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
+    set_stretch(r, &y->at, n, u, spin_about(r, wa, wb, n), v3_dot(f, n) > 0);
     return true;
 }
 
@@ -188,38 +235,50 @@ static bool place_point(const struct small_run *r, const struct small_meeting *m
                         const struct small_point *t, const struct body *of, struct spring_place *y)
 {
     const int32_t a = m->key.a;
-    if (!(t->spring[SPRING_KN] > 0) || !t->there || t->seam) return false;
+    if (!(may_act(t->spring[SPRING_KN], t->spring[SPRING_SN])) || !t->there || t->seam)
+        return false;
     memcpy(y->x, t->spring, sizeof y->x);
-    small_array(y->n, t->n), small_array(y->u, small_point_velocity(r, m, t, of));
-    y->gap = t->gap, y->mu = t->mu;
-    y->spin = spin_about(r, a < 0 ? r->wall[-1 - a].spin : small_vec(of[a].w),
-                         small_vec(of[m->key.b].w), y->n);
+    const vec3 wa = a < 0 ? r->wall[-1 - a].spin : small_vec(of[a].w);
+    const double spin = spin_about(r, wa, small_vec(of[m->key.b].w), t->n);
+    set_stretch(r, &y->at, t->n, small_point_velocity(r, m, t, of), spin, false);
+    y->at.gap = t->gap, y->at.mu = t->mu;
     return true;
 }
 
-/* x_t and g_0 are those of now. */
-static void place_now(const struct small_run *r, struct spring_place *y)
+/* What lasts is that of now. */
+static void place_now(struct spring_place *y)
 {
     double q[3];
-    small_spring_begin(y->x, y->n, y->gap, y->u, y->spin, y->mu, 0, r->h, q);
+    small_spring_begin(y->x, &y->at, q);
 }
 
 /* ---- from the packing ---- */
 
-/* Of a pair that is first seen with this gap: an overlap pushes nothing. */
-static void spring_start(double x[SPRING_COUNT], double gap)
+/* Of a pair that is first seen with this gap: an overlap pushes nothing. bonded: beta of a bond that is made if it touches */
+static void spring_start(double x[SPRING_COUNT], double gap, double bonded)
 {
     x[SPRING_REST] = fmin(0, gap);
-    for (int k = SPRING_X; k < SPRING_COUNT; k++) x[k] = 0;
+    for (int k = SPRING_X; k <= SPRING_GIVEN; k++) x[k] = 0;
+    if (bonded > 0 && gap <= x[SPRING_TOUCH]) x[SPRING_BETA] = bonded, x[SPRING_HELD] = 1;
 }
 
 /* What a bond has kept; where the stiffness follows from dt, springs push as before [contact/spring.h]. */
-static void spring_recall(double x[SPRING_COUNT], const struct bond *b, double gap, double h)
+static void spring_recall(double x[SPRING_COUNT], const struct bond *b, double h)
 {
     const double times = b->spring > 0 && x[SPRING_KN] > 0 ? b->spring * h / x[SPRING_KN] : 1;
-    x[SPRING_REST] = fmin(0, b->rest + (1 - times) * (gap - b->rest));
+    x[SPRING_REST] = b->pressed ? fmin(0, b->rest + (1 - times) * (b->gap - b->rest)) : 0;
     small_array(x + SPRING_X, v3_scale(times, b->slip));
     x[SPRING_DUE] = 0;
+    if (x[SPRING_SN] > 0) x[SPRING_BETA] = b->beta, x[SPRING_HELD] = 1;
+}
+
+/* Beta of bonds that are made of a pair of bodies that touches where the interval begins; 0: none are */
+static double bonds_at_once(const struct small_run *r, int32_t a, int32_t b)
+{
+    const struct pair_law *l = &r->p->law[packing_pair(r->p, a, b)];
+    struct packing whole = *r->p;
+    whole.dt = r->l->interval;
+    return contact_laws_bond(&whole, l) ? l->beta : 0;
 }
 
 static double slot_gap(const struct small *s, int64_t slot)
@@ -230,37 +289,41 @@ static double slot_gap(const struct small *s, int64_t slot)
            s->place[body_index(c->b[k])].r;
 }
 
+static void get_slot(const struct small *s, int64_t slot, double x[SPRING_COUNT])
+{
+    for (int j = 0; j < SPRING_COUNT; j++) x[j] = s->spring[slot / BUNDLE].x[j][slot % BUNDLE];
+}
+
 static void set_slot(struct small *s, int64_t slot, const double x[SPRING_COUNT])
 {
-    for (int j = SPRING_REST; j < SPRING_COUNT; j++)
-        s->spring[slot / BUNDLE].x[j][slot % BUNDLE] = x[j];
+    for (int j = 0; j < SPRING_COUNT; j++) s->spring[slot / BUNDLE].x[j][slot % BUNDLE] = x[j];
+    if (x[SPRING_BETA] > 0) small_list_wake(s, slot);
 }
 
 static void recall_bond(struct small_run *r, const struct bond *b, int64_t *at)
 {
     struct small_list *l = r->l;
     struct small_meeting *m = small_meetings_find(&l->meetings, bond_key(b));
-    double x[SPRING_COUNT] = { 0 };
+    double x[SPRING_COUNT];
     bool found;
     if (m) {
         m->pressed = true, m->rest = fmin(m->rest, b->rest);
         for (int64_t k = 0; k < m->points; k++)
             if (m->point[k].feature == b->feature) {
                 small_springs_set(m->point[k].spring, l, r->p, b->a, b->b, 1, 1);
-                spring_recall(m->point[k].spring, b, b->gap, r->h);
+                spring_recall(m->point[k].spring, b, r->h);
             }
         return;
     }
     if (b->a < 0) {
         struct small_touch *t = small_list_find_touch(l, b->b, -1 - b->a);
-        if (t) spring_recall(t->spring, b, b->gap, r->h), t->near = true;
+        if (t) spring_recall(t->spring, b, r->h), t->near = true;
         return;
     }
     *at = small_list_pair(l, *at, bond_key(b), &found);
     if (!found) return;
     const int64_t slot = l->slot[*at];
-    x[SPRING_KN] = l->s.spring[slot / BUNDLE].x[SPRING_KN][slot % BUNDLE];
-    spring_recall(x, b, b->gap, r->h), set_slot(&l->s, slot, x), small_list_wake(&l->s, slot);
+    get_slot(&l->s, slot, x), spring_recall(x, b, r->h), set_slot(&l->s, slot, x);
 }
 
 void small_springs_recall(struct small_run *r)
@@ -269,16 +332,25 @@ void small_springs_recall(struct small_run *r)
     int64_t at = 0;
     if (!l->s.spring) return;
     for (int64_t i = 0; i < l->pairs.n; i++) {
+        const struct pair *q = &l->pairs.pair[i];
         double x[SPRING_COUNT];
-        spring_start(x, slot_gap(&l->s, l->slot[i])), set_slot(&l->s, l->slot[i], x);
+        get_slot(&l->s, l->slot[i], x);
+        spring_start(x, slot_gap(&l->s, l->slot[i]), bonds_at_once(r, q->a, q->b));
+        set_slot(&l->s, l->slot[i], x);
     }
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
-        if (small_look_at_touch(r, t, l->margin))
-            spring_start(t->spring, t->arm - l->s.place[t->body].r);
+        if (!small_look_at_touch(r, t, l->margin)) continue;
+        spring_start(t->spring, t->arm - l->s.place[t->body].r,
+                     bonds_at_once(r, -1 - t->wall, t->body));
+        t->near = t->spring[SPRING_BETA] > 0;
     }
-    for (int64_t i = 0; i < r->p->bonds.n; i++)
-        if (r->p->bonds.bond[i].pressed) recall_bond(r, &r->p->bonds.bond[i], &at);
+    for (int64_t i = 0; i < r->p->bonds.n; i++) {
+        const struct bond *b = &r->p->bonds.bond[i];
+        const struct pair_law *law = &r->p->law[packing_pair(r->p, b->a, b->b)];
+        if (b->pressed || (pair_law_adheres(law) && (b->beta > 0 || !b->wet)))
+            recall_bond(r, b, &at);
+    }
 }
 
 void small_springs_recall_points(struct small_run *r)
@@ -297,38 +369,42 @@ void small_springs_recall_points(struct small_run *r)
 
 /* ---- what they store ---- */
 
-/* J: positions of bodies are r->ahead before those where contacts act. */
-static double stored_at(const struct small_run *r, struct spring_place *y)
+/* Positions of bodies are r->ahead before those where contacts act. */
+static void add_place(const struct small_run *r, struct spring_place *y,
+                      struct small_spring_sums *to)
 {
-    place_now(r, y);
-    const double un = dot3(y->n, y->u), xn = y->gap - y->x[SPRING_REST];
-    for (int j = 0; j < 3 && xn < 0; j++) y->x[SPRING_X + j] -= r->ahead * (y->u[j] - un * y->n[j]);
-    return small_spring_energy(y->x, xn - r->ahead * un, r->h);
+    const struct small_stretch *at = &y->at;
+    place_now(y);
+    const double un = dot3(at->n, at->u);
+    const bool acts = y->x[SPRING_BETA] > 0 || at->gap < y->x[SPRING_REST];
+    for (int j = 0; j < 3 && acts; j++) y->x[SPRING_X + j] -= r->ahead * (at->u[j] - un * at->n[j]);
+    to->stored += small_spring_energy(y->x, at->gap - r->ahead * un, r->h);
+    to->broken += y->x[SPRING_GIVEN];
 }
 
-double small_springs_stored_points(const struct small_run *r, const struct body *of)
+struct small_spring_sums small_springs_points(const struct small_run *r, const struct body *of)
 {
     const struct small_list *l = r->l;
+    struct small_spring_sums sum = { 0, 0 };
     struct spring_place y;
-    double sum = 0;
     for (int64_t i = 0; l->stiffness && i < l->meetings.n; i++) {
         const struct small_meeting *m = &l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++)
-            if (place_point(r, m, &m->point[k], of, &y)) sum += stored_at(r, &y);
+            if (place_point(r, m, &m->point[k], of, &y)) add_place(r, &y, &sum);
     }
     return sum;
 }
 
-double small_springs_stored(const struct small_run *r)
+struct small_spring_sums small_springs_sums(const struct small_run *r)
 {
     const struct small_list *l = r->l;
+    struct small_spring_sums sum = { 0, 0 };
     struct spring_place y;
-    double sum = 0;
-    if (!l->s.spring) return 0;
+    if (!l->s.spring) return sum;
     for (int64_t i = 0; i < l->touches; i++)
-        if (place_touch(r, &l->touch[i], &y)) sum += stored_at(r, &y);
+        if (place_touch(r, &l->touch[i], &y)) add_place(r, &y, &sum);
     for (int64_t i = 0; i < l->pairs.n; i++)
-        if (place_slot(r, l->slot[i], &y)) sum += stored_at(r, &y);
+        if (place_slot(r, l->slot[i], &y)) add_place(r, &y, &sum);
     return sum;
 }
 
@@ -336,11 +412,16 @@ double small_springs_stored(const struct small_run *r)
 
 static bool keep_place(const struct small_run *r, struct spring_place *y, struct bond *b)
 {
-    place_now(r, y);
-    if (!(y->gap < 0)) return false;
-    b->pressed = 1, b->gap = y->gap, b->n = small_vec(y->n);
-    b->rest = y->x[SPRING_REST], b->slip = small_vec(y->x + SPRING_X);
-    if (r->p->law[packing_pair(r->p, b->a, b->b)].soft > 0) b->spring = y->x[SPRING_KN] / r->h;
+    const struct pair_law *law = &r->p->law[packing_pair(r->p, b->a, b->b)];
+    place_now(y);
+    const double *x = y->x, gap = y->at.gap;
+    const bool bonded = x[SPRING_HELD] > 0 && (x[SPRING_BETA] > 0 || gap <= x[SPRING_TOUCH]);
+    const bool pressed = x[SPRING_KN] > 0 && !(x[SPRING_BETA] > 0) && gap < 0;
+    if (!bonded && !pressed) return false;
+    b->gap = gap, b->n = small_vec(y->at.n), b->slip = small_vec(x + SPRING_X);
+    b->beta = x[SPRING_BETA];
+    if (pressed) b->pressed = 1, b->rest = x[SPRING_REST];
+    if (pressed && law->soft > 0) b->spring = x[SPRING_KN] / r->h;
     return true;
 }
 
@@ -368,11 +449,16 @@ void small_springs_law(struct contact_law *law, const struct packing *p, const s
 {
     const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
     const double W = inverse_mass(p, c->a) + inverse_mass(p, c->b);
-    if (!pair_law_springs(l)) return;
-    law->spring[0] = l->soft > 0 ? 1 / (l->soft * W * p->dt * p->dt) : l->kn;
-    law->spring[1] = l->soft > 0 ? SPRING_ACROSS * law->spring[0] : l->kt;
-    law->jump[0] = c->gap;
-    if (!b || !b->pressed) return;
-    law->jump[0] -= b->rest;
-    law->jump[1] = v3_dot(b->slip, c->t1), law->jump[2] = v3_dot(b->slip, contact_t2(c));
+    if (b) law->jump[1] = v3_dot(b->slip, c->t1), law->jump[2] = v3_dot(b->slip, contact_t2(c));
+    if (b && pair_law_adheres(l) && (b->beta > 0 || !(b->wet || b->pressed)))
+        law->state |= CONTACT_LAW_BONDED;
+    if (b && b->beta > 0) {
+        const double S = contact_laws_area(p, c) * b->beta * b->beta;
+        law->beta = b->beta, law->stiff[0] = S * l->cn, law->stiff[1] = S * l->ct;
+        law->jump[0] = fmax(0, c->gap);
+    } else if (pair_law_springs(l)) {
+        law->spring[0] = l->soft > 0 ? 1 / (l->soft * W * p->dt * p->dt) : l->kn;
+        law->spring[1] = l->soft > 0 ? SPRING_ACROSS * law->spring[0] : l->kt;
+        law->jump[0] = c->gap - (b && b->pressed ? b->rest : 0);
+    }
 }

@@ -49,10 +49,10 @@ const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
+    if (packing_adheres(p) && (p->shape || p->mesh.elements))
+        return "adhesion of grains that are no balls";
     if (small_springs_stiff(p))
-        return "contacts so stiff that a step has more than 1000 small ones";
-    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
-        if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
+        return "contacts or bonds so stiff that a step has more than 1000 small ones";
     return NULL;
 }
 
@@ -175,7 +175,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
             r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
             r->stored = ties.stored - ties.joined +
-                        small_springs_stored(r); // bridges that are new are of this interval
+                        small_springs_sums(r).stored; // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
@@ -233,10 +233,10 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->bond_energy =
-        ties.stored + small_springs_stored(r) + small_springs_stored_points(r, l->s.body);
+    const struct small_spring_sums springs = small_springs_sums(r);
+    b->bond_energy = ties.stored + springs.stored + small_springs_points(r, l->s.body).stored;
     b->bond_change = b->bond_energy - r->stored;
-    b->broken = -ties.joined;
+    b->broken = springs.broken - ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
