@@ -7,7 +7,8 @@
  *     f_n = max(0, - h k_n x_n - G_n u_n) where x_n < 0, else 0
  *     f_t = - h k_t x_t - G_t u_t, on the disc of mu f_n,          G = 2 zeta h sqrt(k/W)
  *
- * with u the velocities after the step, so that dashpots lose energy at any h. x is explicit: without dashpots this is the
+ * with u the velocities after the step, so that dashpots lose energy at any h; in the first step of an impact G is times the time
+ * since x_n was 0 and h/2, over h, because velocities are those half a step from x. x is explicit: without dashpots this is the
  * leapfrog scheme, which keeps the energy of an oscillator and is stable for k h^2 W < 4. zeta is the damping ratio with which a
  * pair alone rebounds with its restitution, e_n along n and e_t across [step/small_springs.h]. As of one solve per step
  * [contact/spring.h], k_t x_t is at most mu k_n |x_n|, x_t turns with n and the mean spin of the pair, and g_0 is the gap with
@@ -36,7 +37,8 @@ enum small_spring {
     SPRING_X,    /* m: x_t, in space */
     SPRING_Y,
     SPRING_Z,
-    SPRING_DUE, /* s: x_t grows by so much of u, of the velocities with which the step begins */
+    SPRING_DUE,  /* s: x_t grows by so much of u, of the velocities with which the step begins */
+    SPRING_PART, /* of the step, for which dashpots push; 0: springs do not */
     SPRING_BETA,
     SPRING_HELD,  /* 1: a bond that holds, or that has broken, of bodies that have not parted; 0 */
     SPRING_GIVEN, /* J: what breaking has given up in this interval */
@@ -133,6 +135,9 @@ ALWAYS_INLINE void small_spring_begin(vd x[SPRING_COUNT], const struct small_str
     for (int i = 0; i < 3; i++) t[i] = cut * t[i], q[i] = push * -n[i] + x[SPRING_KT] * t[i];
     x[SPRING_DUE] = pick(bonded | lt(zero, push), splat(y->h), zero);
     x[SPRING_REST] = rest + y->rise;
+    vd since = pick(lt(un, zero), (gap - rest) / (y->h * un), one), was = x[SPRING_PART];
+    since = 0.5 + pick(lt(since, one), since, one);
+    x[SPRING_PART] = pick(lt(zero, push), pick(lt(zero, was), one, since), zero);
 }
 
 /* J: of springs or of a bond, at this gap (m), in steps of h (s) */

@@ -263,9 +263,10 @@ ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct smal
     return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
 }
 
-/* The law in the first sweep of a step, where pairs may have springs or bonds x */
+/* The law in the first sweep of a step, where pairs may have springs or bonds x, of which those that do not act keep what they have,
+   whatever the width */
 ALWAYS_INLINE void small_spring_pairs(const struct small_pairs *y, const struct small *s,
-                                      struct small_law *l, vd x[SPRING_COUNT])
+                                      struct small_law *l, vm acts, vd x[SPRING_COUNT])
 {
     double(*to)[BUNDLE] = s->spring[y->i].x;
     const int k = y->k;
@@ -278,7 +279,10 @@ ALWAYS_INLINE void small_spring_pairs(const struct small_pairs *y, const struct 
     for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j], at.n[j] = l->n[j];
     at.spin = 0.5 * s->rate.h * dot3(w, l->n), at.pushed = lt(splat(0), dot3(l->n, l->f));
     small_spring_begin(x, &at, q);
-    for (int j = SPRING_REST; j <= SPRING_GIVEN; j++) vstore(to[j] + k, x[j]);
+    for (int j = SPRING_REST; j <= SPRING_GIVEN; j++) {
+        x[j] = pick(acts, x[j], vload(to[j] + k));
+        vstore(to[j] + k, x[j]);
+    }
     vm springs = small_spring_acts(x);
     small_bond_pull(x, l->n, l->gap, p);
     small_begin(y, s, l, p, small_bond_stills(x));
@@ -332,15 +336,16 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
     vd x[SPRING_COUNT];
     for (int j = 0; j < SPRING_COUNT && rich && s->spring; j++) x[j] = vload(s->spring[i].x[j] + k);
+    if (rich && s->spring) acts = acts | small_bond_holds(x);
     if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, dp), acts = acts | holds;
     if (rich && s->stick && !hot) small_stick_pairs(&y, s, &l);
     if (hot)
         small_load(l.q, y.c->q, k), acts = acts & *hot;
     else if (rich && s->spring)
-        small_spring_pairs(&y, s, &l, x), small_turned(&y, &l, couple);
+        small_spring_pairs(&y, s, &l, acts, x), small_turned(&y, &l, couple);
     else
         small_begin(&y, s, &l, NULL, NONE), small_turned(&y, &l, couple);
-    if (rich && s->spring) holds = holds | small_bond_holds(x), acts = acts | small_bond_holds(x);
+    if (rich && s->spring) holds = holds | small_bond_holds(x);
     l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     if (rich && s->spring)
         small_solve_springs(&l, x, s->rate.h, df);

@@ -25,7 +25,8 @@ enum { BISECTIONS = 40 };
 
 /* ---- what pairs of materials give ---- */
 
-/* Of a pair alone, whose spring is damped by zeta: its speed when it parts, in units of that before, in steps of h */
+/* Of a pair alone, whose spring is damped by zeta: its speed when it parts, in units of that before, in steps of h. It has touched
+   half a step before the first one. */
 static double rebound(double zeta, double h)
 {
     double x = -0.5 * h, u = -1;
@@ -268,7 +269,7 @@ static void spring_recall(double x[SPRING_COUNT], const struct bond *b, double h
     const double times = b->spring > 0 && x[SPRING_KN] > 0 ? b->spring * h / x[SPRING_KN] : 1;
     x[SPRING_REST] = b->pressed ? fmin(0, b->rest + (1 - times) * (b->gap - b->rest)) : 0;
     small_array(x + SPRING_X, v3_scale(times, b->slip));
-    x[SPRING_DUE] = 0;
+    x[SPRING_DUE] = 0, x[SPRING_PART] = b->pressed;
     if (x[SPRING_SN] > 0) x[SPRING_BETA] = b->beta, x[SPRING_HELD] = 1;
 }
 
