@@ -1,5 +1,6 @@
 #include "base/option.h"
 
+#include "base/renamed.h"
 #include "base/text.h"
 
 #include <ctype.h>
@@ -29,6 +30,8 @@ static int set_choice(const struct cli_option *o, int *to, const char *text,
     char words[200];
     for (int k = 0; o->choice(k).name; k++)
         if (!strcmp(o->choice(k).name, text)) return *to = k, 0;
+    const struct renamed *r = renamed_find(o->name, text, strlen(text));
+    if (r) return set_choice(o, to, r->is, failure);
     for (const struct cli_choice *g = o->gone; g && g->name; g++)
         if (!strcmp(g->name, text))
             return failure_set(failure, EX_USAGE, "--%s: %s is no longer available: %s", o->name,

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-const char *const part_name[PART_COUNT] = { "grains", "contacts", "boundary", "cell", "surfaces" };
+const char *const part_name[PART_COUNT] = { "grains", "contacts", "walls", "cell", "surfaces" };
 
 /* m: the least and the greatest of (direction . x) -+ radius over the grains; 0 and 1 without any */
 static void format_reach(const struct packing *p, vec3 direction, double *lo, double *hi)

@@ -73,7 +73,7 @@ static void sheet_walls_put(double *out, int64_t i, vec3 x)
 static int sheet_walls_add_columns(struct sheet *s, const struct owners *o, const struct packing *p,
                                    struct failure *failure)
 {
-    int32_t *number = sheet_whole(s, "boundary", "", failure),
+    int32_t *number = sheet_whole(s, "wall", "", failure),
             *material = sheet_whole(s, "material", "", failure);
     double *point = sheet_real(s, "point", "xyz", failure),
            *n = sheet_real(s, "normal", "xyz", failure);
@@ -124,7 +124,7 @@ static int add_sums(struct sheet *s, const struct owners *o, const struct packin
     double *force = sheet_real(s, "mean_force", "xyz", failure);
     double *pressure = sheet_real(s, "mean_pressure", "", failure);
     double *friction = sheet_real(s, "friction_work", "", failure),
-           *rub = sheet_real(s, "rub", "", failure);
+           *rub = sheet_real(s, "sliding_work", "", failure);
     double *wear = sheet_real(s, "wear", "", failure);
     for (int64_t k = 0; !failure->status && o->of && k < s->cells; k++) {
         const struct owner of = o->of[k];

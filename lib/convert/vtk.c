@@ -17,12 +17,12 @@
 enum { DETAIL = 1 /* of what is round: 80 triangles a ball */ };
 
 static const enum part part_of[] = { PART_SURFACES, PART_WALLS };
-static const char *const path_of[] = { "/VTKHDF/surfaces", "/VTKHDF/boundary" };
+static const char *const path_of[] = { "/VTKHDF/surfaces", "/VTKHDF/walls" };
 
 /* Columns that say which grain or wall a cell is of; what else a sheet has is in the grains. */
 static bool vtk_is_wanted(const struct sheet_column *c)
 {
-    static const char *const wanted[] = { "id", "material", "shape", "boundary" };
+    static const char *const wanted[] = { "id", "material", "shape", "wall" };
     bool any = false;
     for (size_t k = 0; c->whole && k < sizeof wanted / sizeof *wanted; k++)
         any |= !strcmp(c->name, wanted[k]);

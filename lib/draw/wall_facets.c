@@ -12,7 +12,7 @@ const struct surface_meaning surface_meaning[SURFACE_COUNT] = {
     [SURFACE_NAME] = { "name", "", "one colour per name" },
     [SURFACE_PRESSURE] = { "pressure", "Pa", "mean pressure of the run, from sums" },
     [SURFACE_FRICTION] = { "friction", "J/m2", "work of friction per m2, from sums" },
-    [SURFACE_RUB] = { "rub", "J/m2",
+    [SURFACE_RUB] = { "sliding_work", "J/m2",
                       "normal force times sliding distance per m2, from sums: wear over a "
                       "coefficient" },
 };

@@ -69,7 +69,7 @@ for t in angle balls; do
     with 'numbers | map([.[0], .[1]]) | spread[] | "\(.[0]) \(.[1]) \(.[2] // 0)"' -Rsr "$out/$t.tsv" >"$out/$t-mean.tsv"
 done
 curve
-picture -c speed --boundaries lines "$out/drawn.h5"
+picture -c speed --walls lines "$out/drawn.h5"
 with '. as $lines | ($angle | numbers) as $a | ($balls | numbers) as $b | ($a | map(.[0]) | min) as $slowest |
     def by_seed(f): $lines | group_by(.s) | map(map(f) | mean);
     ($a | map([.[0], .[1]]) | spread) as $curve |

@@ -40,7 +40,7 @@ done >"$out/flow.tsv"
 with 'numbers | map([.[0], (.[2] | pow(.; 0.4))]) | (spread[] | map(. // 0) | @tsv), "", "", (line | "\(.a) \(.b)")' -Rrs "$out/flow.tsv" >"$out/curve.tsv"
 curve
 last="open-${widths[-1]}-${seeds[0]}.h5"
-picture -c speed --clip 0,1,0,0 --boundaries lines --step "$(nsd-info "$out/$last" | jq -s 'map(.step // empty) | max')" "$out/$last"
+picture -c speed --clip 0,1,0,0 --walls lines --step "$(nsd-info "$out/$last" | jq -s 'map(.step // empty) | max')" "$out/$last"
 with '0.002 as $d | (numbers | map(select(length == 5))) as $all | ($all | length / $seeds) as $n |
     # one fit for each seed, with the density of its fill
     [range($seeds) as $k | $all[$k * $n : ($k + 1) * $n] | (map([.[0], (.[2] | pow(.; 0.4))]) | line) as $l |

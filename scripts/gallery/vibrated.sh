@@ -31,7 +31,7 @@ for seed in "${seeds[@]}"; do
 done
 with 'numbers as $all | $all | map(.[:2]) | spread[] as $f | [$f[0], $f[1], $f[2] // 0, ($all | map(select(.[0] == $f[0]))[0][2])] | @tsv' -Rrs "$out/flight.tsv" >"$out/curve.tsv"
 curve
-picture -c force --boundaries lines "$out/bed.h5"
+picture -c force --walls lines "$out/bed.h5"
 with 'numbers as $all | ($all | length / $seeds) as $n | [range($seeds) as $k | $all[$k * $n : ($k + 1) * $n]] as $runs |
     row("rest"; $runs | map(map(select(.[0] < 1) | .[1]) | max)),
     row("low flight"; $runs | map(map(select(.[0] > 1 and .[0] <= 2) | .[1] - .[2] | fabs) | max)),

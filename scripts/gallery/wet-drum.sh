@@ -40,7 +40,7 @@ curve='def drums: split("\n")[1:] | map(select(. != "") | split(" ") | map(tonum
 with "$curve"' drums | curve[] | map(. // 0) | join(" ")' -Rsr "$out/angle.tsv" >"$out/mean.tsv"
 with "$curve"' drums | group_by(.[0])[] | select(any(.[1] == null)) | .[0][0]' -Rsr "$out/angle.tsv" >"$out/lumps.tsv"
 curve
-picture -c speed --boundaries lines "$out/drawn.h5"
+picture -c speed --walls lines "$out/drawn.h5"
 with "$curve"' def falls($k): [range(1; length) as $i | select(.[$i][$k] < .[$i - 1][$k])] | length;
     ($angles | drums) as $d | ($d | curve) as $c | ($c | map(.[0]) | max) as $last |
     def at($x; $k): $d | map(select(.[0] == $x) | .[$k]);

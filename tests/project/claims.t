@@ -39,7 +39,7 @@ words_of() # PAGE
     *) cat "$page" ;;
     esac | tr -s '[:space:]' ' ' | sed -E 's/ ([,.;:)])/\1/g; s/\( /(/g'
 }
-has() { words_of "$1" | grep -qF -- "$2"; } # PAGE WORDS
+has() { words_of "$1" | grep -F -- "$2" >/dev/null; } # PAGE WORDS
 
 # ---- the table ----
 

@@ -67,9 +67,9 @@ def check_contacts(path, frame):
     assert abs(across - data["tangential_force"]).max() <= 1e-12 * largest
 
 
-def check_boundary(path, frame):
+def check_walls(path, frame):
     x, cells, _, data, _ = vtk_read(path)
-    same(sorted(data["boundary"]), range(5))
+    same(sorted(data["wall"]), range(5))
     for k, corners in enumerate(cells):
         assert len(corners) >= 3
         off = (x[corners] - data["point"][k]) @ data["normal"][k]
@@ -83,14 +83,14 @@ def directory(document, folder, ending):
     for k, frame in enumerate(frames):
         check_grains(f"{folder}/grains-{k:05}.{ending}", frame)
         check_contacts(f"{folder}/contacts-{k:05}.{ending}", frame)
-        check_boundary(f"{folder}/boundary-{k:05}.{ending}", frame)
+        check_walls(f"{folder}/walls-{k:05}.{ending}", frame)
     assert not glob.glob(folder + "/cell*")  # nothing repeats
 
 
 def pvd(document, folder):
     import xml.etree.ElementTree as tree
     frames = list(nsd.frames(document))
-    for part in "grains", "contacts", "boundary":
+    for part in "grains", "contacts", "walls":
         sets = list(tree.parse(f"{folder}/{part}.pvd").getroot().iter("DataSet"))
         same([float(s.get("timestep")) for s in sets], [f.time for f in frames])
         assert all(os.path.exists(f"{folder}/{s.get('file')}") for s in sets)

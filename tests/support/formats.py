@@ -216,7 +216,7 @@ def blocks(document, density):
     flags = h5py.h5p.CRT_ORDER_TRACKED | h5py.h5p.CRT_ORDER_INDEXED
     for group in top, top["Assembly"]:
         assert group.id.get_create_plist().get_link_creation_order() == flags
-    for k, name in enumerate(("grains", "surfaces", "boundary")):
+    for k, name in enumerate(("grains", "surfaces", "walls")):
         assert top[name].attrs["Index"] == k
         assert isinstance(top["Assembly"].get(name, getlink=True), h5py.SoftLink)
         assert check_structure(top[name]) == len(frames)
@@ -227,8 +227,8 @@ def blocks(document, density):
         for i in np.flatnonzero(shape):
             mine = [p for p, owner in zip(s["Polygons"], s["id"]) if owner == frame.id[i]]
             near(volume_of(s["points"], mine) * density, frame.mass[i], frame.mass[i], 1e-5)
-        walls = vtk_step(top["boundary"], f)
-        assert len(walls.get("Polygons", [])) == len(walls["boundary"]) > 0
+        walls = vtk_step(top["walls"], f)
+        assert len(walls.get("Polygons", [])) == len(walls["wall"]) > 0
 
 
 def collection(document):
@@ -236,11 +236,11 @@ def collection(document):
     import h5py
     frames = list(nsd.frames(document))
     top = h5py.File(document)["VTKHDF"]
-    for name in "grains", "surfaces", "boundary":
+    for name in "grains", "surfaces", "walls":
         assert check_structure(top[name]) == len(frames)
         for f in range(len(frames)):
             step = vtk_step(top[name], f)
-            assert name != "boundary" or f < len(frames) - 1 or len(step["boundary"]) > 0
+            assert name != "walls" or f < len(frames) - 1 or len(step["wall"]) > 0
     check_grains(top["grains"], frames)
 
 

@@ -90,6 +90,10 @@ global=nlgs solver=nlgs
 overlap=keep overlap-rule=keep
 eps=1e-3 tolerance=1e-3
 END
+ok "nsd-view --boundaries is --walls" cmp <(nsd-view --size 64x64 --boundaries lines "$tmp/heap.h5" 2>/dev/null) <(nsd-view --size 64x64 --walls lines "$tmp/heap.h5" 2>/dev/null)
+ok "nsd-export --part boundary is --part walls" cmp <(nsd-export -t csv -p boundary "$tmp/heap.h5") <(nsd-export -t csv -p walls "$tmp/heap.h5")
+is "nsd-view --surface rub is sliding_work" "$(nsd-view --surface rub "$tmp/heap.h5" 2>&1 >/dev/null)" "$(nsd-view --surface sliding_work "$tmp/heap.h5" 2>&1 >/dev/null)"
+is "which --help has, not the former words" "$(for t in view export; do "nsd-$t" --help; done | grep -cwE 'rub|boundary|boundaries')" 0
 ok "nsd-step --sums is --wall-loads" cmp <(step -n 2 --sums "$tmp/heap.h5") <(step -n 2 --wall-loads "$tmp/heap.h5")
 walls() { nsd-step -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" "$1" all "$tmp/heap.h5" >/dev/null 2>&1 && cat "$tmp/told"; }
 ok "--with-boundaries is --with-walls" cmp <(walls --with-boundaries) <(walls --with-walls)

@@ -108,7 +108,7 @@ for part in grains contacts; do
     other "a table of $part by tabs" h5py table "$tmp/$part.tsv" "$tmp/out.h5" $part '\t'
 done
 ok "a table in a pipe is the same" cmp "$tmp/grains.csv" <(nsd-cat "$tmp/out.h5" | cat | nsd-export --to csv)
-is "five walls" "$(nsd-export --to csv --last --part boundary "$tmp/out.h5" | wc -l)" 6
+is "five walls" "$(nsd-export --to csv --last --part walls "$tmp/out.h5" | wc -l)" 6
 for detail in 0 2; do
     nsd-export --last --detail $detail -o "$tmp/out.stl" "$tmp/out.h5"
     other "VTK reads STL, balls of detail $detail" vtk stl "$tmp/out.stl" "$tmp/out.h5" $detail
@@ -192,7 +192,7 @@ if nsd-gen "$tmp/one.json" >"$tmp/one.h5" 2>/dev/null; then
     for format in vtp vtu xyz lammps csv tsv stl; do
         status 0 "one disc, no wall, no contact: $format" nsd-export --to $format "$tmp/one.h5"
     done
-    refuses 65 "no boundary to export" nsd-export --to csv --part boundary "$tmp/one.h5"
+    refuses 65 "no wall to export" nsd-export --to csv --part walls "$tmp/one.h5"
 else
     ok "a scene of one disc" false
 fi

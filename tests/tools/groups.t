@@ -68,7 +68,7 @@ refuses 65 "walls, and no measure of walls" nsd-stat -m coordination --only floo
 refuses 65 "bodies, and no measure of bodies" nsd-stat -m boundaries --only charge "$tmp/run.h5"
 refuses 65 "fields of a group" nsd-stat -m fraction --only charge -f "$tmp/f.h5" "$tmp/run.h5"
 refuses 65 "grains by the name of a wall" nsd-export -l --to csv --only floor "$tmp/run.h5"
-refuses 65 "boundaries by the name of a group" nsd-export -l --to csv --part boundary --only charge "$tmp/run.h5"
+refuses 65 "boundaries by the name of a group" nsd-export -l --to csv --part walls --only charge "$tmp/run.h5"
 refuses 64 "the cell by a name" nsd-export -l --to csv --part cell --only charge "$tmp/run.h5"
 refuses 65 "bodies drawn by the name of a wall" nsd-view --only floor "$tmp/run.h5"
 refuses 65 "or by none" nsd-view --only lid "$tmp/run.h5"
@@ -89,7 +89,7 @@ is "triangles of STL: of the bodies that are chosen, and of walls that are named
     "$(nsd-export -l --to stl --only intruder,floor "$tmp/run.h5" | od -An -tu4 -j80 -N4 | tr -d ' ')"
 mkdir "$tmp/dir"
 nsd-export -l --only charge -o "$tmp/dir/" "$tmp/run.h5"
-ok "a directory has boundaries and contacts, too" test -s "$tmp/dir/boundary-00000.vtp" -a -s "$tmp/dir/contacts-00000.vtp"
+ok "a directory has boundaries and contacts, too" test -s "$tmp/dir/walls-00000.vtp" -a -s "$tmp/dir/contacts-00000.vtp"
 nsd-export --only rain -o "$tmp/rain.gsd" "$tmp/run.h5"
 ok "a trajectory of a group that comes and goes" test -s "$tmp/rain.gsd"
 done_testing

@@ -102,7 +102,7 @@ for doc in without unwalled empty bare; do
     refuses 65 "--tracer, $doc" nsd-stat -m fraction --tracer gravel "$tmp/$doc.h5"
     like "and the materials are named" "$(cat "$tmp/err")" "no material 'gravel' here, but large, ball, wall"
     for part in -p -w -c; do refuses 65 "nsd-info $part --only, $doc" nsd-info "$part" --only NOSUCH "$tmp/$doc.h5"; done
-    refuses 65 "nsd-export --only, $doc" nsd-export --to csv --part boundary --only NOSUCH "$tmp/$doc.h5"
+    refuses 65 "nsd-export --only, $doc" nsd-export --to csv --part walls --only NOSUCH "$tmp/$doc.h5"
     like "and names are named" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"
     refuses 65 "nsd-view --solid, $doc" nsd-view --solid NOSUCH --surface pressure "$tmp/$doc.h5"
     like "and names are named" "$(cat "$tmp/err")" "no 'NOSUCH' here, but"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Walls with names in pictures and exports: nsd-view --solid and --surface, the legend of kinds and names, forces and sums
-# on nsd-export --part boundary and surfaces.
+# on nsd-export --part walls and surfaces.
 # shellcheck source=tests/support/tap.sh disable=SC2317,SC2054,SC2016 # functions called by name; commas are of the options; eval
 . tests/support/tap.sh
 
@@ -66,7 +66,7 @@ read -r f1 _ f3 < <(pixel "$tmp/dark.png" 180 50)
 is "--surface-range" "$((f3 > f1))" 1
 ok "without them pictures are as before: glass" eval '! cmp -s "$tmp/glass.png" "$tmp/left.png"'
 ok "threads do not change a picture" cmp "$tmp/floor.png" <(view "${look[@]}" -j 2 --solid floor "$tmp/run.h5")
-ok "--boundaries lines leaves solid ones" eval 'view "${look[@]}" --boundaries lines --solid left "$tmp/run.h5" >"$tmp/lines.png" && read -r g1 _ g3 < <(pixel "$tmp/lines.png" 20 150) && [ "$g1" -gt "$((g3 + 30))" ]'
+ok "--walls lines leaves solid ones" eval 'view "${look[@]}" --walls lines --solid left "$tmp/run.h5" >"$tmp/lines.png" && read -r g1 _ g3 < <(pixel "$tmp/lines.png" 20 150) && [ "$g1" -gt "$((g3 + 30))" ]'
 height() { od -An -j 20 -N 4 -t u1 --endian=big "$1" | awk '{ print $3 * 256 + $4 }'; }
 view --size 400x400 -c material "$tmp/run.h5" >"$tmp/kinds.png"
 view --size 400x400 -c material --solid floor "$tmp/run.h5" >"$tmp/both.png"
@@ -81,12 +81,12 @@ refuses 64 "a range the wrong way round" nsd-view --solid floor --surface-range 
 nsd-gen -d 2 10 >"$tmp/discs.h5"
 refuses 64 "in the plane boundaries are lines" nsd-view --solid 0 "$tmp/discs.h5"
 nsd-gen 10 >"$tmp/none.h5"
-refuses 65 "colours by sums that there are not" nsd-view --surface rub "$tmp/none.h5"
+refuses 65 "colours by sums that there are not" nsd-view --surface sliding_work "$tmp/none.h5"
 like "says what keeps them" "$(cat "$tmp/err")" 'nsd-step --wall-loads'
 
 # ---- exports ----
 
-export_() { nsd-export --to csv --last --part boundary "$@" "$tmp/run.h5" 2>/dev/null; }
+export_() { nsd-export --to csv --last --part walls "$@" "$tmp/run.h5" 2>/dev/null; }
 column() { awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i } NR > 1 && k { print $k }'; }
 g=$(nsd-info --last -p "$tmp/run.h5" | jq -s -r 'map(.mass * 9.81) | @tsv')
 export_ >"$tmp/boundary.csv"
@@ -97,7 +97,7 @@ is "and pressures, on 2 m2 each" "$(export_ --only floor | column mean_pressure 
 is "--only a part: its faces" "$(export_ --only right | column face)" 1
 is "the columns of wear" "$(export_ --only lid | column wear | sort -u)" 0
 refuses 65 "grains have no names of walls" nsd-export --to csv --only floor "$tmp/run.h5"
-refuses 65 "a name that is not there" nsd-export --to csv --part boundary --only lids --last "$tmp/run.h5"
+refuses 65 "a name that is not there" nsd-export --to csv --part walls --only lids --last "$tmp/run.h5"
 jq -n '{ dt: 1e-3, shapes: { box: { box: [0.2, 0.2, 0.2] } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }], bodies: [{ x: [0, 0, 0.1], shape: "box", size: 1 }] }' |
     nsd-gen - | nsd-step -n 5 --contacts --tolerance 1e-12 -o "$tmp/box.h5" 2>/dev/null
 is "surfaces have the force of contacts on their grain" \

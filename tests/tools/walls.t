@@ -217,7 +217,7 @@ done
 nsd-view --size 200x200 "$tmp/drum-out.h5" >"$tmp/drum.png"
 nsd-view --size 200x200 --plain "$tmp/mesh-out.h5" >"$tmp/mesh.png"
 ok "a picture shows boundaries" test -s "$tmp/drum.png" -a -s "$tmp/mesh.png"
-nsd-export --to stl --last --part boundary -o "$tmp/again.stl" "$tmp/mesh.h5"
+nsd-export --to stl --last --part walls -o "$tmp/again.stl" "$tmp/mesh.h5"
 ok "the triangles leave as they came" numbers "$tmp/scene/drum.stl" "$tmp/again.stl" <<'END'
 import sys, struct, numpy as np
 def read(name):
