@@ -234,9 +234,10 @@ ALWAYS_INLINE void small_solve_soft(const struct small_law *l, const vd x[SPRING
     vd un, qn, rn, ut[3], qt[3], zero = splat(0);
     small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
     small_split(l->n, l->f, &rn, rt);
-    vd gn = x[SPRING_PART] * x[SPRING_GN], gt = x[SPRING_PART] * x[SPRING_GT];
+    vd gn = x[SPRING_PART] * x[SPRING_GN] + x[SPRING_YIELD] * x[SPRING_KN];
+    vd gt = x[SPRING_PART] * x[SPRING_GT] + x[SPRING_YIELD] * x[SPRING_KT];
     *fn = rn - (rn + qn + gn * un) / (1 + gn * l->wn);
-    *fn = pick(lt(qn, zero), larger(*fn, zero), zero);
+    *fn = pick(lt(qn, zero) | lt(zero, x[SPRING_YIELD]), larger(*fn, zero), zero);
     vd s = 1 / (1 + gt * l->wt);
     for (int i = 0; i < 3; i++) rt[i] -= s * (rt[i] + qt[i] + gt * ut[i]);
     small_cut(l->mu * *fn, rt);

@@ -33,8 +33,9 @@ enum small_spring {
     SPRING_KT,
     SPRING_GN, /* kg */
     SPRING_GT,
-    SPRING_REST, /* m: g_0 */
-    SPRING_X,    /* m: x_t, in space */
+    SPRING_YIELD, /* s: h where springs are implicit, by x + h u, because a load moves the wall; 0 */
+    SPRING_REST,  /* m: g_0 */
+    SPRING_X,     /* m: x_t, in space */
     SPRING_Y,
     SPRING_Z,
     SPRING_DUE,  /* s: x_t grows by so much of u, of the velocities with which the step begins */
@@ -114,7 +115,7 @@ struct small_stretch {
     double h, rise; /* m: of g_0 in a step */
 };
 
-/* Where the step begins: x_t, g_0 and the bond. q (N s): minus what springs push by, 0 where x_n >= 0 */
+/* Where the step begins: x_t, g_0 and the bond. q (N s): minus what springs push by if u = 0; above 0 where they yield, and push later in the step */
 ALWAYS_INLINE void small_spring_begin(vd x[SPRING_COUNT], const struct small_stretch *y, vd q[3])
 {
     const vd *n = y->n, *u = y->u, gap = y->gap;
@@ -132,7 +133,8 @@ ALWAYS_INLINE void small_spring_begin(vd x[SPRING_COUNT], const struct small_str
     vm bonded = small_bond_holds(x);
     vd t2 = dot3(t, t), most = pick(lt(zero, push), y->mu * push / x[SPRING_KT], zero);
     vd cut = pick(~bonded & lt(most * most, t2), most / root(t2), one);
-    for (int i = 0; i < 3; i++) t[i] = cut * t[i], q[i] = push * -n[i] + x[SPRING_KT] * t[i];
+    vd qn = pick(lt(zero, x[SPRING_YIELD]), x[SPRING_KN] * (gap - rest), -push);
+    for (int i = 0; i < 3; i++) t[i] = cut * t[i], q[i] = qn * n[i] + x[SPRING_KT] * t[i];
     x[SPRING_DUE] = pick(bonded | lt(zero, push), splat(y->h), zero);
     x[SPRING_REST] = rest + y->rise;
     vd since = pick(lt(un, zero), (gap - rest) / (y->h * un), one), was = x[SPRING_PART];

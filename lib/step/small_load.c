@@ -152,8 +152,9 @@ static double loaded_at(const struct small_loaded *y, double h, double ds, struc
     small_touch_solve(y->t, l, h, df);
     f2 = dot3(l->f, l->f) - l->rn * l->rn, top = l->mu * l->rn;
     if (small_spring_acts(y->t->spring)) {
-        const double *x = y->t->spring, gn = x[SPRING_PART] * x[SPRING_GN],
-                     gt = x[SPRING_PART] * x[SPRING_GT];
+        const double *x = y->t->spring;
+        const double gn = x[SPRING_PART] * x[SPRING_GN] + x[SPRING_YIELD] * x[SPRING_KN];
+        const double gt = x[SPRING_PART] * x[SPRING_GT] + x[SPRING_YIELD] * x[SPRING_KT];
         if (l->rn > 0) *slope += v3_dot(along, along) * gn / (1 + gn * l->wn);
         if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) * gt / (1 + gt * l->wt);
         return v3_dot(y->D, small_vec(df));

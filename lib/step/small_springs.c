@@ -95,6 +95,7 @@ void small_springs_set(double x[SPRING_COUNT], const struct small_list *l, const
     double kn = k->kn, kt = k->kt;
     if (k->soft > 0) kn = 1 / (k->soft * W * l->interval * l->interval), kt = SPRING_ACROSS * kn;
     x[SPRING_KN] = x[SPRING_KT] = x[SPRING_GN] = x[SPRING_GT] = 0;
+    x[SPRING_YIELD] = a < 0 && p->wall[-1 - a].load.way ? h : 0;
     set_bond(x, p, a, b);
     if (!(kn > 0) || !isfinite(kn)) return;
     x[SPRING_KN] = h * kn, x[SPRING_KT] = h * kt;

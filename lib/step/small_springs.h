@@ -22,7 +22,7 @@ struct small_stiffness {
 /* [materials^2] l->stiffness, of a packing with springs or bonds. False when memory is short. */
 bool small_springs_table(struct small_list *l, const struct packing *p);
 /* x = that of bodies a (< 0: wall -1-a) and b, in steps of the packing's dt; wn, wt: 1/kg, of the contact along n and across. What
-   lasts is not set. */
+   lasts is not set. Springs at a wall that a load moves yield. */
 void small_springs_set(double x[SPRING_COUNT], const struct small_list *l, const struct packing *p,
                        int32_t a, int32_t b, double wn, double wt);
 

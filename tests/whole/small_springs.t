@@ -74,6 +74,18 @@ jq -n '{ dt: 1e-3, stiffness: 1e6, allow_overlap: true, walls: [{ normal: [0, 0,
 like "a ball that is in a floor rises at g dt" "$(nsd-info -p "$tmp/deep.h5" | jq -s '(map(.v[2]) | max) < 0.011 and (.[-1].x[2] | . > 0.00999)')" true
 rm "$tmp"/*.h5
 
+# a lid under 1 N on two balls, heavy or much lighter than they are
+for m in 5e-3 1e-7; do
+    for e in 0.3 1; do
+        jq -n --argjson m $m --argjson e $e '{ dt: 1e-3, e_n: $e, stiffness: 1e5, walls: [{ normal: [0, 0, 1], point: [0, 0, 0] },
+            { normal: [0, 0, -1], point: [0, 0, 0.0401], load: { along: [0, 0, 1], force: -1, mass: $m } }],
+            bodies: [{ x: [0, 0, 0.01], radius: 0.01 }, { x: [0, 0, 0.03], radius: 0.01 }] }' | nsd-gen - | step -n 300 --every 300 --log "$tmp/log" -o "$tmp/lid.h5"
+        like "a lid of $m kg on springs, e $e: they keep or lose energy, and carry it" "$(jq -s '(map(.balance.dissipation) | min) > -2e-5 and (map(.balance.kinetic) | max) < 1e-3' "$tmp/log")" true
+        [ $e = 1 ] || ok "and overlap by its force and the weights over k" near "$(last "$tmp/lid.h5" | jq -s '0.03 - .[1].x[2]')" "$(jq -n "(2 + 3 * $mass * 9.81) / 1e5")" 1e-6
+        rm "$tmp/lid.h5"
+    done
+done
+
 # ---- bytes, and the other way to make steps ----
 
 # same NAME STEPS: threads, lanes, and a run that goes on from a frame give the same bodies
