@@ -558,6 +558,8 @@ static void begin(struct run *r)
     struct frame *f = &r->f;
     r->driver.o = options_step(f->packing.dt, false);
     total.radii = options_small_of(&options, &f->packing);
+    if (options_order_alone(&options, &f->packing))
+        warn("one solve per step, as --order asks for: small steps have an order of their own");
     if (!f->distributed) r->driver.o.small = total.radii;
     warn_processes(f, &r->driver.o);
     if (flow_read(&r->driver.flow, &f->packing, &failure)) die_why(&failure);

@@ -166,7 +166,7 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
     self.moved = self.moved || made; // others have not heard of it
     if (made) return 0;
     const int status = mpi_processes_step(f, changes, parts, o, failure);
-    if (parts) step_forget_impulses(&f->packing, o);
+    step_after_parts(&f->packing, o, parts);
     return status;
 }
 

@@ -45,6 +45,12 @@ enum {
 #define UNSEEN 1e-3
 static const double ALLOWED[2] = { 0.67, 0.1 };
 
+/* Those whose loads or edges move fast, which one solve of a whole step would leave with overlaps */
+bool small_divides(const struct packing *p)
+{
+    return small_stress_light(p) || small_loads_heavy(p);
+}
+
 const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
@@ -298,23 +304,26 @@ static double small_steady(const struct packing *p)
     return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
 }
 
-/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair, if that is rigid */
 static double small_carries(const struct packing *p)
 {
     double most = 0;
     for (int64_t i = 0; i < p->memory.n; i++) {
         const struct recall *c = &p->memory.recall[i];
         double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)])) continue;
         if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
         most = fmax(most, w * v3_norm(c->r));
     }
     return most / p->dt;
 }
 
-/* Of h^2 a/r over R: a pair that carries a acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
-   and where points with their levers have more W. Only where loads push: overlaps change with h, and a packing that flows would
-   be shaken by a number of small steps that follows its largest reaction. */
+/* Of h^2 a/r over R: a pair that carries an acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W */
 static const double CARRIED[2] = { 1, 0.4 };
+/* Without loads, of h: overlaps change with h, and a packing that flows would be shaken by a number of small steps that follows its
+   largest reaction, which in drums and silos is below this; what walls squeeze exceeds it. */
+static const double SPARED = 1.5;
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
 
@@ -324,9 +333,8 @@ int64_t small_count(const struct packing *p, double overlap)
     const double least = small_sizes(p).least,
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
-    n = fmax(n, small_springs_count(p));
-    if (freedoms_in(p))
-        n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits), CARRIED_MOST * n));
+    const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED);
+    n = fmax(fmax(n, small_springs_count(p)), fmin(carried, CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 

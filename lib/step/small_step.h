@@ -24,6 +24,8 @@ struct small_opt {
 
 /* What of a packing small steps do not have, in words; NULL: they have all */
 const char *small_lacks(const struct packing *p);
+/* Is a step of a packing that they lack something for divided as finely as one that they give up? */
+bool small_divides(const struct packing *p);
 /* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
    radii of the smallest: of its state alone; 0: too many */
 int64_t small_count(const struct packing *p, double overlap);

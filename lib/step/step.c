@@ -328,7 +328,8 @@ int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kep
     rep->judged = o->small > 0 && o->compare, rep->compared = 0, rep->distance = 0;
     if (!(o->small > 0) || !kept) return 0;
     if (small_lacks(p)) {
-        if (small_parts(p, FAST) > 1) *parts = small_parts(p, o->small);
+        const double way = small_divides(p) ? o->small : FAST;
+        if (small_parts(p, way) > 1) *parts = small_parts(p, o->small);
         return 0;
     }
     const struct small_opt small = { .overlap = o->small,
@@ -337,15 +338,16 @@ int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kep
                                      .bare = o->bare,
                                      .compare = o->compare,
                                      .bound = o->bound,
-                                     .warm = o->warm };
+                                     .warm = o->small_warm };
     rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
     small_advance(p, s, &kept->small, &small, rep, made, failure);
     if (!*made) *parts = small_parts(p, o->small);
     return failure->status;
 }
 
-void step_forget_impulses(struct packing *p, const struct step_opt *o)
+void step_after_parts(struct packing *p, const struct step_opt *o, int64_t parts)
 {
+    if (!parts || small_lacks(p)) return;
     memory_set(&p->memory, false), memory_set(&p->memory, o->warm);
 }
 
@@ -373,7 +375,7 @@ static int advance_alone(struct packing *p, struct contacts *s, struct step_memo
         if (failure->status || substeps_add(&steps, p, s, rep, failure)) break;
     }
     substeps_free(&steps);
-    if (parts) step_forget_impulses(p, o);
+    step_after_parts(p, o, parts);
     return failure->status;
 }
 

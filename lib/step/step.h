@@ -19,6 +19,7 @@ struct step_opt {
     enum order order;
     bool
         warm; /* start from the reactions of the contacts given, those of the packing's memory; else from 0 */
+    bool small_warm; /* likewise, small steps, for which criterion and order do not choose */
     bool as_is; /* reactions that have not converged act whatever they give: the paper's protocol */
     bool bare;  /* nobody reads the report's balance of this step: it is left out */
     double
@@ -48,12 +49,12 @@ int step_solve_delassus(struct delassus *W, double *u, const struct step_opt *o,
                         struct failure *failure);
 
 /* A step in small ones, where o asks for them and the packing has nothing that they lack. *made: false where the packing is as it
-   was, and the step is to be made at once; *parts > 0: in so many parts, after which step_forget_impulses() is due. */
+   was, and the step is to be made at once; *parts > 0: in so many parts. step_after_parts() follows. */
 int step_in_small(struct packing *p, struct contacts *s, struct step_memory *m,
                   const struct step_opt *o, struct report *rep, bool *made, int64_t *parts,
                   struct failure *failure);
-/* Reactions that are no loads, from which small steps could begin: the next step begins without. */
-void step_forget_impulses(struct packing *p, const struct step_opt *o);
+/* Reactions from which small steps would begin, and which may be those of an impact, are forgotten. */
+void step_after_parts(struct packing *p, const struct step_opt *o, int64_t parts);
 
 /*
  * One whole step; if warm, from the packing's memory. s: the contacts of this step, in place of others. m may be NULL. Where the

@@ -262,6 +262,7 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
         .order = order,
         .as_is = o->protocol,
         .bound = o->bound,
+        .small_warm = OPTION(warm, true),
         .warm = OPTION(warm, u->warm && criterion == CRITERION_VELOCITY && order != ORDER_BLOCK),
         .solve = { .global = solver,
                    .method = o->local ? methods[o->local - 1] : &local_exact,
@@ -303,7 +304,7 @@ char *options_json_of(const struct options *asked, const struct step_opt *o)
     json_object_set_new(j, "newton_max", json_integer(n->local.newton_max));
     if (n->relax > 0) json_object_set_new(j, "relax", json_real(n->relax));
     json_object_set_new(j, "order", json_string(order_name[o->order]));
-    json_object_set_new(j, "warm", json_boolean(o->warm));
+    json_object_set_new(j, "warm", json_boolean(o->small > 0 ? o->small_warm : o->warm));
     if (o->small > 0) json_object_set_new(j, "small_steps", json_real(o->small));
     if (o->small > 0 && o->bound > 0)
         json_object_set_new(j, "missing_impulse", json_real(o->bound));
@@ -332,6 +333,13 @@ double options_small_of(const struct options *o, const struct packing *p)
     const bool asks = p->overlap && p->overlap != overlap_usual(p);
     const bool once = asks || packing_has_compliance(p) || options_solve_once(o);
     return once ? 0 : usual.small;
+}
+
+bool options_order_alone(const struct options *o, const struct packing *p)
+{
+    struct options other = *o;
+    other.given &= ~bit_of(&options.order);
+    return !(options_small_of(o, p) > 0) && options_small_of(&other, p) > 0;
 }
 
 enum overlap options_overlap_of(const struct options *o, const struct packing *p, bool detected)

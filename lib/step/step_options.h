@@ -51,6 +51,8 @@ struct step_opt options_step_of(const struct options *o, double dt, bool foreign
 /* Radii: how far small steps move bodies; 0: each step is one solve. That is so where an option chooses how a step is solved, or the
    packing has a rule of overlaps that is not the default, an adapted time step or contacts with a stiffness. */
 double options_small_of(const struct options *o, const struct packing *p);
+/* Is it --order alone that asks for one solve per step? */
+bool options_order_alone(const struct options *o, const struct packing *p);
 /* All that shapes the result, as JSON for the document; NULL when memory is short. To be freed. */
 char *options_json_of(const struct options *asked, const struct step_opt *step);
 /* What is to be done about overlap: --overlap-rule, keep with --protocol paper, else what the document says, else nsd's choice */

@@ -43,6 +43,7 @@ void substeps_leave(const struct substeps *s, struct packing *p)
         p->step = s->step;
         return;
     }
+    memory_scale(&p->memory, (double)s->n);
     // where a later part cannot be made, the packing stays at its time, between two steps
     if (!moved && s->made) return;
     p->t0 = s->t0, p->step0 = s->step0;

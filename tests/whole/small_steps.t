@@ -164,7 +164,7 @@ nsd-gen 20 >"$tmp/in.h5"
 makes() # small|once OPTION ...: such steps, of in.h5
 {
     nsd-step -n 1 "${@:2}" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" || return
-    [ "$(grep -c "1 steps were made in" "$tmp/err")$(grep -c small "$tmp/err")" = "$([ "$1" = small ] && echo 11 || echo 00)" ]
+    [ "$(grep -c "1 steps were made in" "$tmp/err")$(grep -c "small ones" "$tmp/err")" = "$([ "$1" = small ] && echo 11 || echo 00)" ]
 }
 while read -ra option; do
     ok "one solve per step: ${option[*]}" makes once "${option[@]}"
