@@ -10,7 +10,7 @@
  * with u the velocities after the step, so that dashpots lose energy at any h; in the first step of an impact G is times the time
  * since x_n was 0 and h/2, over h, because velocities are those half a step from x. x is explicit: without dashpots this is the
  * leapfrog scheme, which keeps the energy of an oscillator and is stable for k h^2 W < 4. zeta is the damping ratio with which a
- * pair alone rebounds with its restitution, e_n along n and e_t across [step/small_springs.h]. As of one solve per step
+ * pair alone rebounds with its restitution, e_n along n and e_t across [step/small_stiff.h]. As of one solve per step
  * [contact/spring.h], k_t x_t is at most mu k_n |x_n|, x_t turns with n and the mean spin of the pair, and g_0 is the gap with
  * which bodies that overlap are first seen, which rises to 0.
  *

@@ -4,7 +4,7 @@
 #include "base/array.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
-#include "step/small_springs.h"
+#include "step/small_stiff.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -175,7 +175,8 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
         const struct body *a = &l->s.body[pair->a], *b = &l->s.body[pair->b];
         const double ra = p->radius[pair->a], rb = p->radius[pair->b], wn = a->im + b->im;
         double x[SPRING_COUNT] = { 0 };
-        small_springs_set(x, l, p, pair->a, pair->b, wn, wn + ra * ra * a->ii + rb * rb * b->ii);
+        small_stiff_set(x, l->stiffness, p, pair->a, pair->b, wn,
+                        wn + ra * ra * a->ii + rb * rb * b->ii);
         for (int j = 0; j < SPRING_COUNT; j++) l->s.spring[l->slot[i] / BUNDLE].x[j][k] = x[j];
     }
     if (l->s.stick) {
@@ -406,7 +407,7 @@ static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, 
     if (l->s.hold) small_tie_set(t->hold, p, -1 - w, i, p->dt);
     const double im = l->s.body[i].im, r = p->radius[i];
     if (l->stiffness)
-        small_springs_set(t->spring, l, p, -1 - w, i, im, im + r * r * l->s.body[i].ii);
+        small_stiff_set(t->spring, l->stiffness, p, -1 - w, i, im, im + r * r * l->s.body[i].ii);
     return true;
 }
 
@@ -501,7 +502,7 @@ int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x
     struct small_list was;
     bool room = true;
     if (small_bodies(l, p, failure)) return failure->status;
-    if (!small_springs_table(l, p))
+    if (!l->stiffness && small_stiff_acts(p) && !(l->stiffness = small_stiff_table(p, l->interval)))
         return failure_set(failure, EX_SOFTWARE, "no memory for the springs");
     was = *l;
     small_forget(l);

@@ -31,7 +31,7 @@ struct small_list {
     double margin, spare, way; /* m: pairs are listed to this gap; the list serves until a body has
                                   moved by half of `spare`; and nothing has moved farther since */
     vec3 *listed;              /* [bodies] m: where bodies were */
-    double interval;           /* s: of a large step */
+    double interval;           /* s: of the whole step */
     struct small_stiffness *stiffness; /* [materials^2]; NULL: no contact has one */
     struct pairs pairs;                /* of balls */
     struct small_meetings meetings;    /* of others */

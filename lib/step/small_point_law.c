@@ -2,7 +2,7 @@
 #include "base/team.h"
 #include "solve/local_exact.h"
 #include "step/small_point.h"
-#include "step/small_springs.h"
+#include "step/small_stiff.h"
 #include "step/small_tie.h"
 
 #include <math.h>
@@ -135,7 +135,7 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
     if (r->l->stiffness) {
-        small_springs_set(t->spring, r->l, r->p, m->key.a, m->key.b, l.wn, l.wt);
+        small_stiff_set(t->spring, r->l->stiffness, r->p, m->key.a, m->key.b, l.wn, l.wt);
         if (t->spring[SPRING_KN] > 0) spring_point(t, &l, before, o);
     }
     memcpy(t->q, l.q, sizeof t->q);

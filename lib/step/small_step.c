@@ -20,6 +20,7 @@
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_springs.h"
+#include "step/small_stiff.h"
 #include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
@@ -56,8 +57,8 @@ const char *small_lacks(const struct packing *p)
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
     if (packing_adheres(p) && (p->shape || p->mesh.elements))
-        return "adhesion of grains that are no balls";
-    if (small_springs_stiff(p))
+        return "adhesion of other shapes than balls";
+    if (small_stiff_exceeds(p))
         return "contacts or bonds so stiff that a step has more than 1000 small ones";
     return NULL;
 }
@@ -334,7 +335,7 @@ int64_t small_count(const struct packing *p, double overlap)
                  permits = CARRIED[p->shape != NULL] * overlap * least;
     double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
     const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED);
-    n = fmax(fmax(n, small_springs_count(p)), fmin(carried, CARRIED_MOST * n));
+    n = fmax(fmax(n, small_stiff_count(p)), fmin(carried, CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
