@@ -446,8 +446,8 @@ static void say_broken(const struct packing *p)
 {
     const struct broken b = breakage_total(p);
     if (!p->breakage) return;
-    warn("%lld grains have broken into %lld fragments and %.3g kg of dust", (long long)b.grains,
-         (long long)b.fragments, b.dust);
+    warn("%lld grains have broken into %lld fragments and %.3g kg of dust, which had %.3g J",
+         (long long)b.grains, (long long)b.fragments, b.dust, b.kinetic + b.potential);
     if (total.waited)
         warn("in %lld steps grains waited that were due to break, %lld at the end",
              (long long)total.waited, (long long)b.waiting);

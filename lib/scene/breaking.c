@@ -191,6 +191,7 @@ static void add_dust(struct broken *k, const struct breaking_motion *m)
     k->momentum[0] += m->momentum.x, k->momentum[1] += m->momentum.y,
         k->momentum[2] += m->momentum.z;
     k->kinetic += m->kinetic, k->potential += m->potential;
+    k->taken += m->kinetic + m->potential;
 }
 
 /* ---- the step ---- */
@@ -283,7 +284,7 @@ int breaking_step(struct packing *p, struct contacts *last, bool *changed, struc
 {
     struct breaking b = { .p = p };
     if (!p->breakage) return 0;
-    for (int32_t k = 0; k < p->materials; k++) p->broken[k].waiting = 0;
+    for (int32_t k = 0; k < p->materials; k++) p->broken[k].waiting = 0, p->broken[k].taken = 0;
     if (!any_due(p)) return 0;
     b.next = p->first_id;
     for (int32_t k = 0; k < p->pours; k++) b.next += p->poured[k].bodies;

@@ -74,37 +74,97 @@ static bool try_faces(struct axis *best, const struct core *c, const struct core
     return true;
 }
 
-/* Do the arcs of two edges on the unit sphere cross, a's from p to q, b's mirrored from r to s? */
-static bool arcs_cross(vec3 p, vec3 q, vec3 edge_a, vec3 r, vec3 s, vec3 edge_b)
+/* The arc of an edge on the unit sphere, between the normals of its faces, and its direction */
+struct arc {
+    vec3 p, q, along;
+    int32_t edge;
+};
+enum { ARCS = 64 }; /* of b at a time */
+
+static struct arc arc_of(const struct core *c, int32_t i, double sign)
 {
-    double rp = v3_dot(r, edge_a), sp = v3_dot(s, edge_a);
-    double pr = v3_dot(p, edge_b), qr = v3_dot(q, edge_b);
-    return rp * sp < 0 && pr * qr < 0 && rp * qr > 0;
+    const struct shape_edge *e = &c->hull->edge[i];
+    const vec3 p = v3_scale(sign, c->normal[e->left]), q = v3_scale(sign, c->normal[e->right]);
+    return (struct arc){ p, q, v3_cross(q, p), i };
+}
+
+/* Do the arcs of two edges cross, of which b's is mirrored? */
+static bool arcs_cross(const struct arc *a, const struct arc *b)
+{
+    const double pa = v3_dot(b->p, a->along), qa = v3_dot(b->q, a->along);
+    if (!(pa * qa < 0)) return false;
+    const double pb = v3_dot(a->p, b->along), qb = v3_dot(a->q, b->along);
+    return pb * qb < 0 && pa * qb > 0;
+}
+
+/* m: of the faces of a hull from its centre, the least; below 0: that is outside */
+static double inner(const struct core *c)
+{
+    double least = INFINITY;
+    for (int32_t f = 0; f < c->hull->faces; f++) {
+        const vec3 corner = c->v[corner_of(c, 3, f, 0)];
+        least = fmin(least, v3_dot(c->normal[f], v3_sub(corner, c->centre)));
+    }
+    return least;
+}
+
+/* Along n hulls are as far apart as their centres less what both have on the way, their inner radii at least. So none of the axes
+   of an edge that looks away is the best one, unless all overlap by more; ahead: from a's centre to b's, or 0 then. */
+static vec3 meet_ahead(const struct core *a, const struct core *b, double at_least)
+{
+    const double of_a = inner(a), of_b = inner(b);
+    const bool counts = of_a > 0 && of_b > 0 && at_least > -(of_a + of_b);
+    return counts ? v3_sub(b->centre, a->centre) : v3(0, 0, 0);
+}
+
+static bool looks_away(const struct arc *e, vec3 ahead)
+{
+    return v3_dot(e->p, ahead) < 0 && v3_dot(e->q, ahead) < 0;
+}
+
+/* Edges of b from *next on that do not look away, mirrored, ARCS at most */
+static int take_arcs(struct arc to[ARCS], const struct core *b, vec3 ahead, int32_t *next)
+{
+    int n = 0;
+    for (; *next < b->hull->edges && n < ARCS; ++*next) {
+        to[n] = arc_of(b, *next, -1);
+        n += !looks_away(&to[n], ahead);
+    }
+    return n;
+}
+
+/* The axis of two edges whose arcs cross; false: the hulls are farther apart than `most`. */
+static bool try_axis(struct axis *best, const struct core *a, const struct core *b, int32_t i,
+                     int32_t j, double at_least, double most)
+{
+    const struct shape_edge *e = &a->hull->edge[i], *f = &b->hull->edge[j];
+    const vec3 x = a->v[e->tail], y = b->v[f->tail];
+    const vec3 d = v3_sub(a->v[e->head], x), g = v3_sub(b->v[f->head], y);
+    vec3 n = v3_cross(d, g);
+    const double n2 = v3_dot(n, n);
+    if (n2 < PARALLEL * v3_dot(d, d) * v3_dot(g, g)) return true;
+    n = v3_scale(1 / sqrt(n2), n);
+    if (v3_dot(n, v3_sub(x, a->centre)) < 0) n = v3_scale(-1, n);
+    const double gap = v3_dot(n, v3_sub(y, x));
+    if (gap > at_least && gap > best->gap) *best = (struct axis){ AXIS_EDGES, i, j, n, gap };
+    return !(gap > most);
 }
 
 static bool try_edges(struct axis *best, const struct core *a, const struct core *b,
                       double handicap, double most)
 {
-    double at_least = best->gap + handicap;
-    for (int32_t i = 0; i < a->hull->edges; i++) {
-        const struct shape_edge *e = &a->hull->edge[i];
-        vec3 p = a->normal[e->left], q = a->normal[e->right], x = a->v[e->tail];
-        vec3 ea = v3_cross(q, p);
-        for (int32_t j = 0; j < b->hull->edges; j++) {
-            const struct shape_edge *f = &b->hull->edge[j];
-            vec3 r = v3_scale(-1, b->normal[f->left]), s = v3_scale(-1, b->normal[f->right]);
-            vec3 eb = v3_cross(s, r);
-            if (!arcs_cross(p, q, ea, r, s, eb)) continue;
-            vec3 d = v3_sub(a->v[e->head], x), y = b->v[f->tail], g = v3_sub(b->v[f->head], y);
-            vec3 n = v3_cross(d, g);
-            double n2 = v3_dot(n, n);
-            if (n2 < PARALLEL * v3_dot(d, d) * v3_dot(g, g)) continue;
-            n = v3_scale(1 / sqrt(n2), n);
-            if (v3_dot(n, v3_sub(x, a->centre)) < 0) n = v3_scale(-1, n);
-            double gap = v3_dot(n, v3_sub(y, x));
-            if (gap > most) return false;
-            if (gap > at_least && gap > best->gap)
-                *best = (struct axis){ AXIS_EDGES, i, j, n, gap };
+    const double at_least = best->gap + handicap;
+    const vec3 ahead = meet_ahead(a, b, at_least);
+    struct arc of_b[ARCS];
+    for (int32_t next = 0, n; next < b->hull->edges;) {
+        n = take_arcs(of_b, b, ahead, &next);
+        for (int32_t i = 0; i < a->hull->edges; i++) {
+            const struct arc of_a = arc_of(a, i, 1);
+            if (looks_away(&of_a, ahead)) continue;
+            for (int32_t k = 0; k < n; k++)
+                if (arcs_cross(&of_a, &of_b[k]) &&
+                    !try_axis(best, a, b, i, of_b[k].edge, at_least, most))
+                    return false;
         }
     }
     return true;
@@ -169,7 +229,26 @@ static int meet_clip(struct clipped *to, const struct clipped *from, int n, vec3
     return count;
 }
 
-/* The face of c that looks most against n; its corners */
+/* The corner of c that is farthest against n */
+static int32_t lowest(const struct core *c, vec3 n)
+{
+    int32_t low = 0;
+    double least = INFINITY;
+    for (int32_t i = 0; i < c->n; i++)
+        if (v3_dot(n, c->v[i]) < least) least = v3_dot(n, c->v[i]), low = i;
+    return low;
+}
+
+static bool has_corner(const struct core *c, int dim, int32_t face, int32_t corner)
+{
+    bool has = false;
+    for (int32_t k = 0; k < corners_of(c, dim, face) && !has; k++)
+        has = corner_of(c, dim, face, k) == corner;
+    return has;
+}
+
+/* Of the faces of c at the corner that is farthest against n, the one that looks most against it; its corners. Others may look more
+   against it and be beside what meets. */
 static int incident(struct clipped *out, const struct core *c, int dim, vec3 n)
 {
     int32_t face = 0;
@@ -178,9 +257,10 @@ static int incident(struct clipped *out, const struct core *c, int dim, vec3 n)
         for (int32_t k = 0; k < c->n; k++) out[k] = (struct clipped){ c->v[k], k, k };
         return c->n;
     }
+    const int32_t low = lowest(c, n);
     for (int32_t f = 0; f < faces_of(c, dim); f++) {
         double along = v3_dot(n, c->normal[f]);
-        if (along < least) least = along, face = f;
+        if (along < least && has_corner(c, dim, f, low)) least = along, face = f;
     }
     int32_t corners = corners_of(c, dim, face),
             m = corners < CORNERS_MOST / 2 ? corners : CORNERS_MOST / 2;
@@ -200,7 +280,19 @@ static int add_place(struct place *place, int count, const struct place *new, do
     return count + 1;
 }
 
-/* The other's face clipped to the face that is the best axis; n: its normal, away from it. */
+/* A corner of the other over or below a face with this normal through x */
+static struct place place_at(const struct two *o, const struct axis *best, vec3 n, vec3 x,
+                             const struct clipped *corner)
+{
+    const bool flipped = best->by == AXIS_FACE_B; // the face is b's
+    const double depth = v3_dot(n, v3_sub(corner->x, x)), of_a = o->a->round, of_b = o->b->round;
+    const double middle = 0.5 * (flipped ? of_b + depth - of_a : of_a + depth - of_b);
+    return (struct place){ v3_axpy(corner->x, middle - depth, n), flipped ? v3_scale(-1, n) : n,
+                           depth - of_a - of_b, corner->feature + (flipped ? OF_B : 0) };
+}
+
+/* The other's face clipped to the face that is the best axis; n: its normal, away from it. Where nothing is left of it, but for
+   rounding or because an edge was better by less than FACE_FIRST, hulls that overlap do so at the lowest corner. */
 static int by_face(const struct two *o, const struct axis *best, struct place out[PLACES_MOST])
 {
     const int dim = o->dim;
@@ -220,12 +312,13 @@ static int by_face(const struct two *o, const struct axis *best, struct place ou
         now = next, next = was;
     }
     for (int k = 0; k < count; k++) {
-        double depth = v3_dot(n, v3_sub(now[k].x, x));
-        double middle = 0.5 * (face->round + depth - other->round);
-        struct place one = { v3_axpy(now[k].x, middle - depth, n), flipped ? v3_scale(-1, n) : n,
-                             depth - face->round - other->round,
-                             now[k].feature + (flipped ? OF_B : 0) };
+        const struct place one = place_at(o, best, n, x, &now[k]);
         places = add_place(place, places, &one, o->reach);
+    }
+    if (!places && other->hull && best->gap < 0) {
+        const int32_t low = lowest(other, n);
+        const struct clipped corner = { other->v[low], low, low };
+        place[places++] = place_at(o, best, n, x, &corner);
     }
     places = meet_few(place, places);
     for (int k = 0; k < places; k++) out[k] = place[k];

@@ -57,7 +57,7 @@ struct broken breakage_total(const struct packing *p)
         const struct broken *b = &p->broken[k];
         sum.grains += b->grains, sum.originals += b->originals, sum.fragments += b->fragments;
         sum.waiting += b->waiting, sum.mass += b->mass, sum.dust += b->dust;
-        sum.kinetic += b->kinetic, sum.potential += b->potential;
+        sum.kinetic += b->kinetic, sum.potential += b->potential, sum.taken += b->taken;
         for (int d = 0; d < 3; d++) sum.momentum[d] += b->momentum[d];
     }
     return sum;

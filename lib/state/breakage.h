@@ -54,6 +54,7 @@ struct broken {
     double dust;               /* kg: of what was left over */
     double momentum[3];        /* N s: that dust had */
     double kinetic, potential; /* J: that dust had */
+    double taken;              /* J: both, of the grains that broke before the step in hand */
 };
 
 /* What is wrong with numbers that are in their ranges, or NULL */

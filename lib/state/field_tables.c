@@ -505,6 +505,12 @@ const struct field projection_balance_fields[] = {
     { 0 },
 };
 
+/* The same where grains may break */
+static const struct field breaking_balance_fields[] = {
+    FIELD(struct report, balance.breaking, F64, 1, "breaking", "J", FIELD_MOVES),
+    { 0 },
+};
+
 /* The same where small steps are asked for */
 const struct field small_step_fields[] = {
     FIELD(struct report, small, I64, 1, "small_steps", "1", FIELD_MOVES,
@@ -530,6 +536,7 @@ const struct balance_part balance_parts[BALANCE_PARTS + 1] = {
     { gain_balance_fields, offsetof(struct report, may_gain) },
     { projection_balance_fields, offsetof(struct report, projected) },
     { peculiar_balance_fields, offsetof(struct report, sheared) },
+    { breaking_balance_fields, offsetof(struct report, breaks) },
     { small_step_fields, offsetof(struct report, fine) },
     { converged_fields, offsetof(struct report, judged) },
     { NULL, 0 },

@@ -35,7 +35,7 @@ struct balance_part {
     const struct field *fields;
     size_t flag;
 };
-enum { BALANCE_PARTS = 7 };
+enum { BALANCE_PARTS = 8 };
 extern const struct balance_part balance_parts[BALANCE_PARTS + 1];
 static inline bool balance_part_has(const struct balance_part *part, const void *report)
 {

@@ -74,6 +74,8 @@ struct balance {
     /* J, where the cell moves: of translation, by the velocities relative to its flow [state/rotation.h], after the
        step; and its change in the step */
     double peculiar, peculiar_change;
+    double
+        breaking; /* J: kinetic and potential, of the dust of grains that broke before the step; where grains may */
     double momentum[3]; /* N s: of the bodies, after the step */
     double impulse[3];  /* N s: of walls and fixed bodies on the others, in the step */
 };
@@ -105,6 +107,7 @@ struct report {
     bool may_gain;          /* and of impacts that gain: where they may */
     bool projected;         /* and of moving bodies apart: where the overlap rule does */
     bool sheared;           /* and of the peculiar velocities: where the cell moves */
+    bool breaks;            /* and of grains that break: where they may */
     struct balance balance; /* of the step that the reactions make */
     struct depth depth;     /* of the contacts of a packing */
     enum criterion criterion;

@@ -27,18 +27,21 @@ double small_cell_strain(const struct packing *p)
     return small_cell_moves(p) ? strain_of(p->cell.edge, p->cell.rate) : 0;
 }
 
-double small_cell_speed(const struct packing *p)
+struct small_flow small_cell_flow(const struct packing *p)
 {
-    struct cell_flow flow;
-    double most = 0;
-    if (p->walls || !small_cell_moves(p)) return packing_whole(p).speed;
-    cell_flow_init(&flow, &p->cell, p->cell.edge, p->cell.rate);
-    for (int64_t i = 0; i < p->n; i++) {
-        vec3 v = p->v[i];
-        if (flow.changes) v = v3_sub(v, cell_flow_gain(&flow, p->x[i]));
-        most = fmax(most, v3_norm(v));
-    }
-    return most + small_cell_strain(p) * packing_whole(p).large;
+    struct small_flow f = { 0 };
+    if (p->walls || p->shape || !small_cell_moves(p)) return f;
+    cell_flow_init(&f.flow, &p->cell, p->cell.edge, p->cell.rate);
+    f.stretch = small_cell_strain(p) * packing_whole(p).large;
+    return f;
+}
+
+double small_body_speed(const struct packing *p, const struct small_flow *f, int64_t i)
+{
+    vec3 v = p->v[i];
+    if (packing_shape(p, i)) return v3_norm(v) + p->radius[i] * v3_norm(p->w[i]);
+    if (f->flow.changes) v = v3_sub(v, cell_flow_gain(&f->flow, p->x[i]));
+    return v3_norm(v) + f->stretch;
 }
 
 void small_cell_init(struct small_run *r)

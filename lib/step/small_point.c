@@ -115,6 +115,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
         s->way[i] += r->h * small_point_speed(r, i);
+        if (!packing_shape(r->p, i)) continue; // a ball: r->turned is enough
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
             keep_moment(r, i, q, r->l->s.before[i].w);
@@ -123,7 +124,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
         }
         s->q[i] = q;
         if (rotation_is(r->p, i)) set_inverse(r, i);
-        if (r->p->shape) placed_turn(&s->placed, i, q);
+        placed_turn(&s->placed, i, q);
     }
 }
 

@@ -80,7 +80,7 @@ double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_
         }
         small_array(was->v, v), small_array(was->w, w);
         const vec3 moves = small_cell_peculiar(r, small_vec(r->l->s.place[i].x), v);
-        const double turns = r->meets ? r->p->radius[i] * v3_norm(w) : 0;
+        const double turns = packing_shape(r->p, i) ? r->p->radius[i] * v3_norm(w) : 0;
         const double v2 = turns > 0 ? pow(v3_norm(moves) + turns, 2) : v3_dot(moves, moves);
         most = v2 <= most ? most : v2; // not a number: it is the largest
     }

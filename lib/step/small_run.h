@@ -104,7 +104,7 @@ struct small_run {
     struct face_sums *sums; /* [p->sums.n] NULL: none are kept */
     bool meets;             /* there may be meetings: a body with a shape, or a mesh */
     struct small_shapes shapes;
-    double thin;             /* m: the smallest thickness of a body [contact/tunnelling.h] */
+    double thin;             /* m: the smallest size of a body */
     double h, ahead;         /* s */
     double fall;             /* m/s: in a small step, by all forces that are not reactions */
     double weight, load;     /* N s: of all bodies, in it; of the mean body, over its weight */
@@ -143,9 +143,10 @@ static inline bool small_meeting_loaded(const struct small_run *r, const struct 
     return m->key.a < 0 && r->loads.of && r->loads.of[-1 - m->key.a] >= 0;
 }
 
-/* m/s: at most, of a point of body i, which has a shape */
+/* m/s: at most, of a point of body i, of a ball its centre */
 static inline double small_point_speed(const struct small_run *r, int64_t i)
 {
     const struct body *b = &r->l->s.body[i];
-    return v3_norm(small_vec(b->v)) + r->p->radius[i] * v3_norm(small_vec(b->w));
+    const double arm = packing_shape(r->p, i) ? r->p->radius[i] : 0;
+    return v3_norm(small_vec(b->v)) + arm * v3_norm(small_vec(b->w));
 }

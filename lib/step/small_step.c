@@ -65,27 +65,65 @@ const char *small_lacks(const struct packing *p)
 
 /* ---- the interval ---- */
 
-/* m/s: of a point of a body, of balls the centre; of walls */
-static double small_fastest(const struct packing *p)
+/* m: what ways and overlaps are to be small against: of a ball its radius, else half the thickness, of thin bodies half the radius */
+static double small_size(const struct packing *p, int64_t i)
 {
-    const struct whole all = packing_whole(p);
-    return fmax(p->shape ? all.rotation_speed : small_cell_speed(p), small_wall_speed(p));
+    return packing_shape(p, i) ? fmax(tunnelling_thickness(p, i), 0.5 * p->radius[i])
+                               : p->radius[i];
 }
 
-/* m: half the thickness of the thinnest body and of the thickest; of balls the radius */
-struct small_sizes {
+static bool small_has_shapes(const struct packing *p)
+{
+    bool any = false;
+    for (int64_t i = 0; p->shape && i < p->n && !any; i++) any = packing_shape(p, i) != NULL;
+    return any;
+}
+
+struct small_sizes { /* m */
     double least, most;
 };
 static struct small_sizes small_sizes(const struct packing *p)
 {
     const struct whole all = packing_whole(p);
-    if (!p->shape) return (struct small_sizes){ all.small, all.large };
+    if (!small_has_shapes(p)) return (struct small_sizes){ all.small, all.large };
     struct small_sizes s = { INFINITY, 0 };
     for (int64_t i = 0; i < p->n; i++) {
-        const double half = tunnelling_thickness(p, i);
-        s.least = fmin(s.least, half), s.most = fmax(s.most, half);
+        const double size = small_size(p, i);
+        s.least = fmin(s.least, size), s.most = fmax(s.most, size);
     }
     return s;
+}
+
+/* m: in a small step a body goes R of its own size and of this one at most. Among shapes and grains that break, few small bodies
+   that are slow do not set the number of small steps; what a large one leaves of an overlap with a small one is bounded. */
+#define COARSE 4
+static double small_coarse(const struct packing *p)
+{
+    const struct small_sizes s = small_sizes(p);
+    const bool own = p->breakage || small_has_shapes(p);
+    return own ? fmin(s.most, COARSE * s.least) : s.least;
+}
+
+/* m/s: of a point of a body, of balls the centre; of walls */
+static double small_fastest(const struct packing *p)
+{
+    double most = small_wall_speed(p);
+    const struct small_flow flow = small_cell_flow(p);
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, small_body_speed(p, &flow, i));
+    return most;
+}
+
+/* 1/s: the largest speed of a body or wall, which gains `more` (m/s), over its size */
+static double small_hurry(const struct packing *p, double more)
+{
+    const struct small_flow flow = small_cell_flow(p);
+    const double coarse = small_coarse(p);
+    double most = (small_wall_speed(p) + more) / coarse;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double size = fmin(small_size(p, i), coarse);
+        most = fmax(most, (small_body_speed(p, &flow, i) + more) / size);
+    }
+    return most;
 }
 
 static void small_set_rates(struct small_run *r)
@@ -150,7 +188,7 @@ static void give_bodies(const struct small_run *r)
     for (int64_t i = 0; i < p->n; i++) {
         p->v[i] = small_vec(s->body[i].v), p->w[i] = small_vec(s->body[i].w);
         p->x[i] = v3_axpy(small_vec(s->place[i].x), -r->ahead, p->v[i]);
-        if (r->meets)
+        if (packing_shape(p, i))
             p->q[i] = small_points_q(r, i, &p->w[i]);
         else
             p->q[i] = quat_mul(quat_rotation(r->turned[i]), p->q[i]);
@@ -302,7 +340,7 @@ static double small_steady(const struct packing *p)
     }
     if (g > 0 && hi >= lo)
         pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
-    return pressed > 0 ? sqrt(STEADY * size.least / pressed) : INFINITY;
+    return pressed > 0 ? sqrt(STEADY * small_coarse(p) / pressed) : INFINITY;
 }
 
 /* m/s^2: the largest acceleration that a reaction that lasts would give to its pair, if that is rigid */
@@ -330,10 +368,9 @@ enum { CARRIED_MOST = 4 };
 
 int64_t small_count(const struct packing *p, double overlap)
 {
-    const double way = p->dt * (small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
-    const double least = small_sizes(p).least,
-                 permits = CARRIED[p->shape != NULL] * overlap * least;
-    double n = fmax(1, fmax(way / (overlap * least), p->dt / small_steady(p)));
+    const double hurry = small_hurry(p, packing_most_fall(p) + small_tie_speed(p));
+    const double permits = CARRIED[small_has_shapes(p)] * overlap * small_sizes(p).least;
+    double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
     const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED);
     n = fmax(fmax(n, small_stiff_count(p)), fmin(carried, CARRIED_MOST * n));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
@@ -367,7 +404,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
     r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
-    r.meets = p->shape || p->mesh.elements, r.thin = small_sizes(p).least;
+    r.meets = small_has_shapes(p) || p->mesh.elements, r.thin = small_sizes(p).least;
     small_cell_init(&r);
     if (!r.wall || !r.x || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");

@@ -13,7 +13,7 @@
 #include "step/small_list.h"
 
 struct small_opt {
-    double overlap; /* radii of the smallest body: none is moved farther by a small step */
+    double overlap; /* R: of its size a body is moved by at most in a small step */
     int threads;
     struct neighbours *near; /* surfaces of meshes, kept from step to step */
     bool bare;               /* nobody reads the errors and the contacts of this step */

@@ -7,6 +7,7 @@
 #include "contact/tunnelling.h"
 #include "solve/device.h"
 #include "solve/prepare.h"
+#include "state/breakable.h"
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/balance.h"
@@ -383,10 +384,12 @@ int step_advance(struct packing *p, struct contacts *s, struct step_memory *kept
                  const struct step_opt *o, struct report *rep, struct failure *failure)
 {
     struct breaking_start start;
+    rep->breaks = p->breakage != NULL;
     if (!p->breakage) return advance_alone(p, s, kept, o, rep, failure);
     if (breaking_start(&start, p, failure)) return failure->status;
     if (!advance_alone(p, s, kept, o, rep, failure) && report_made(rep))
         breaking_load(p, s, &start, failure);
+    rep->breaks = true, rep->balance.breaking = breakage_total(p).taken;
     breaking_start_free(&start);
     return failure->status;
 }

@@ -8,6 +8,7 @@
 #include "solve/apply.h"
 #include "solve/assembly.h"
 #include "solve/prepare.h"
+#include "state/placement.h"
 #include "state/rotation.h"
 #include "step/move.h"
 #include "step/step.h"
@@ -266,17 +267,30 @@ static void tops_turn(void)
 
 /* ---- meeting ---- */
 
-/* Two hulls of noise in a scene, where and how they are turned */
-static struct packing two_hulls(double distance, bool rounded)
+enum hull_kind { SHARP, ROUNDED, WEDGES };
+
+/* A corner of a hull; of a wedge it lies in an octant of the unit sphere */
+static vec3 hull_point(enum hull_kind kind)
 {
+    const vec3 x = noise3();
+    if (kind != WEDGES) return x;
+    return v3_scale(1 / v3_norm(x), v3(fabs(x.x), fabs(x.y), x.z));
+}
+
+/* Two hulls of noise in a scene, where and how they are turned */
+static struct packing two_hulls(double distance, enum hull_kind kind)
+{
+    const int corners = kind == WEDGES ? 24 : 10;
     char text[4000] = "{\"dt\": 0.001, \"mu\": 0.5, \"density\": 1, \"overlap\": true, "
                       "\"gravity\": [0,0,0], \"shapes\": {";
     for (int k = 0; k < 2; k++) {
         char *at = text + strlen(text);
         at += sprintf(at, "%s\"%c\": {\"points\": [", k ? "," : "", 'a' + k);
-        for (int i = 0; i < 10; i++)
-            at += sprintf(at, "%s[%.9g, %.9g, %.9g]", i ? "," : "", noise(), noise(), noise());
-        sprintf(at, "]%s}", rounded ? ", \"round\": 0.2" : "");
+        for (int i = 0; i < corners; i++) {
+            const vec3 x = hull_point(kind);
+            at += sprintf(at, "%s[%.9g, %.9g, %.9g]", i ? "," : "", x.x, x.y, x.z);
+        }
+        sprintf(at, "]%s}", kind == ROUNDED ? ", \"round\": 0.2" : "");
     }
     vec3 d = noise3(), v = noise3(), w = noise3(), u = noise3();
     d = v3_scale(distance / v3_norm(d), d);
@@ -348,6 +362,25 @@ static void cubes_meet(void)
     packing_free(&p);
 }
 
+/* Hulls whose shortest connection has no length meet, wherever the lowest corner of one is [shape/meet.c, incident()]. */
+static void overlaps_are_found(void)
+{
+    int overlap = 0, missed = 0;
+    for (int k = 0; k < 2000; k++) {
+        struct packing p = two_hulls(0.6 + 0.4 * noise(), WEDGES);
+        const struct positions at = { .x = p.x, .q = p.q };
+        struct placed placed;
+        struct place place[PLACES_MOST];
+        struct failure failure = { 0 };
+        placed_init(&placed, &p, &at, &failure);
+        const struct core a = placed_core(&placed, 0, 0), b = placed_core(&placed, 1, 0);
+        const bool apart = gjk_nearest(&a, &b).distance > 0;
+        overlap += !apart, missed += !apart && !meet_cores(3, &a, &b, 0, place);
+        placed_free(&placed), packing_free(&p);
+    }
+    ok(overlap > 100 && !missed, "hulls that overlap meet: %d pairs, %d missed", overlap, missed);
+}
+
 /* ---- what contacts give ---- */
 
 static void steps_keep_momentum(bool rounded)
@@ -355,7 +388,7 @@ static void steps_keep_momentum(bool rounded)
     double force = 0, moment = 0, work = 0, worst = 0;
     int met = 0;
     for (int k = 0; k < 60; k++) {
-        struct packing p = two_hulls(0.9, rounded);
+        struct packing p = two_hulls(0.9, rounded ? ROUNDED : SHARP);
         struct contacts s = { 0 };
         struct report r = { 0 };
         struct failure failure = { 0 };
@@ -451,6 +484,7 @@ int main(void)
     tops_turn();
     distances_are_right();
     cubes_meet();
+    overlaps_are_found();
     steps_keep_momentum(false);
     steps_keep_momentum(true);
     assembly_is_sweep();
