@@ -239,6 +239,7 @@ double wall_top_speed(const struct packing *p, const struct wall *w)
     if (w->load.way == LOAD_ROOM)
         most += fabs((w->load.speed + w->load.rate) * wall_lever(p, w, p->t));
     else
-        most += fabs(w->load.speed);
+        most += fabs(w->load.speed) *
+                (w->load.way == LOAD_TURNS ? wall_motion_farthest(p, w, w->load.point) : 1);
     return most + drives_top_speed(p, w);
 }

@@ -73,19 +73,44 @@ void small_loads_free(struct small_run *r, bool failed)
     *o = (struct small_loads){ 0 };
 }
 
+/* Does a wall stay where it is as it turns? No body then meets its inertia. */
+static bool turns_in_itself(const struct wall *w)
+{
+    const vec3 axis = w->load.axis, off = v3_cross(axis, v3_sub(w->x, w->load.point));
+    const bool upright = v3_norm(v3_cross(axis, w->n)) < 1e-9;
+    if (w->shape == WALL_MESH) return false;
+    if (w->shape < WALL_CYLINDER) return upright; // flat
+    return v3_norm(off) < 1e-9 * w->size[0] && (upright || w->shape == WALL_SPHERE);
+}
+
+/* kg, of a wall that turns kg m^2: of bodies, at the arm that the wall has at most */
+static double mass_on(const struct packing *p, const struct wall *w)
+{
+    const struct load *l = &w->load;
+    const double arm = v3_norm(v3_cross(l->axis, v3_sub(w->x, l->point))) + wall_reach(w);
+    double mass = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double way = v3_norm(v3_cross(l->axis, v3_sub(p->x[i], l->point)));
+        mass += p->mass[i] * (l->way == LOAD_TURNS ? pow(fmin(way, arm), 2) : 1);
+    }
+    return mass;
+}
+
 bool small_loads_heavy(const struct packing *p)
 {
     double mass = 0, n = 0, levers = 0, most = 0;
     for (int64_t i = 0; i < p->n; i++)
         if (p->mass[i] > 0) mass += p->mass[i], n++;
-    for (int32_t w = 0; w < p->walls; w++) {
-        const struct load *l = &p->wall[w].load;
-        if (l->way == LOAD_GLIDES) most = fmax(most, l->mass);
-        if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, &p->wall[w], p->t), 2);
+    for (int32_t w = 0; w < p->walls && n > 0; w++) {
+        const struct wall *wall = &p->wall[w];
+        const struct load *l = &wall->load;
+        if (l->way == LOAD_GLIDES || (l->way == LOAD_TURNS && !turns_in_itself(wall)))
+            most = fmax(most, l->mass / mass_on(p, wall));
+        if (l->way == LOAD_ROOM) levers += pow(wall_lever(p, wall, p->t), 2);
     }
-    if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3);
+    if (levers > 0) most = fmax(most, servo_box_mass(p) / levers / 3 / mass);
     const double layers = p->dim == 2 ? sqrt(n) : cbrt(n);
-    return n > 0 && most > HEAVY * mass / layers;
+    return n > 0 && most > HEAVY / layers;
 }
 
 double small_loads_energy(const struct packing *p)

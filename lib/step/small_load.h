@@ -24,7 +24,7 @@ void small_loads_start(struct small_run *r);
 void small_loads_sweep(struct small_run *r, bool again);
 /* What persists, and the motion */
 void small_loads_end(struct small_run *r);
-/* Has a wall that glides a load of so large a mass that small steps would make it rebound from a bed of grains? */
+/* Has a wall so large a mass, or one that turns so large an inertia, that small steps would make it rebound from grains? */
 bool small_loads_heavy(const struct packing *p);
 /* J: of what the loads of a packing move */
 double small_loads_energy(const struct packing *p);

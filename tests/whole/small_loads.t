@@ -39,6 +39,38 @@ ok "and the floor and the sides carry it and their weight" near "$(sums 'last.fo
 nsd-gen scenes/press.json | nsd-step -e -n 400 >"$tmp/out.h5" 2>"$tmp/err"
 is "a piston of eight layers falls on 48 balls: no step fails" $? 0
 
+# ---- walls that a torque turns ----
+
+printf '%s\n' "v 0 -0.005 0.042" "v 0.09 -0.005 0.042" "v 0.09 0.07 0.042" "v 0 0.07 0.042" "f 1 2 3" "f 1 3 4" >"$tmp/flap.obj"
+flap() # INERTIA SPEED TORQUE: of a flap that hangs at x = 0, z = 42 mm, and falls
+{
+    echo "{ mesh: { file: \"$tmp/flap.obj\" }, load: { about: [0, 0, 0.042], axis: [0, 1, 0], mass: $1, speed: $2, torque: $3 } }"
+}
+of_flap() # JQ PROGRAM: of its load in the last frame
+{
+    nsd-info --last -w "$tmp/out.h5" | jq -c "select(.load) | .load | $1" | head -n 1
+}
+mass='(2500 * 4e-6 / 3 * 3.14159265358979 * 0.216)' # of a radius of 6 mm
+for inertia in 1e-6 1e-3; do # a touch at x = 0.05 moves by 0.05 per rad, along z
+    scene "dt: 1e-4, gravity: [0, 0, 0], mu: 0, e_n: 0.5, walls: [$(flap $inertia 2 0)], bodies: [{ x: [0.05, 0.03, 0.0359], radius: 0.006, density: 2500 }]"
+    nsd-step -n 40 --every 40 -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
+    ok "a flap of $inertia kg m^2 meets a ball: 1.5 u/(1 + m L^2/I)" \
+        near "$(body '.v[2]') / (-1.5 * 2 * 0.05 / (1 + $mass * 0.0025 / $inertia))" 1 5e-3
+    ok "and keeps its angular momentum with it" near "($(of_flap .speed) * $inertia - $(body '.v[2] * .x[0]') * $mass) / $inertia / 2" 1 5e-3
+done
+scene "dt: 1e-3, gravity: [0, 0, 0], walls: [$(flap 1 10 0)], bodies: [{ x: [0.05, 0.03, -0.1], radius: 0.006, fixed: true }]"
+small_alone 10
+# 10 rad/s 1e-3 s 0.114 m/(R r) = 19, and up to half more, for what is farthest is bounded
+ok "small steps count the speed of its tip" near "$(sed -n 's/.*made in \([0-9]*\) small ones/\1/p' "$tmp/err") / 10" 24 5
+scene "dt: 1e-3, gravity: [0, 0, -9.81], density: 2500, mu: 0.3, e_n: 0.2, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 0], normal: [1, 0, 0] },
+    { point: [0, 0, 0], normal: [0, 1, 0] }, { point: [0.063, 0, 0], normal: [-1, 0, 0] }, { point: [0, 0.063, 0], normal: [0, -1, 0] }, $(flap 1.3e-3 3 0.12)],
+    bodies: [range(8) as \$i | range(8) as \$j | range(5) as \$k | { radius: (0.003 + 0.0002 * ((\$i * 7 + \$j * 3 + \$k * 11) % 5)),
+        x: [\$i, \$j, \$k] | map((. + 0.55) * 0.0077) } | .x[0] += 2e-4 * (\$k * 12 | sin) | .x[1] += 2e-4 * (\$k * 7 | cos)]"
+heavy 260 -e --every 1
+is "a heavy flap falls on balls: no step fails" $? 0
+ok "it does not rebound" near "$(nsd-info -w "$tmp/out.h5" | jq -s 'map(select(.load) | .load.speed) | min')" 0 0.1
+ok "and comes to rest" near "$(of_flap .speed)" 0 0.02
+
 # ---- edges of a cell that are lighter than a row of grains ----
 
 jq '.mu = 0.3 | .dt = 0.1 | .cell.lengths = [6.1, 6.1, 6.1] | .cell.stress = { pressure: 1, mass: 1 } | .bodies[0].random.count = 150 |
