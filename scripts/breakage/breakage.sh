@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The experiments of docs/breakage: breakage.sh FOLDER puts their tables there, NAME.tsv. FULL=1: the mill turns for
-# 20 s, not 2.
+# The experiments of docs/breakage: breakage.sh FOLDER puts their tables there, NAME.tsv, and pictures of them. FULL=1: the mill
+# turns for 20 s, not 2. EXPERIMENTS='plates weibull mill oedometer': some of them; pictures are drawn of all.
 set -euo pipefail
 folder=$1 full=${FULL-}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -47,6 +47,32 @@ mill() {
             1e3 * $b.dust] | map(. * 1e3 | round / 1e3) | @tsv'
 }
 
-for experiment in ${EXPERIMENTS-plates weibull mill}; do
+# 1000 discs between frictionless plates, of which the upper one is pressed by a stress that rises from 100 Pa by a decade in
+# 0.53 s: their strength is 1 kPa by shear, Weibull modulus 3, and falls with size. Two packings; a row has the seed, the stress (Pa), the voids
+# ratio, the fraction of the discs that have broken, grains, d10, d50 (mm), the fractal dimension. The grading at the end:
+# oedometer-grading.tsv, the seed, size (mm), grains that are not smaller.
+oedometer() {
+    local seed mass start document
+    start=$(mktemp) document=$(mktemp)
+    : >"$folder/oedometer-grading.tsv"
+    for seed in 1 2; do
+        jq --argjson seed $seed '.seed = $seed' "$here/oedometer.json" | nsd-gen - >"$start"
+        mass=$(nsd-info -p "$start" | jq -s 'map(.mass // 0) | add')
+        step --small-steps 0.02 --until 0.45 --every 0.05s "$start" >"$document"
+        { nsd-info -w --only lid "$document" && nsd-stat -m breakage "$document"; } |
+            jq -rs --argjson seed $seed --argjson mass "$mass" 'map(select(.wall)) as $lid | map(select(.breakage)) as $grains |
+                range($lid | length) | $lid[.] as $l | $grains[.] as $g | $g.breakage as $b |
+                [$seed, $l.load.force / 0.06, 0.06 * $l.point[1] / (($mass - $b.dust) / 2600) - 1, $b.broken, $b.bodies,
+                    1e3 * $b.d10, 1e3 * $b.d50, $b.dimension] | map(. * 1e3 | round / 1e3) | @tsv'
+        [ $seed != 1 ] || nsd-view -c generation --bare --size 480x500 -o "$folder/oedometer-packing.png" "$document" 2>/dev/null
+        nsd-stat -m grading "$document" | tail -n 1 |
+            jq -r --argjson seed $seed '.grading | range(.size | length) as $i | [$seed, 1e3 * .size[$i], .larger[$i]] | @tsv' \
+                >>"$folder/oedometer-grading.tsv"
+    done
+    rm "$start" "$document"
+}
+
+for experiment in ${EXPERIMENTS-plates weibull mill oedometer}; do
     $experiment >"$folder/$experiment.tsv"
 done
+gnuplot -e "folder = '$folder'" "$here/breakage.gp"
