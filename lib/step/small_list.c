@@ -41,7 +41,7 @@ void small_list_free(struct small_list *l)
 {
     small_arrays_free(l);
     free(l->s.place), free(l->s.body), free(l->s.before), free(l->s.hot), free(l->s.change);
-    free(l->listed), free(l->stiffness);
+    free(l->listed), free(l->drift), free(l->stiffness);
     *l = (struct small_list){ 0 };
 }
 
@@ -57,7 +57,8 @@ static int small_bodies(struct small_list *l, const struct packing *p, struct fa
     s->before = lay_lines(n, sizeof *s->before), s->hot = calloc((size_t)n, sizeof *s->hot);
     s->change = calloc((size_t)n, sizeof *s->change);
     l->listed = calloc((size_t)n, sizeof *l->listed);
-    if (!s->place || !s->body || !s->before || !s->hot || !s->change || !l->listed)
+    l->drift = calloc((size_t)n, sizeof *l->drift);
+    if (!s->place || !s->body || !s->before || !s->hot || !s->change || !l->listed || !l->drift)
         return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     for (int k = 0; k < 2; k++) s->place[p->n + k].x[0] = k ? 1e100 : -1e100;
     for (int64_t i = 0; i < p->n; i++) {
@@ -452,12 +453,12 @@ static bool touch_has_pushed(const struct small_list *l, int32_t i, int32_t w)
     return t && has_pushed(t->f, t->sum, t->hold);
 }
 
-/* Is body i near wall w, where `pose` has brought it? */
+/* Does body i come near wall w, where `pose` has brought it? */
 static bool near_wall(const struct small_list *l, const struct packing *p, const struct pose *pose,
                       int32_t w, int32_t i, vec3 x)
 {
     vec3 n;
-    const double most = p->radius[i] + l->margin;
+    const double most = p->radius[i] + l->margin + l->serves * (v3_norm(l->drift[i]) + l->wall);
     if (!packing_may_meet(p, -1 - w, i)) return false;
     if (p->wall[w].shape == WALL_MESH) return near_mesh(l, p, pose, w, x, most);
     return small_wall_distance(p, pose, w, x, most, &n) <= most;
@@ -494,31 +495,95 @@ static void carry_touches(struct small_list *to, const struct small_list *from)
     }
 }
 
+/* ---- ways ---- */
+
+/* Of the smallest radius: the way of the fastest body, against the mean of all, that a list is to serve: a longer one has many pairs that
+   do not meet */
+#define LONG 1
+
+/* The straight ways of bodies, and for how long the list serves, 0 where they have none */
+static void set_ways(struct small_list *l, const struct packing *p, const struct small_start *o,
+                     vec3 *mean)
+{
+    double most = 0;
+    *mean = v3(0, 0, 0);
+    memcpy(l->listed, o->x, (size_t)p->n * sizeof *o->x);
+    l->serves = l->since = l->strays = l->walls = l->wall = 0;
+    if (!o->v || !p->n) return;
+    memcpy(l->drift, o->v, (size_t)p->n * sizeof *o->v);
+    for (int64_t i = 0; i < p->n; i++) *mean = v3_axpy(*mean, 1.0 / (double)p->n, o->v[i]);
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(o->v[i], *mean)));
+    most = fmax(most, o->wall);
+    const double way = LONG * packing_whole(p).small;
+    l->serves = most * o->span > way ? way / most : o->span, l->wall = o->wall;
+}
+
+/* Do the bodies of a pair come nearer than the margin on their ways? */
+static bool comes_near(const struct small_list *l, const struct packing *p, const vec3 edge[3],
+                       const struct pair *pair)
+{
+    const double most = p->radius[pair->a] + p->radius[pair->b] + l->margin;
+    vec3 d = v3_sub(l->listed[pair->b], l->listed[pair->a]);
+    const vec3 u = v3_sub(l->drift[pair->b], l->drift[pair->a]);
+    if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
+    const double closes = -v3_dot(d, u), u2 = v3_dot(u, u);
+    const double t = closes > 0 ? fmin(l->serves, closes / u2) : 0;
+    const vec3 least = v3_axpy(d, t, u);
+    return v3_dot(least, least) <= most * most;
+}
+
+/* Pairs that come near: sought among those whose bodies, in the middle of their ways, are as large as half of these */
+static int seek_along(struct small_list *l, const struct packing *p, const struct small_start *o,
+                      vec3 mean, struct failure *failure)
+{
+    const double half = 0.5 * l->serves;
+    struct packing wide = *p;
+    vec3 *x = malloc((size_t)(p->n + 1) * sizeof *x);
+    double *radius = malloc((size_t)(p->n + 1) * sizeof *radius);
+    int64_t n = 0;
+    l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
+    for (int64_t i = 0; x && radius && i < p->n; i++) {
+        x[i] = v3_axpy(l->listed[i], half, l->drift[i]);
+        radius[i] = p->radius[i] + half * v3_norm(v3_sub(l->drift[i], mean));
+    }
+    wide.radius = radius;
+    if (!x || !radius)
+        failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+    else
+        seek_pairs(&l->pairs, &wide, x, o->edge, failure);
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        if (comes_near(l, p, o->edge, &l->pairs.pair[i])) l->pairs.pair[n++] = l->pairs.pair[i];
+    l->pairs.n = n;
+    free(x), free(radius);
+    return failure->status;
+}
+
 /* ---- the list ---- */
 
-int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x,
-                    const vec3 edge[3], double t, struct failure *failure)
+int small_list_make(struct small_list *l, const struct packing *p, const struct small_start *o,
+                    struct failure *failure)
 {
     struct small_list was;
     bool room = true;
+    vec3 mean;
     if (small_bodies(l, p, failure)) return failure->status;
     if (!l->stiffness && small_stiff_acts(p) && !(l->stiffness = small_stiff_table(p, l->interval)))
         return failure_set(failure, EX_SOFTWARE, "no memory for the springs");
     was = *l;
     small_forget(l);
-    l->spare = MARGIN * packing_whole(p).small, l->way = 0;
+    l->spare = MARGIN * packing_whole(p).small;
     l->margin = l->spare + small_tie_reach(p), l->s.slack = CLOSE * l->margin;
-    l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
-    if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
+    set_ways(l, p, o, &mean);
+    if (!seek_along(l, p, o, mean, failure)) {
         room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
-               small_pairs_lay(l, p, x, edge) && list_images(l) && find_touches(l, &was, p, x, t) &&
+               small_pairs_lay(l, p, o->x, o->edge) && list_images(l) &&
+               find_touches(l, &was, p, o->x, o->t) &&
                ((!p->shape && !p->mesh.elements) ||
                 small_meetings_lay(&l->meetings, p, &was.meetings));
         if (room) carry_pairs(l, &was), carry_touches(l, &was);
         if (room) small_meetings_carry(&l->meetings, &was.meetings);
     }
     if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    memcpy(l->listed, x, (size_t)p->n * sizeof *x);
     small_arrays_free(&was);
     return failure->status;
 }

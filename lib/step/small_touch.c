@@ -130,13 +130,24 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
     t->kept = 0, t->near = false;
 }
 
+bool small_touch_waits(const struct small_run *r, const struct small_touch *t)
+{
+    const struct small *s = &r->l->s;
+    return !t->near && !s->hold && small_is_zero(t->f) && s->rate.gone + s->rate.reach < t->until;
+}
+
 bool small_touch_near(struct small_run *r, struct small_touch *t)
 {
     const struct small *s = &r->l->s;
     const bool held = s->hold || t->spring[SPRING_BETA] > 0;
     const double reach = held ? r->l->margin : s->rate.reach;
-    t->near = small_look_at_touch(r, t, reach) && !small_at_seam(r, t - r->l->touch, reach);
+    const bool within = small_look_at_touch(r, t, reach);
+    t->near = within && !small_at_seam(r, t - r->l->touch, reach);
     if (!t->near) leave_touch(r, t);
+    if (within || held || s->moves || !r->wall[t->wall].there) return t->near;
+    const bool close = small_look_at_touch(r, t, r->l->margin);
+    const double gap = close ? t->arm - s->place[t->body].r : r->l->margin;
+    t->until = s->rate.gone + gap - s->slack;
     return t->near;
 }
 

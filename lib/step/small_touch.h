@@ -10,7 +10,9 @@ void small_body_push(struct body *b, vec3 f, vec3 m);
 vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t);
 /* The body gets that, with the moment. */
 void small_touch_push(struct small_run *r, struct small_touch *t);
-/* First sweep: is the body near its wall? One that has left gives its reaction back. */
+/* First sweep: a touch that does not push, and whose body cannot have come near its wall */
+bool small_touch_waits(const struct small_run *r, const struct small_touch *t);
+/* Is the body near its wall? One that has left gives its reaction back. */
 bool small_touch_near(struct small_run *r, struct small_touch *t);
 /* First sweep: the law of this step, attraction and static friction. Returns the change of the pull (N s), which l->u
    has. */
