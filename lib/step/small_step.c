@@ -190,7 +190,8 @@ enum { CARRIED_MOST = 4 };
 static int64_t small_count_at(const struct packing *p, double overlap, double hurry)
 {
     const bool points = small_has_shapes(p);
-    const double permits = CARRIED[points] * overlap * small_sizes(p).least;
+    const double size = freedoms_in(p) ? small_sizes(p).least : small_coarse(p);
+    const double permits = CARRIED[points] * overlap * size;
     double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
     const double spared = freedoms_in(p) ? 1 : SPARED[points];
     n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits) / spared, CARRIED_MOST * n));
