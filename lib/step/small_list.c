@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
+#include "step/small_stiff.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,8 +20,8 @@ enum { COLOURS = 64 };
 static void small_arrays_free(struct small_list *l)
 {
     struct small *s = &l->s;
-    free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->live),
-        free(s->late), free(s->until), free(s->group);
+    free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->spring),
+        free(s->live), free(s->late), free(s->until), free(s->group);
     free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
@@ -30,7 +31,7 @@ static void small_forget(struct small_list *l)
 {
     struct small *s = &l->s;
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
-    s->live = s->late = NULL, s->until = NULL, s->group = NULL;
+    s->spring = NULL, s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
@@ -40,7 +41,7 @@ void small_list_free(struct small_list *l)
 {
     small_arrays_free(l);
     free(l->s.place), free(l->s.body), free(l->s.before), free(l->s.hot), free(l->s.change);
-    free(l->listed);
+    free(l->listed), free(l->drift), free(l->stiffness);
     *l = (struct small_list){ 0 };
 }
 
@@ -56,7 +57,8 @@ static int small_bodies(struct small_list *l, const struct packing *p, struct fa
     s->before = lay_lines(n, sizeof *s->before), s->hot = calloc((size_t)n, sizeof *s->hot);
     s->change = calloc((size_t)n, sizeof *s->change);
     l->listed = calloc((size_t)n, sizeof *l->listed);
-    if (!s->place || !s->body || !s->before || !s->hot || !s->change || !l->listed)
+    l->drift = calloc((size_t)n, sizeof *l->drift);
+    if (!s->place || !s->body || !s->before || !s->hot || !s->change || !l->listed || !l->drift)
         return failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     for (int k = 0; k < 2; k++) s->place[p->n + k].x[0] = k ? 1e100 : -1e100;
     for (int64_t i = 0; i < p->n; i++) {
@@ -170,6 +172,14 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
         small_tie_set(x, p, pair->a, pair->b, p->dt);
         for (int j = 0; j < HOLD_COUNT; j++) l->s.hold[l->slot[i] / BUNDLE].x[j][k] = x[j];
     }
+    if (l->s.spring) {
+        const struct body *a = &l->s.body[pair->a], *b = &l->s.body[pair->b];
+        const double ra = p->radius[pair->a], rb = p->radius[pair->b], wn = a->im + b->im;
+        double x[SPRING_COUNT] = { 0 };
+        small_stiff_set(x, l->stiffness, p, pair->a, pair->b, wn,
+                        wn + ra * ra * a->ii + rb * rb * b->ii);
+        for (int j = 0; j < SPRING_COUNT; j++) l->s.spring[l->slot[i] / BUNDLE].x[j][k] = x[j];
+    }
     if (l->s.stick) {
         struct small_stick *t = &l->s.stick[l->slot[i] / BUNDLE];
         double mu[2];
@@ -207,12 +217,13 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
     if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
     if (small_tie_holds(p)) s->hold = lay_lines(s->bundles, sizeof *s->hold);
     if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
+    if (l->stiffness) s->spring = lay_lines(s->bundles, sizeof *s->spring);
     s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->until = calloc((size_t)(s->bundles + 1), BUNDLE * sizeof *s->until);
     if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
-        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) || !s->live ||
-        !s->late || !s->until)
+        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) ||
+        (l->stiffness && !s->spring) || !s->live || !s->late || !s->until)
         return false;
     for (int64_t i = 0; i < s->bundles; i++)
         for (int k = 0; k < BUNDLE; k++)
@@ -224,7 +235,8 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 /* What a slot has of the past */
 struct small_past {
     double f[3], couple[3], m[3], sum[3], turned[3];
-    double held[HOLD_COUNT]; /* from HOLD_WET on */
+    double held[HOLD_COUNT];     /* from HOLD_WET on */
+    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -238,6 +250,8 @@ static struct small_past past_of(const struct small *s, int64_t slot)
         x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
     }
     for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
+    for (int j = 0; j < SPRING_COUNT; j++)
+        x.spring[j] = s->spring ? s->spring[slot / BUNDLE].x[j][k] : 0;
     return x;
 }
 
@@ -265,6 +279,8 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     }
     for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
         s->hold[slot / BUNDLE].x[j][k] = x->held[j];
+    for (int j = SPRING_REST; j <= SPRING_GIVEN && s->spring; j++)
+        s->spring[slot / BUNDLE].x[j][k] = x->spring[j];
     if (!small_is_zero(x->f) || x->held[HOLD_WET] > 0 || x->held[HOLD_PULL] > 0)
         small_list_wake(s, slot);
 }
@@ -356,7 +372,9 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
-        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0;
+        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 ||
+                           x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0 ||
+                           x.spring[SPRING_HELD] > 0;
         if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
         if (found) set_past(&to->s, to->slot[k], &x);
@@ -388,6 +406,9 @@ static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, 
     *t = (struct small_touch){ .wall = w, .body = i, .mu = p->mu[m], .e = { p->en[m], p->et[m] } };
     contact_laws_rolling(p, -1 - w, i, &t->most[1], &t->most[0]);
     if (l->s.hold) small_tie_set(t->hold, p, -1 - w, i, p->dt);
+    const double im = l->s.body[i].im, r = p->radius[i];
+    if (l->stiffness)
+        small_stiff_set(t->spring, l->stiffness, p, -1 - w, i, im, im + r * r * l->s.body[i].ii);
     return true;
 }
 
@@ -432,12 +453,12 @@ static bool touch_has_pushed(const struct small_list *l, int32_t i, int32_t w)
     return t && has_pushed(t->f, t->sum, t->hold);
 }
 
-/* Is body i near wall w, where `pose` has brought it? */
+/* Does body i come near wall w, where `pose` has brought it? */
 static bool near_wall(const struct small_list *l, const struct packing *p, const struct pose *pose,
                       int32_t w, int32_t i, vec3 x)
 {
     vec3 n;
-    const double most = p->radius[i] + l->margin;
+    const double most = p->radius[i] + l->margin + l->serves * (v3_norm(l->drift[i]) + l->wall);
     if (!packing_may_meet(p, -1 - w, i)) return false;
     if (p->wall[w].shape == WALL_MESH) return near_mesh(l, p, pose, w, x, most);
     return small_wall_distance(p, pose, w, x, most, &n) <= most;
@@ -474,29 +495,95 @@ static void carry_touches(struct small_list *to, const struct small_list *from)
     }
 }
 
+/* ---- ways ---- */
+
+/* Of the smallest radius: the way of the fastest body, against the mean of all, that a list is to serve: a longer one has many pairs that
+   do not meet */
+#define LONG 1
+
+/* The straight ways of bodies, and for how long the list serves, 0 where they have none */
+static void set_ways(struct small_list *l, const struct packing *p, const struct small_start *o,
+                     vec3 *mean)
+{
+    double most = 0;
+    *mean = v3(0, 0, 0);
+    memcpy(l->listed, o->x, (size_t)p->n * sizeof *o->x);
+    l->serves = l->since = l->strays = l->walls = l->wall = 0;
+    if (!o->v || !p->n) return;
+    memcpy(l->drift, o->v, (size_t)p->n * sizeof *o->v);
+    for (int64_t i = 0; i < p->n; i++) *mean = v3_axpy(*mean, 1.0 / (double)p->n, o->v[i]);
+    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(o->v[i], *mean)));
+    most = fmax(most, o->wall);
+    const double way = LONG * packing_whole(p).small;
+    l->serves = most * o->span > way ? way / most : o->span, l->wall = o->wall;
+}
+
+/* Do the bodies of a pair come nearer than the margin on their ways? */
+static bool comes_near(const struct small_list *l, const struct packing *p, const vec3 edge[3],
+                       const struct pair *pair)
+{
+    const double most = p->radius[pair->a] + p->radius[pair->b] + l->margin;
+    vec3 d = v3_sub(l->listed[pair->b], l->listed[pair->a]);
+    const vec3 u = v3_sub(l->drift[pair->b], l->drift[pair->a]);
+    if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
+    const double closes = -v3_dot(d, u), u2 = v3_dot(u, u);
+    const double t = closes > 0 ? fmin(l->serves, closes / u2) : 0;
+    const vec3 least = v3_axpy(d, t, u);
+    return v3_dot(least, least) <= most * most;
+}
+
+/* Pairs that come near: sought among those whose bodies, in the middle of their ways, are as large as half of these */
+static int seek_along(struct small_list *l, const struct packing *p, const struct small_start *o,
+                      vec3 mean, struct failure *failure)
+{
+    const double half = 0.5 * l->serves;
+    struct packing wide = *p;
+    vec3 *x = malloc((size_t)(p->n + 1) * sizeof *x);
+    double *radius = malloc((size_t)(p->n + 1) * sizeof *radius);
+    int64_t n = 0;
+    l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
+    for (int64_t i = 0; x && radius && i < p->n; i++) {
+        x[i] = v3_axpy(l->listed[i], half, l->drift[i]);
+        radius[i] = p->radius[i] + half * v3_norm(v3_sub(l->drift[i], mean));
+    }
+    wide.radius = radius;
+    if (!x || !radius)
+        failure_set(failure, EX_SOFTWARE, "no memory for small steps");
+    else
+        seek_pairs(&l->pairs, &wide, x, o->edge, failure);
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        if (comes_near(l, p, o->edge, &l->pairs.pair[i])) l->pairs.pair[n++] = l->pairs.pair[i];
+    l->pairs.n = n;
+    free(x), free(radius);
+    return failure->status;
+}
+
 /* ---- the list ---- */
 
-int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x,
-                    const vec3 edge[3], double t, struct failure *failure)
+int small_list_make(struct small_list *l, const struct packing *p, const struct small_start *o,
+                    struct failure *failure)
 {
     struct small_list was;
     bool room = true;
+    vec3 mean;
     if (small_bodies(l, p, failure)) return failure->status;
+    if (!l->stiffness && small_stiff_acts(p) && !(l->stiffness = small_stiff_table(p, l->interval)))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the springs");
     was = *l;
     small_forget(l);
-    l->spare = MARGIN * packing_whole(p).small, l->way = 0;
+    l->spare = MARGIN * packing_whole(p).small;
     l->margin = l->spare + small_tie_reach(p), l->s.slack = CLOSE * l->margin;
-    l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
-    if (!seek_pairs(&l->pairs, p, x, edge, failure)) {
+    set_ways(l, p, o, &mean);
+    if (!seek_along(l, p, o, mean, failure)) {
         room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
-               small_pairs_lay(l, p, x, edge) && list_images(l) && find_touches(l, &was, p, x, t) &&
+               small_pairs_lay(l, p, o->x, o->edge) && list_images(l) &&
+               find_touches(l, &was, p, o->x, o->t) &&
                ((!p->shape && !p->mesh.elements) ||
                 small_meetings_lay(&l->meetings, p, &was.meetings));
         if (room) carry_pairs(l, &was), carry_touches(l, &was);
         if (room) small_meetings_carry(&l->meetings, &was.meetings);
     }
     if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    memcpy(l->listed, x, (size_t)p->n * sizeof *x);
     small_arrays_free(&was);
     return failure->status;
 }

@@ -17,35 +17,52 @@ struct small_touch {
     double couple[3];                /* N m s: of f about the body's centre, where it was made */
     double m[3], turned[3], most[2]; /* turned: the sum of m */
     double mu, e[2];
-    double hold[HOLD_COUNT]; /* where something attracts */
+    double hold[HOLD_COUNT];     /* where something attracts */
+    double spring[SPRING_COUNT]; /* where the contact has a stiffness */
     /* Of the step in hand */
     bool near;
     vec3 n, v;   /* normal; m/s: of the wall's material there */
     double arm;  /* m: from the body's centre to the wall, along -n */
     double work; /* J: that the body has done on the wall in this interval */
+    double
+        until; /* m: one that does not push is looked at when rate.gone and the reach exceed it */
 };
 
 struct small_list {
     struct small s;
-    double margin, spare, way; /* m: pairs are listed to this gap; the list serves until a body has
-                                  moved by half of `spare`; and nothing has moved farther since */
-    vec3 *listed;              /* [bodies] m: where bodies were */
-    struct pairs pairs;        /* of balls */
-    struct small_meetings meetings; /* of others */
-    const struct surface *surface;  /* [walls] of meshes; borrowed */
-    int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
-    int64_t images, *image;         /* [images] pairs whose b is an image */
+    double margin, spare; /* m: pairs are listed that come to this gap on straight ways; the list
+                             serves until a body is half of `spare` beside its own, */
+    double serves, since; /* s: or for so long; since it was made */
+    double strays, walls; /* m: no body is farther beside its way; by how much walls have gone
+                             farther than at `wall` */
+    double wall;          /* m/s: of walls, when it was made */
+    vec3 *listed, *drift; /* [bodies] m, m/s: where the ways begin, and velocities along them */
+    double interval;      /* s: of the whole step */
+    struct small_stiffness *stiffness; /* [materials^2]; NULL: no contact has one */
+    struct pairs pairs;                /* of balls */
+    struct small_meetings meetings;    /* of others */
+    const struct surface *surface;     /* [walls] of meshes; borrowed */
+    int64_t *slot;                     /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
+    int64_t images, *image;            /* [images] pairs whose b is an image */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
 };
 
 void small_list_free(struct small_list *l);
+/* What a list is made of */
+struct small_start {
+    const vec3 *x,
+        *v; /* [bodies] m, m/s; v NULL: where they go is not known, and the list serves a shorter way */
+    const vec3 *edge; /* [3] m: of the cell */
+    double t, span;   /* s: of the walls; in which it is to serve */
+    double wall;      /* m/s: of the fastest point of walls */
+};
 /*
- * Finds the pairs of bodies at x (m) in a cell with these edges (m), and of these with walls at time t (s). What pairs and touches of the list before
- * have is kept. Returns 0, EX_SOFTWARE or EX_DATAERR.
+ * Finds the pairs of bodies, and of these with walls. What pairs and touches of the list before have is kept. Returns 0,
+ * EX_SOFTWARE or EX_DATAERR.
  */
-int small_list_make(struct small_list *l, const struct packing *p, const vec3 *x,
-                    const vec3 edge[3], double t, struct failure *failure);
+int small_list_make(struct small_list *l, const struct packing *p, const struct small_start *o,
+                    struct failure *failure);
 /* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
 bool small_list_recall(struct small_list *l, const struct packing *p, double part);
 /* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */

@@ -10,6 +10,7 @@
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_seam.h"
+#include "step/small_springs.h"
 #include "step/small_sums.h"
 #include "step/small_touch.h"
 #include "step/small_wall.h"
@@ -84,16 +85,21 @@ static double begin_bodies(struct small_run *r, double warm, int64_t first, int6
 
 static void move_bodies(struct small_run *r, int64_t first, int64_t end)
 {
-    struct small *s = &r->l->s;
+    const struct small_list *l = r->l;
+    const struct small *s = &l->s;
     int64_t shaken = 0;
+    double most = 0;
     for (int64_t i = first; i < end; i++) {
         const struct body *b = &s->body[i];
         shaken += shaken_by(r, i);
         for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
+        const vec3 way = v3_axpy(l->listed[i], l->since, l->drift[i]);
+        const vec3 d = v3_sub(small_vec(s->place[i].x), way);
+        most = fmax(most, v3_dot(d, d));
         r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
     }
     pthread_mutex_lock(&r->lock);
-    r->shaken += shaken;
+    r->shaken += shaken, r->strays = fmax(r->strays, most);
     pthread_mutex_unlock(&r->lock);
     if (r->meets) small_points_place(r, first, end);
 }
@@ -105,10 +111,10 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     struct small_law l;
     double df[3];
     vec3 dp = v3(0, 0, 0);
-    if (again ? !t->near : !small_touch_near(r, t)) return;
+    if (again ? !t->near : small_touch_waits(r, t) || !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
     if (!again) dp = small_touch_begin(r, t, &l);
-    small_solve(&l, df);
+    small_touch_solve(t, &l, r->h, df);
     small_touch_give(r, t, &l, df, dp, 1, again);
 }
 
@@ -215,6 +221,8 @@ static void settle_slot(struct small *s, int64_t slot)
     const int64_t a = body_index(c->a[k]), b = body_index(c->b[k]);
     const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     if (f.x == 0 && f.y == 0 && f.z == 0) return;
+    if (s->spring && s->spring[i].x[SPRING_KN][k] > 0 && !(s->spring[i].x[SPRING_BETA][k] > 0))
+        return;
     const vec3 d = small_branch(s, slot);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
     const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
@@ -252,17 +260,6 @@ static void settle_pairs(struct small *s)
 
 /* ---- a small step ---- */
 
-/* m: the way of the body that has moved farthest since the list was made */
-static double farthest(const struct small_run *r)
-{
-    double most = 0;
-    for (int64_t i = 0; i < r->p->n; i++) {
-        vec3 d = v3_sub(small_vec(r->l->s.place[i].x), r->l->listed[i]);
-        most = fmax(most, v3_dot(d, d));
-    }
-    return sqrt(most);
-}
-
 /* m/s: of a point of a wall */
 static double fastest_wall(const struct small_run *r)
 {
@@ -279,10 +276,11 @@ static void prepare_step(struct small_run *r)
                  way = r->h * (fmax(sqrt(r->fastest), wall) + small_cell_stretch(r));
     if (!isfinite(way)) r->failed = r->stop = true;
     l->s.rate.reach = fmin(2 * way + r->h * (l->s.rate.calm + l->s.rate.pulls), l->margin);
-    if (wall == 0 && !r->cell.moves && l->way + 2 * way > 0.49 * l->spare) l->way = farthest(r);
-    l->way += way, l->s.rate.gone += 2 * way;
-    r->shaken = 0;
-    r->stop = r->stop || l->way + way > 0.49 * l->spare;
+    l->strays = r->cell.moves ? l->strays + way : sqrt(r->strays);
+    l->walls += r->h * (wall - l->wall), l->since += r->h, l->s.rate.gone += 2 * way;
+    r->shaken = 0, r->strays = 0;
+    r->stop = r->stop || fmax(l->strays, l->walls) + 2 * way > 0.49 * l->spare ||
+              (l->serves > 0 && l->since + 0.5 * r->h > l->serves);
     r->fastest = 0;
 }
 
@@ -396,6 +394,10 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads);
+        if (r->meets && r->begins && r->l->s.spring && !me) {
+            small_springs_recall_points(r);
+            r->stored += small_springs_points(r, r->l->s.before).stored;
+        }
         if (r->meets && r->l->s.hold && !me) small_attract(r);
         if (r->meets && r->l->s.hold) team_meet();
         if (r->meets) small_points_start(r, me, threads);

@@ -96,7 +96,7 @@ struct small_run {
     struct small_list *l;
     const struct small_kernels *kernel;
     struct small_wall *wall; /* [walls] */
-    vec3 *x, *turned;        /* [n] m; rad: by which bodies have turned */
+    vec3 *x, *v, *turned;    /* [n] m, m/s; rad: by which bodies have turned */
     struct small_pull *pull; /* [n] NULL: no forces on bodies, and no cell that moves */
     struct small_cell cell;
     struct small_loads loads;
@@ -106,6 +106,7 @@ struct small_run {
     struct small_shapes shapes;
     double thin;             /* m: the smallest size of a body */
     double h, ahead;         /* s */
+    double overlap;          /* radii of the smallest body: what is permitted */
     double fall;             /* m/s: in a small step, by all forces that are not reactions */
     double weight, load;     /* N s: of all bodies, in it; of the mean body, over its weight */
     int64_t free;            /* bodies that move */
@@ -128,7 +129,8 @@ struct small_run {
     _Atomic bool far; /* a sweep has changed a body by more than is allowed */
     pthread_mutex_t lock; /* of what follows */
     double fastest;       /* m^2/s^2: of bodies */
-    int64_t shaken;       /* by how much the last step has changed velocities [step/small_loop.c] */
+    double strays; /* m^2: the square of how far bodies are beside their ways [step/small_list.h] */
+    int64_t shaken; /* by how much the last step has changed velocities [step/small_loop.c] */
 };
 
 /* Does a load move the wall of a touch? */

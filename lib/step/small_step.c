@@ -17,8 +17,11 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
+#include "step/small_near.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_springs.h"
+#include "step/small_stiff.h"
 #include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
@@ -38,11 +41,13 @@ enum {
 #define UNEVEN 30
 /* Of h: tau, in which overlaps are left */
 #define RELAXES 11
-/* Of the fastest speed, or of what moves a body by UNSEEN of the smallest radius in h: a change of a velocity that is not
+/* Of the fastest speed, of what moves a body by the permitted overlap in h at most and by UNSEEN of the smallest radius at least: a change of a velocity that is not
    followed up, in the first sweep of a step, without restitution, and in others. Less would carry impacts farther into a
    packing, and cost a flowing drum a tenth of its time and more. */
 #define UNSEEN 1e-3
-static const double ALLOWED[2] = { 0.67, 0.1 };
+static const double ALLOWED[2] = { 0.45, 0.1 };
+/* The same in the first sweep where bodies have several points, which are solved together */
+#define ALLOWED_POINTS 0.67
 
 /* Those whose loads or edges move fast, which one solve of a whole step would leave with overlaps */
 bool small_divides(const struct packing *p)
@@ -54,9 +59,10 @@ const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (packing_has_springs(p)) return "contacts with a stiffness";
-    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
-        if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
+    if (packing_adheres(p) && (p->shape || p->mesh.elements))
+        return "adhesion of other shapes than balls";
+    if (small_stiff_exceeds(p))
+        return "contacts or bonds so stiff that a step has more than 1000 small ones";
     return NULL;
 }
 
@@ -123,6 +129,98 @@ static double small_hurry(const struct packing *p, double more)
     return most;
 }
 
+/* ---- their number ---- */
+
+/* The mass of the heaviest body over that of the lightest, by how many of the smallest find room below it */
+static double small_heaviest(const struct packing *p)
+{
+    const struct whole all = packing_whole(p);
+    double least = INFINITY, most = 0;
+    for (int64_t i = 0; i < p->n; i++) {
+        const double wide = p->radius[i] / all.small;
+        if (p->mass[i] > 0) least = fmin(least, p->mass[i]);
+        if (p->mass[i] > 0) most = fmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
+    }
+    return most > 0 ? most / least : 0;
+}
+
+/* Of the heaviest body: what a column carries besides its own grains. More would cost small steps, less overlap. */
+#define CARRIES 0.25
+/* s: in which a body that a column of grains as high as the packing pushes, with the heaviest body on it, and forces on bodies,
+   moves by STEADY of the smallest radius */
+#define STEADY 1e-3
+static double small_steady(const struct packing *p)
+{
+    const double g = v3_norm(p->g);
+    const struct small_sizes size = small_sizes(p);
+    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
+    for (int64_t i = 0; i < p->n; i++) {
+        const double z = v3_dot(p->g, p->x[i]);
+        if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
+    }
+    if (g > 0 && hi >= lo)
+        pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
+    return pressed > 0 ? sqrt(STEADY * small_coarse(p) / pressed) : INFINITY;
+}
+
+/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
+static double small_carries(const struct packing *p)
+{
+    double most = 0;
+    for (int64_t i = 0; i < p->memory.n; i++) {
+        const struct recall *c = &p->memory.recall[i];
+        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)])) continue;
+        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
+        most = fmax(most, w * v3_norm(c->r));
+    }
+    return most / p->dt;
+}
+
+/* Of h^2 a/r over R: a pair that carries an acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
+   and where points with their levers have more W */
+static const double CARRIED[2] = { 1, 0.4 };
+/* Without loads, of h: overlaps change with h, and a packing that flows would be shaken by a number of small steps that follows its
+   largest reaction, which in drums and silos is below this; what walls squeeze exceeds it. */
+static const double SPARED[2] = { 2, 1.5 };
+/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
+enum { CARRIED_MOST = 4 };
+
+/* Of a packing that is in such a hurry (1/s) [small_hurry()]; 0: too many */
+static int64_t small_count_at(const struct packing *p, double overlap, double hurry)
+{
+    const bool points = small_has_shapes(p);
+    const double size = freedoms_in(p) ? small_sizes(p).least : small_coarse(p);
+    const double permits = CARRIED[points] * overlap * size;
+    double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
+    const double spared = freedoms_in(p) ? 1 : SPARED[points];
+    n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits) / spared, CARRIED_MOST * n));
+    n = fmax(n, small_stiff_count(p));
+    return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
+}
+
+int64_t small_count(const struct packing *p, double overlap)
+{
+    return small_count_at(p, overlap, small_hurry(p, packing_most_fall(p) + small_tie_speed(p)));
+}
+
+/* Where the list has been made: fewer, longer small steps, if what is fast is so against nothing near it */
+static void small_count_near(struct small_run *r)
+{
+    struct packing *p = r->p;
+    const double was = r->ahead, dt = (double)r->n * r->h;
+    p->dt = dt;
+    const double fastest = small_near_speed(r) + packing_most_fall(p) + small_tie_speed(p);
+    const int64_t n = small_count_at(p, r->overlap, fastest / r->thin);
+    p->dt = r->h;
+    if (!n || n >= r->n) return;
+    r->n = n, r->h = p->dt = dt / (double)n, r->ahead = (1 - p->theta) * r->h;
+    r->l->since = r->ahead - was;
+    for (int64_t i = 0; i < p->n; i++) r->x[i] = v3_axpy(p->x[i], r->ahead, p->v[i]);
+}
+
+/* ---- the first list ---- */
+
 static void small_set_rates(struct small_run *r)
 {
     const struct packing *p = r->p;
@@ -139,17 +237,21 @@ static void small_set_rates(struct small_run *r)
         if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
-    const double change = fmax(fastest, UNSEEN * r->thin / r->h);
-    r->l->s.rate = (struct small_rates){ .h = r->h,
-                                         .per_h = 1 / r->h,
-                                         .relax = 1 / ((1 + RELAXES) * r->h),
-                                         .push = 2 * fall + 0.02 * fastest,
-                                         .soft = COMPLIANCE,
-                                         .gives = r->uneven ? INFINITY : 0,
-                                         .calm = freedoms_calm(p),
-                                         .pulls = 2 * r->h * small_tie_most(p),
-                                         .holds = small_tie_range(p, r->h),
-                                         .allowed = { ALLOWED[0] * change, ALLOWED[1] * change } };
+    const double change =
+        fmax(fmin(fastest, r->overlap * small_coarse(p) / r->h), UNSEEN * r->thin / r->h);
+    r->l->s.rate =
+        (struct small_rates){ .h = r->h,
+                              .per_h = 1 / r->h,
+                              .relax = 1 / ((1 + RELAXES) * r->h),
+                              .push = 2 * fall + 0.02 * fastest,
+                              .soft = COMPLIANCE,
+                              .gives = r->uneven ? INFINITY : 0,
+                              .calm = freedoms_calm(p),
+                              .pulls = 2 * r->h * small_tie_most(p),
+                              .rise = r->h * fall,
+                              .holds = small_tie_range(p, r->h),
+                              .allowed = { (r->meets ? ALLOWED_POINTS : ALLOWED[0]) * change,
+                                           ALLOWED[1] * change } };
 }
 
 static void take_bodies(struct small_run *r)
@@ -195,31 +297,48 @@ static void give_bodies(const struct small_run *r)
 static int small_steps(struct small_run *r, const struct small_opt *o, struct report *rep,
                        struct failure *failure)
 {
-    for (int64_t i = 0; i < r->p->n; i++) r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
+    for (int64_t i = 0; i < r->p->n; i++) {
+        r->x[i] = v3_axpy(r->p->x[i], r->ahead, r->p->v[i]);
+        r->v[i] = r->p->v[i];
+    }
     small_list_free(r->l);
     r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
+    r->l->interval = r->h * (double)r->n;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
-        if (small_list_make(r->l, r->p, r->x, r->cell.edge, r->p->t + r->ahead, failure)) break;
+        const struct small_start start = { .x = r->x,
+                                           .v = r->meets || r->cell.moves ? NULL : r->v,
+                                           .edge = r->cell.edge,
+                                           .t = r->p->t + r->ahead,
+                                           .span = (double)(r->n - r->made) * r->h,
+                                           .wall = small_wall_speed(r->p) };
+        if (small_list_make(r->l, r->p, &start, failure)) break;
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
-            small_set_rates(r), take_bodies(r), small_walls_set(r);
+            small_walls_set(r);
+            if (start.v && !freedoms_in(r->p) && !r->l->stiffness) small_count_near(r);
+            take_bodies(r), small_set_rates(r), small_walls_set(r);
             if ((!o->bare || o->bound > 0) && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
             if (o->warm && !small_list_recall(r->l, r->p, 1 / (double)r->n)) {
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
                 break;
             }
-            small_bonds_recall(r, o->warm);
+            small_bonds_recall(r, o->warm), small_springs_recall(r);
             r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
-            r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
+            r->stored = ties.stored - ties.joined +
+                        small_springs_sums(r).stored; // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
         if (r->lost) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-        for (int64_t i = 0; i < r->p->n; i++) r->x[i] = small_vec(r->l->s.place[i].x);
+        for (int64_t i = 0; i < r->p->n; i++) {
+            r->x[i] = small_vec(r->l->s.place[i].x);
+            r->v[i] = small_vec(r->l->s.body[i].v);
+        }
+        r->strays = 0;
     }
     small_walls_set(r);
     if (r->cell.moves) small_cell_images(r, 0, 1);
@@ -272,8 +391,10 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
-    b->broken = -ties.joined;
+    const struct small_spring_sums springs = small_springs_sums(r);
+    b->bond_energy = ties.stored + springs.stored + small_springs_points(r, l->s.body).stored;
+    b->bond_change = b->bond_energy - r->stored;
+    b->broken = springs.broken - ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
@@ -296,74 +417,11 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
+                            .soft = packing_has_springs(r->p),
                             .tied = r->p->law != NULL,
                             .sheared = energy_has_peculiar(r->p),
                             .small = r->n,
                             .small_limited = r->unsolved };
-}
-
-/* The mass of the heaviest body over that of the lightest, by how many of the smallest find room below it */
-static double small_heaviest(const struct packing *p)
-{
-    const struct whole all = packing_whole(p);
-    double least = INFINITY, most = 0;
-    for (int64_t i = 0; i < p->n; i++) {
-        const double wide = p->radius[i] / all.small;
-        if (p->mass[i] > 0) least = fmin(least, p->mass[i]);
-        if (p->mass[i] > 0) most = fmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
-    }
-    return most > 0 ? most / least : 0;
-}
-
-/* Of the heaviest body: what a column carries besides its own grains. More would cost small steps, less overlap. */
-#define CARRIES 0.25
-/* s: in which a body that a column of grains as high as the packing pushes, with the heaviest body on it, and forces on bodies,
-   moves by STEADY of the smallest radius */
-#define STEADY 1e-3
-static double small_steady(const struct packing *p)
-{
-    const double g = v3_norm(p->g);
-    const struct small_sizes size = small_sizes(p);
-    double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
-    for (int64_t i = 0; i < p->n; i++) {
-        const double z = v3_dot(p->g, p->x[i]);
-        if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
-    }
-    if (g > 0 && hi >= lo)
-        pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
-    return pressed > 0 ? sqrt(STEADY * small_coarse(p) / pressed) : INFINITY;
-}
-
-/* m/s^2: the largest acceleration that a reaction that lasts would give to its pair */
-static double small_carries(const struct packing *p)
-{
-    double most = 0;
-    for (int64_t i = 0; i < p->memory.n; i++) {
-        const struct recall *c = &p->memory.recall[i];
-        double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
-        if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
-        most = fmax(most, w * v3_norm(c->r));
-    }
-    return most / p->dt;
-}
-
-/* Of h^2 a/r over R: a pair that carries an acceleration a is left with an overlap of C f (h + tau), half of R r at most; of balls,
-   and where points with their levers have more W */
-static const double CARRIED[2] = { 1, 0.4 };
-/* Without loads, of h: overlaps change with h, and a packing that flows would be shaken by a number of small steps that follows its
-   largest reaction, which in drums and silos is below this; what walls squeeze exceeds it. */
-static const double SPARED = 1.5;
-/* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
-enum { CARRIED_MOST = 4 };
-
-int64_t small_count(const struct packing *p, double overlap)
-{
-    const double hurry = small_hurry(p, packing_most_fall(p) + small_tie_speed(p));
-    const double permits = CARRIED[small_has_shapes(p)] * overlap * small_sizes(p).least;
-    double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
-    const double carried = p->dt * sqrt(small_carries(p) / permits) / (freedoms_in(p) ? 1 : SPARED);
-    n = fmax(n, fmin(carried, CARRIED_MOST * n));
-    return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
 int64_t small_parts(const struct packing *p, double overlap)
@@ -388,15 +446,16 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
-    r.n = count, r.kernel = backend_widest()->small;
+    r.n = count, r.overlap = o->overlap, r.kernel = backend_widest()->small;
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
     r.wall = calloc((size_t)p->walls + 1, sizeof *r.wall);
-    r.x = calloc(n, sizeof *r.x), r.turned = calloc(n, sizeof *r.turned);
+    r.x = calloc(n, sizeof *r.x), r.v = calloc(n, sizeof *r.v);
+    r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     r.meets = small_has_shapes(p) || p->mesh.elements, r.thin = small_sizes(p).least;
     small_cell_init(&r);
-    if (!r.wall || !r.x || !r.turned)
+    if (!r.wall || !r.x || !r.v || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
              !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
@@ -428,6 +487,6 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_loads_free(&r, !*made), small_stress_free(&r);
     small_points_free(&r), small_error_free(&r);
-    free(r.wall), free(r.x), free(r.turned), free(r.pull), free(r.sums);
+    free(r.wall), free(r.x), free(r.v), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }

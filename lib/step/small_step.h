@@ -13,7 +13,8 @@
 #include "step/small_list.h"
 
 struct small_opt {
-    double overlap; /* R: of its size a body is moved by at most in a small step */
+    double
+        overlap; /* R: of its size a body is moved by at most in a small step, against what is near it */
     int threads;
     struct neighbours *near; /* surfaces of meshes, kept from step to step */
     bool bare;               /* nobody reads the errors and the contacts of this step */
