@@ -33,6 +33,7 @@ printf 'code\theavy ball\trow e=1, in two orders\trow e=0.9\n'
 line "nsd, small steps" 0 by_nsd
 line "nsd, one solve per step" 0 by_nsd --small-steps 0
 line "nsd, --stiffness auto" 0 by_nsd --stiffness auto
+line "nsd, small steps, 1e6 N/m" 0 by_nsd --stiffness 1e6
 line "soft spheres, plastic loss" 0 by_dem --set hyst=1
 line "soft spheres, dashpots" 0 by_dem
 line "nsd, small steps, gaps" 1e-6 by_nsd
@@ -40,5 +41,5 @@ line "nsd, one solve per step, gaps" 1e-6 by_nsd --small-steps 0
 # a stiffness that resolves the wave more or less
 for dt in 3.2e-6 1e-6 3.2e-7 2.3e-7 1e-7 1e-8; do
     printf 'nsd, 1e6 N/m, k h^2/m = %.2g\t\t%s\n' "$(jq -n "1e6 * $dt * $dt / 1.0472e-5")" \
-        "$(row 1 0 '[0, 1, 2, 3, 4]' >"$work/row.h5" && nsd-info --scene "$work/row.h5" | jq ".dt = $dt" | nsd-gen - | nsd-step --stiffness 1e6 --until 1e-3 --every 1e-3s 2> /dev/null | last 0)"
+        "$(row 1 0 '[0, 1, 2, 3, 4]' >"$work/row.h5" && nsd-info --scene "$work/row.h5" | jq ".dt = $dt" | nsd-gen - | nsd-step --small-steps 0 --stiffness 1e6 --until 1e-3 --every 1e-3s 2> /dev/null | last 0)"
 done

@@ -257,7 +257,7 @@ static void say_stiffness(const struct packing *p)
     if (of[1].k > 0)
         warn("stiffness of contacts %s N/m, compliance %.2g of W%s",
              range_text(range, sizeof range, of[0].k, of[1].k), soft,
-             soft < COMPLIANCE_SOFT
+             soft < COMPLIANCE_SOFT && !total.small
                  ? ": too stiff for dt to keep sweeps from growing with the packing"
                  : "");
 }

@@ -2,7 +2,7 @@
 set -euo pipefail
 # the size of the instrument: GRAIN=1 SIZE=1 DT=1e-4 LOAD=4.6
 grain=${GRAIN:-1.8} size=${SIZE:-0.4} dt=${DT:-4e-4} speed=${SPEED:-0.045} load=${LOAD:-0.8}
-read -ra step <<<"${STEP---stiffness $(jq -n "600 * $load")}" # options of nsd-step
+read -ra step <<<"${STEP---small-steps 0 --stiffness $(jq -n "600 * $load")}" # options of nsd-step
 step() # LOAD ARGUMENT ...: steps under a load, N
 {
     local load=$1

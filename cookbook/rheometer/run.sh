@@ -2,7 +2,7 @@
 set -euo pipefail
 # the instrument itself: GRAIN=1 DT=1e-4 FILL=80 TIP=0.1 SURFACES=FOLDER, where FOLDER has the STL files
 grain=${GRAIN:-3.4} dt=${DT:-2.5e-4} fill=${FILL:-20} tip=${TIP:-0.5} surfaces=${SURFACES:-}
-read -ra step <<<"${STEP---stiffness 5e3}" # options of nsd-step
+read -ra step <<<"${STEP---small-steps 0 --stiffness 5e3}" # options of nsd-step
 scene() { jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson fill "$fill" --argjson tip "$tip" --arg surfaces "$surfaces" --arg settled "$1"; }
 scene "" | nsd-gen - | nsd-step "${step[@]}" --until "${SETTLE:-0.15}" --every 1s -o settled.h5
 scene settled.h5 >rheometer.json

@@ -3,7 +3,7 @@ set -euo pipefail
 # the instrument itself: GRAIN=1 SIZE=1 DT=1e-4 OMEGA=0.1 LOAD=45 SURFACES=FOLDER, where FOLDER has the STL files
 # the shear head of a powder rheometer, in its vessel of 50 mm: CELL=ft4 SIZE=1 GRAIN=2.8 OMEGA=1.5 LOAD=4; DT=1e-4 GRAIN=1 for the powder
 grain=${GRAIN:-1.8} size=${SIZE:-0.2} dt=${DT:-4e-4} omega=${OMEGA:-3} load=${LOAD:-1.8} surfaces=${SURFACES:-} name=${CELL:-schulze}
-read -ra step <<<"${STEP---stiffness $(jq -n "300 * $load")}" # options of nsd-step
+read -ra step <<<"${STEP---small-steps 0 --stiffness $(jq -n "300 * $load")}" # options of nsd-step
 cell=$(jq -nc --arg n "$name" '{ schulze: { box: "Schulze-Normal/box.stl", head: "Schulze-Normal/head_full.stl", inner: 50, outer: 100, deep: 40, from: 51, to: 99, vanes: 20 },
     ft4: { box: "FT4/box.stl", head: "FT4/shear_head.stl", inner: 0, outer: 25, deep: 20, from: 0.5, to: 24, vanes: 18 } }[$n]')
 # the head: a ring with vanes of 4 mm

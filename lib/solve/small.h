@@ -39,6 +39,7 @@
 
 #include "solve/bundle.h"
 #include "solve/small_hold.h"
+#include "solve/small_spring.h"
 
 /* Where a body is, in the place of its struct body */
 struct small_place {
@@ -69,6 +70,11 @@ struct small_holds {
     double x[HOLD_COUNT][BUNDLE];
 };
 
+/* The springs of the pairs of a bundle [solve/small_spring.h] */
+struct small_springs {
+    double x[SPRING_COUNT][BUNDLE];
+};
+
 /* Static and kinetic friction of a bundle, of which mu is one in each step [contact/contact_law.h] */
 struct small_stick {
     double mu[2][BUNDLE]; /* mu_s and mu */
@@ -93,6 +99,7 @@ struct small_rates {
     double reach;    /* m: pairs that are farther apart do not touch in this step */
     double pulls;    /* m/s: no pair is pulled faster in a step */
     double holds;    /* m: nor are held together without a bridge; 0 */
+    double rise;     /* m: in a step, of overlaps that springs have not made */
     double gone;     /* m: by how much two bodies may have come nearer in this interval */
     double allowed
         [2]; /* m/s: a change of a velocity that is not followed up, in the first sweep and in others */
@@ -108,11 +115,12 @@ struct small {
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
     int64_t *group;                  /* [groups + 1] */
     struct small_bundle *bundle;
-    struct small_turn *turn;   /* NULL: nothing rolls */
-    struct small_shift *shift; /* NULL: no images */
-    bool moves;                /* images do not move as their bodies */
-    struct small_holds *hold;  /* NULL: nothing attracts */
-    struct small_stick *stick; /* NULL: no static friction */
+    struct small_turn *turn;      /* NULL: nothing rolls */
+    struct small_shift *shift;    /* NULL: no images */
+    bool moves;                   /* images do not move as their bodies */
+    struct small_holds *hold;     /* NULL: nothing attracts */
+    struct small_stick *stick;    /* NULL: no static friction */
+    struct small_springs *spring; /* NULL: no contact has a stiffness */
     uint8_t *live, *late; /* [8 bundles] lanes from there on push; and push more than may persist */
     double *until; /* [8 bundles] m: lanes are looked at when rate.gone and the reach exceed it */
     double slack;  /* m: above the rounding of places */
@@ -217,6 +225,55 @@ ALWAYS_INLINE void small_solve(struct small_law *l, vd df[3])
         vd f = l->rn * l->n[i] + rt[i];
         df[i] = f - l->f[i], l->f[i] = f;
     }
+}
+
+/* f of pairs with springs x; q: of small_spring_begin() */
+ALWAYS_INLINE void small_solve_soft(const struct small_law *l, const vd x[SPRING_COUNT], vd *fn,
+                                    vd rt[3])
+{
+    vd un, qn, rn, ut[3], qt[3], zero = splat(0);
+    small_split(l->n, l->u, &un, ut), small_split(l->n, l->q, &qn, qt);
+    small_split(l->n, l->f, &rn, rt);
+    vd gn = x[SPRING_PART] * x[SPRING_GN] + x[SPRING_YIELD] * x[SPRING_KN];
+    vd gt = x[SPRING_PART] * x[SPRING_GT] + x[SPRING_YIELD] * x[SPRING_KT];
+    *fn = rn - (rn + qn + gn * un) / (1 + gn * l->wn);
+    *fn = pick(lt(qn, zero) | lt(zero, x[SPRING_YIELD]), larger(*fn, zero), zero);
+    vd s = 1 / (1 + gt * l->wt);
+    for (int i = 0; i < 3; i++) rt[i] -= s * (rt[i] + qt[i] + gt * ut[i]);
+    small_cut(l->mu * *fn, rt);
+}
+
+/* small_solve() where pairs may have springs or a bond x, in steps of h; rn is without what a bond pulls. A bond alone gives f = b;
+   r moves its pair by W/(1 + G W), and the bond, G = h^2 S beta^2 c, takes the rest of r. */
+ALWAYS_INLINE void small_solve_springs(struct small_law *l, const vd x[SPRING_COUNT], double h,
+                                       vd df[3])
+{
+    const struct small_law was = *l;
+    vd un, rn, ut[3], rt[3], p[3], pn, pt[3], b[3], fn, ft[3], one = splat(1), zero = splat(0);
+    vm springs = small_spring_acts(x), bonded = small_bond_holds(x);
+    vd beta2 = x[SPRING_BETA] * x[SPRING_BETA], gn = h * beta2 * x[SPRING_SN];
+    vd gt = h * beta2 * x[SPRING_ST], sn = 1 / (1 + gn * l->wn), st = 1 / (1 + gt * l->wt);
+    small_solve_soft(l, x, &fn, ft);
+    small_bond_pull(x, l->n, l->gap, p), small_split(l->n, p, &pn, pt);
+    small_split(l->n, l->u, &un, ut), small_split(l->n, l->f, &rn, rt);
+    vd bn = sn * (pn + gn * (l->wn * rn - un));
+    for (int i = 0; i < 3; i++) {
+        b[i] = st * (pt[i] + gt * (l->wt * rt[i] - ut[i]));
+        vd moved = l->wn * (bn - rn) * l->n[i] + l->wt * (b[i] - rt[i]);
+        l->u[i] = pick(bonded, l->u[i] + moved, l->u[i]), l->f[i] = pick(bonded, zero, l->f[i]);
+    }
+    l->wn = pick(bonded, sn * l->wn, l->wn), l->wt = pick(bonded, st * l->wt, l->wt);
+    l->mu = l->mu * (one - x[SPRING_BETA]);
+    small_solve(l, df);
+    vd rigid = l->rn;
+    l->rn = pick(springs, fn, rigid);
+    for (int i = 0; i < 3; i++) {
+        l->rt[i] = pick(bonded, b[i] + st * l->rt[i], pick(springs, ft[i], l->rt[i]));
+        vd along = pick(bonded, bn + sn * rigid, l->rn);
+        l->f[i] = along * l->n[i] + l->rt[i], df[i] = l->f[i] - was.f[i];
+        l->u[i] = was.u[i];
+    }
+    l->wn = was.wn, l->wt = was.wt;
 }
 
 /* m of rolling and pivoting friction, where it makes w of b against a; wr (1/(kg m^2)), dm: its change */

@@ -111,9 +111,9 @@ ALWAYS_INLINE void small_give(const struct small_pairs *y, struct small *s, cons
     bodies_add(s->body, y->c->a + y->k, &da), bodies_add(s->body, y->c->b + y->k, &db);
 }
 
-/* The law in the first sweep of a step */
+/* The law in the first sweep of a step; bonds pull by p, and `still` ones do not rebound. l->f is then without p. */
 ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *s,
-                               struct small_law *l)
+                               struct small_law *l, const vd p[3], vm still)
 {
     const struct small_rates *o = &s->rate;
     const int k = y->k;
@@ -121,6 +121,7 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
     vd sum[3], w[3];
     small_load(sum, c->sum, k);
     for (int j = 0; j < 3; j++) sum[j] += l->f[j], l->f[j] = s->rate.warm * l->f[j];
+    for (int j = 0; j < 3 && p; j++) l->f[j] = l->f[j] - p[j];
     vd kept = dot3(l->n, l->f);
     for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j];
     small_store(c->sum, k, sum);
@@ -134,7 +135,9 @@ ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *
         vd before[3];
         bodies_load(&a, s->before, c->a + k, &ma), bodies_load(&b, s->before, c->b + k, &mb);
         small_velocity_image(y, s, &ma, &mb, before);
-        small_meet(l, o, before, &kept, vload(c->e[0] + k), vload(c->e[1] + k));
+        vd en = vload(c->e[0] + k), et = vload(c->e[1] + k), zero = splat(0);
+        if (p) en = pick(still, zero, en), et = pick(still, zero, et);
+        small_meet(l, o, before, &kept, en, et);
     }
     vstore(c->kept + k, kept);
     small_store(c->q, k, l->q);
@@ -260,6 +263,34 @@ ALWAYS_INLINE vm small_hold_pairs(const struct small_pairs *y, const struct smal
     return lt(zero, x[HOLD_PULL]) | lt(zero, had) | lt(zero, x[HOLD_WET]);
 }
 
+/* The law in the first sweep of a step, where pairs may have springs or bonds x, of which those that do not act keep what they have,
+   whatever the width */
+ALWAYS_INLINE void small_spring_pairs(const struct small_pairs *y, const struct small *s,
+                                      struct small_law *l, vm acts, vd x[SPRING_COUNT])
+{
+    double(*to)[BUNDLE] = s->spring[y->i].x;
+    const int k = y->k;
+    struct bodies a, b;
+    struct twist ma, mb;
+    struct small_stretch at = { .gap = l->gap, .mu = l->mu, .h = s->rate.h, .rise = s->rate.rise };
+    vd q[3], p[3], w[3];
+    bodies_load(&a, s->before, y->c->a + k, &ma), bodies_load(&b, s->before, y->c->b + k, &mb);
+    small_velocity_image(y, s, &ma, &mb, at.u);
+    for (int j = 0; j < 3; j++) w[j] = y->ma.w[j] + y->mb.w[j], at.n[j] = l->n[j];
+    at.spin = 0.5 * s->rate.h * dot3(w, l->n), at.pushed = lt(splat(0), dot3(l->n, l->f));
+    small_spring_begin(x, &at, q);
+    for (int j = SPRING_REST; j <= SPRING_GIVEN; j++) {
+        x[j] = pick(acts, x[j], vload(to[j] + k));
+        vstore(to[j] + k, x[j]);
+    }
+    vm springs = small_spring_acts(x);
+    small_bond_pull(x, l->n, l->gap, p);
+    small_begin(y, s, l, p, small_bond_stills(x));
+    for (int j = 0; j < 3; j++) l->q[j] = pick(springs, q[j], l->q[j]), l->f[j] = l->f[j] + p[j];
+    small_store(y->c->q, k, l->q);
+    vstore(y->c->kept + k, pick(springs, dot3(l->n, l->f), vload(y->c->kept + k)));
+}
+
 /* mu of the step, by the velocities before it */
 ALWAYS_INLINE void small_stick_pairs(const struct small_pairs *y, const struct small *s,
                                      struct small_law *l)
@@ -303,14 +334,23 @@ ALWAYS_INLINE bool small_lanes(struct small *s, int64_t i, int k, const vm *hot,
     const double warm = hot ? 1 : s->rate.warm;
     for (int j = 0; j < 3; j++) had[j] = warm * l.f[j], couple[j] *= warm;
     vm acts = near | lt(splat(0), dot3(had, had)), holds = NONE;
+    vd x[SPRING_COUNT];
+    for (int j = 0; j < SPRING_COUNT && rich && s->spring; j++) x[j] = vload(s->spring[i].x[j] + k);
+    if (rich && s->spring) acts = acts | small_bond_holds(x);
     if (rich && s->hold) holds = small_hold_pairs(&y, s, &l, hot, dp), acts = acts | holds;
     if (rich && s->stick && !hot) small_stick_pairs(&y, s, &l);
     if (hot)
         small_load(l.q, y.c->q, k), acts = acts & *hot;
+    else if (rich && s->spring)
+        small_spring_pairs(&y, s, &l, acts, x), small_turned(&y, &l, couple);
     else
-        small_begin(&y, s, &l), small_turned(&y, &l, couple);
+        small_begin(&y, s, &l, NULL, NONE), small_turned(&y, &l, couple);
+    if (rich && s->spring) holds = holds | small_bond_holds(x);
     l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
-    small_solve(&l, df);
+    if (rich && s->spring)
+        small_solve_springs(&l, x, s->rate.h, df);
+    else
+        small_solve(&l, df);
     small_keep(&y, &l, had, couple, acts, df, dc);
     small_store(y.c->f, k, l.f), small_store(y.c->couple, k, couple);
     if (rolls) small_turn_pairs(&y, s, &l, acts, !hot, dc, dm);
@@ -338,7 +378,7 @@ ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bo
 
 static bool small_sweep_bundles(struct small *s, int64_t first, int64_t end, bool again)
 {
-    if (s->hold || s->stick || s->moves)
+    if (s->hold || s->stick || s->moves || s->spring)
         return again ? small_bundles(s, first, end, true, s->turn, true)
                      : small_bundles(s, first, end, false, s->turn, true);
     if (s->turn)
@@ -389,8 +429,12 @@ static void small_judge_lanes(struct small *s, int64_t i, int k)
     if (s->hold) l.calm += 2 * l.wn * vload(s->hold[i].x[HOLD_PULL] + k);
     l.most = small_most(&l, &s->rate, vload(y.c->kept + k));
     for (int j = 0; j < 3; j++) l.f[j] = had[j];
-    vd pushes = norm3(had);
-    small_solve(&l, df);
+    vd pushes = norm3(had), x[SPRING_COUNT];
+    for (int j = 0; j < SPRING_COUNT && s->spring; j++) x[j] = vload(s->spring[i].x[j] + k);
+    if (s->spring)
+        small_solve_springs(&l, x, s->rate.h, df);
+    else
+        small_solve(&l, df);
     vstore(far, pick(near | lt(zero, pushes), norm3(df), zero)), vstore(load, pushes);
     for (int j = 0; j < LANES; j++) {
         if (!(far[j] > 0) && !(load[j] > 0)) continue;

@@ -138,6 +138,13 @@ bool packing_has_springs(const struct packing *p)
     return false;
 }
 
+bool packing_adheres(const struct packing *p)
+{
+    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
+        if (pair_law_adheres(&p->law[k])) return true;
+    return false;
+}
+
 bool packing_has_compliance(const struct packing *p)
 {
     for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)

@@ -219,6 +219,8 @@ bool packing_rolls(const struct packing *p);
 bool packing_may_gain(const struct packing *p);
 /* Have contacts of any pair of materials, and has this one, a stiffness [contact/spring.h]? */
 bool packing_has_springs(const struct packing *p);
+/* May pairs be bonded? */
+bool packing_adheres(const struct packing *p);
 bool packing_springs(const struct packing *p, const struct contact *c);
 /* Have contacts of any pair of materials, and has this one, a stiffness that follows from the time step? */
 bool packing_has_compliance(const struct packing *p);

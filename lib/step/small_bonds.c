@@ -1,7 +1,8 @@
-/* step/small_bonds.c: liquid bridges through an interval of small steps [step/small_bonds.h]. */
+/* step/small_bonds.c: what lasts of pairs through an interval of small steps [step/small_bonds.h]. */
 #include "step/small_bonds.h"
 
 #include "contact/contact_law.h"
+#include "step/small_springs.h"
 #include "step/small_wall.h"
 
 #include <stdlib.h>
@@ -154,51 +155,74 @@ struct small_bonds small_bonds_account(struct small_run *r)
 
 /* ---- and back ---- */
 
-/* Keeps the bridge of a pair, where there is one; false when memory is short. */
-static bool keep_bridge(struct bonds *kept, struct contact_key key, const double x[HOLD_COUNT],
-                        double gap, vec3 n)
+/* A bond without anything that lasts */
+static struct bond bond_of(struct contact_key key)
 {
-    struct bond b = {
-        .a = key.a, .b = key.b, .feature = key.feature, .wet = BOND_WET, .gap = gap, .n = n
-    };
+    struct bond b = { .a = key.a, .b = key.b, .feature = key.feature };
     for (int k = 0; k < 3; k++) b.shift[k] = key.shift[k];
-    if (!(x[HOLD_WET] > 0) || !(gap < x[HOLD_REACH])) return true;
-    return bonds_add(kept, &b) != NULL;
+    return b;
+}
+
+/* Keeps it where its springs last, or with the bridge of its pair, where there is one; false when memory is short. */
+static bool keep_bond(struct bonds *kept, struct bond *b, bool lasts, const double x[HOLD_COUNT],
+                      double gap, vec3 n)
+{
+    if (x[HOLD_WET] > 0 && gap < x[HOLD_REACH]) b->wet = BOND_WET, b->gap = gap, b->n = n;
+    return (!b->wet && !lasts) || bonds_add(kept, b) != NULL;
+}
+
+static bool keep_touch(struct small_run *r, struct bonds *kept, struct small_touch *t)
+{
+    struct bond b = bond_of((struct contact_key){ .a = -1 - t->wall, .b = t->body });
+    if (!small_look_at_touch(r, t, r->l->margin)) return true;
+    const bool lasts = small_springs_keep_touch(r, t, &b);
+    return keep_bond(kept, &b, lasts, t->hold, t->arm - r->l->s.place[t->body].r, t->n);
+}
+
+static bool keep_pair(const struct small_run *r, struct bonds *kept, int64_t i)
+{
+    const struct small_list *l = r->l;
+    struct bond b = bond_of(small_pair_key(&l->pairs.pair[i]));
+    double x[HOLD_COUNT] = { 0 };
+    vec3 n;
+    const double gap = slot_gap(&l->s, l->slot[i], &n);
+    if (l->s.hold) hold_of(&l->s, l->slot[i], x);
+    const bool lasts = small_springs_keep_slot(r, l->slot[i], &b);
+    return keep_bond(kept, &b, lasts, x, gap, n);
+}
+
+static bool keep_points(const struct small_run *r, struct bonds *kept,
+                        const struct small_meeting *m)
+{
+    bool room = true;
+    for (int64_t k = 0; room && k < m->points; k++) {
+        const struct small_point *t = &m->point[k];
+        struct contact_key key = m->key;
+        key.feature = t->feature;
+        struct bond b = bond_of(key);
+        if (!t->there || t->seam) continue;
+        const bool lasts = small_springs_keep_point(r, m, t, &b);
+        room = keep_bond(kept, &b, lasts, m->hold, t->gap, t->n);
+    }
+    return room;
 }
 
 int small_bonds_keep(struct small_run *r, struct failure *failure)
 {
     struct small_list *l = r->l;
     struct bonds kept = { 0 };
-    if (!l->s.hold) return 0;
+    if (!l->s.hold && !l->stiffness) return 0;
     struct small_touch **by = small_list_touches(l);
     bool room = by != NULL;
-    for (int64_t i = 0; room && i < l->touches; i++) {
-        const struct contact_key key = { .a = -1 - by[i]->wall, .b = by[i]->body };
-        if (!small_look_at_touch(r, by[i], l->margin)) continue;
-        room = keep_bridge(&kept, key, by[i]->hold, by[i]->arm - l->s.place[key.b].r, by[i]->n);
-    }
-    for (int64_t i = 0; room && i < l->pairs.n; i++) {
-        double x[HOLD_COUNT];
-        vec3 n;
-        hold_of(&l->s, l->slot[i], x);
-        const double gap = slot_gap(&l->s, l->slot[i], &n);
-        room = keep_bridge(&kept, small_pair_key(&l->pairs.pair[i]), x, gap, n);
-    }
-    for (int64_t i = 0; room && i < l->meetings.n; i++) {
-        const struct small_meeting *m = &l->meetings.of[i];
-        struct contact_key key = m->key;
-        for (int64_t k = 0; room && k < m->points; k++) {
-            const struct small_point *t = &m->point[k];
-            key.feature = t->feature;
-            if (t->there && !t->seam) room = keep_bridge(&kept, key, m->hold, t->gap, t->n);
-        }
-    }
+    for (int64_t i = 0; room && i < l->touches; i++) room = keep_touch(r, &kept, by[i]);
+    for (int64_t i = 0; room && i < l->pairs.n; i++) room = keep_pair(r, &kept, i);
+    for (int64_t i = 0; room && i < l->meetings.n; i++)
+        room = keep_points(r, &kept, &l->meetings.of[i]);
     if (room && l->meetings.n) bonds_sort(&kept);
     free(by);
     if (!room) {
         bonds_free(&kept);
-        return failure_set(failure, EX_SOFTWARE, "no memory for the liquid bridges");
+        return failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
     }
     bonds_free(&r->p->bonds);
     r->p->bonds = kept;
@@ -214,11 +238,13 @@ int small_bonds_laws(struct contacts *s, const struct packing *p, struct failure
         const struct contact *c = &s->c[i];
         double x[HOLD_COUNT];
         contact_laws_rolling(p, c->a, c->b, &s->law[i].mu_r, &s->law[i].mu_p);
-        if (!small_tie_holds(p)) continue;
-        const struct bond *bridge = bonds_find(&p->bonds, c, &from);
-        small_tie_set(x, p, c->a, c->b, 0);
-        if (bridge) x[HOLD_WET] = 1, s->law[i].state = CONTACT_LAW_WET;
-        s->law[i].pull = small_hold_force(x, c->gap), s->law[i].jump[0] = fmax(0, c->gap);
+        const struct bond *bond = bonds_find(&p->bonds, c, &from);
+        if (small_tie_holds(p)) {
+            small_tie_set(x, p, c->a, c->b, 0);
+            if (bond && bond->wet) x[HOLD_WET] = 1, s->law[i].state = CONTACT_LAW_WET;
+            s->law[i].pull = small_hold_force(x, c->gap), s->law[i].jump[0] = fmax(0, c->gap);
+        }
+        small_springs_law(&s->law[i], p, c, bond);
     }
     return 0;
 }

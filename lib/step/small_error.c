@@ -4,6 +4,7 @@
 #include "base/team.h"
 #include "state/kinematics.h"
 #include "step/small_point.h"
+#include "step/small_touch.h"
 #include "step/small_wall.h"
 
 #include <math.h>
@@ -40,7 +41,7 @@ static void judge_touches(struct small_run *r, int64_t first, int64_t end)
         if (!t->near) continue;
         small_touch_law(r, t, &l);
         s->load[t->body] += norm3(l.f);
-        small_solve(&l, df);
+        small_touch_solve(t, &l, r->h, df);
         s->missing[t->body] += norm3(df);
     }
 }
@@ -114,6 +115,7 @@ bool small_error_crushes(const struct small_run *r, const struct contacts *s, do
     const struct packing *p = r->p;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
+        if (packing_springs(p, c)) continue;
         const double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
         const vec3 a = c->a < 0 ? r->wall[-1 - c->a].v : small_vec(r->l->s.body[c->a].v);
         const double approach = v3_dot(c->n, v3_sub(a, small_vec(r->l->s.body[c->b].v)));
@@ -129,7 +131,7 @@ void small_error_approach(const struct small_run *r, const struct contacts *s, d
     double worst = 0;
     for (int64_t i = 0; i < s->n; i++) {
         const struct contact *c = &s->c[i];
-        if (!(c->gap < 0)) continue;
+        if (!(c->gap < 0) || packing_springs(p, c)) continue; // springs part these
         const double small = c->a < 0 ? p->radius[c->b] : fmin(p->radius[c->a], p->radius[c->b]);
         const double approach = -opening_of(p, c, 0), depth = -c->gap / small;
         if (c->gap + r->h * approach > 0)

@@ -11,7 +11,7 @@
 
 #include "step/small_run.h"
 
-/* An interval begins: are the gains of its small steps bounded? Not where something attracts, or loads or a cell move: these
+/* An interval begins: are the gains of its small steps bounded? Not where something attracts, springs push, or loads or a cell move: these
    exchange energy that is not that of bodies. */
 bool small_gain_is_bounded(const struct small_run *r);
 /* By one thread, between sweeps: has the small step gained energy, and, when it has been swept before for that, less than 0.9 of *last

@@ -4,6 +4,7 @@
 #include "base/array.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
+#include "step/small_stiff.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -19,8 +20,8 @@ enum { COLOURS = 64 };
 static void small_arrays_free(struct small_list *l)
 {
     struct small *s = &l->s;
-    free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->live),
-        free(s->late), free(s->until), free(s->group);
+    free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->spring),
+        free(s->live), free(s->late), free(s->until), free(s->group);
     free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
@@ -30,7 +31,7 @@ static void small_forget(struct small_list *l)
 {
     struct small *s = &l->s;
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
-    s->live = s->late = NULL, s->until = NULL, s->group = NULL;
+    s->spring = NULL, s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
@@ -40,7 +41,7 @@ void small_list_free(struct small_list *l)
 {
     small_arrays_free(l);
     free(l->s.place), free(l->s.body), free(l->s.before), free(l->s.hot), free(l->s.change);
-    free(l->listed), free(l->drift);
+    free(l->listed), free(l->drift), free(l->stiffness);
     *l = (struct small_list){ 0 };
 }
 
@@ -171,6 +172,14 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
         small_tie_set(x, p, pair->a, pair->b, p->dt);
         for (int j = 0; j < HOLD_COUNT; j++) l->s.hold[l->slot[i] / BUNDLE].x[j][k] = x[j];
     }
+    if (l->s.spring) {
+        const struct body *a = &l->s.body[pair->a], *b = &l->s.body[pair->b];
+        const double ra = p->radius[pair->a], rb = p->radius[pair->b], wn = a->im + b->im;
+        double x[SPRING_COUNT] = { 0 };
+        small_stiff_set(x, l->stiffness, p, pair->a, pair->b, wn,
+                        wn + ra * ra * a->ii + rb * rb * b->ii);
+        for (int j = 0; j < SPRING_COUNT; j++) l->s.spring[l->slot[i] / BUNDLE].x[j][k] = x[j];
+    }
     if (l->s.stick) {
         struct small_stick *t = &l->s.stick[l->slot[i] / BUNDLE];
         double mu[2];
@@ -208,12 +217,13 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
     if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
     if (small_tie_holds(p)) s->hold = lay_lines(s->bundles, sizeof *s->hold);
     if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
+    if (l->stiffness) s->spring = lay_lines(s->bundles, sizeof *s->spring);
     s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
     s->until = calloc((size_t)(s->bundles + 1), BUNDLE * sizeof *s->until);
     if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
-        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) || !s->live ||
-        !s->late || !s->until)
+        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) ||
+        (l->stiffness && !s->spring) || !s->live || !s->late || !s->until)
         return false;
     for (int64_t i = 0; i < s->bundles; i++)
         for (int k = 0; k < BUNDLE; k++)
@@ -225,7 +235,8 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 /* What a slot has of the past */
 struct small_past {
     double f[3], couple[3], m[3], sum[3], turned[3];
-    double held[HOLD_COUNT]; /* from HOLD_WET on */
+    double held[HOLD_COUNT];     /* from HOLD_WET on */
+    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
 };
 
 static struct small_past past_of(const struct small *s, int64_t slot)
@@ -239,6 +250,8 @@ static struct small_past past_of(const struct small *s, int64_t slot)
         x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
     }
     for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
+    for (int j = 0; j < SPRING_COUNT; j++)
+        x.spring[j] = s->spring ? s->spring[slot / BUNDLE].x[j][k] : 0;
     return x;
 }
 
@@ -266,6 +279,8 @@ static void set_past(struct small *s, int64_t slot, const struct small_past *x)
     }
     for (int j = HOLD_WET; j < HOLD_COUNT && s->hold; j++)
         s->hold[slot / BUNDLE].x[j][k] = x->held[j];
+    for (int j = SPRING_REST; j <= SPRING_GIVEN && s->spring; j++)
+        s->spring[slot / BUNDLE].x[j][k] = x->spring[j];
     if (!small_is_zero(x->f) || x->held[HOLD_WET] > 0 || x->held[HOLD_PULL] > 0)
         small_list_wake(s, slot);
 }
@@ -357,7 +372,9 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         const struct small_past x = past_of(&from->s, from->slot[i]);
-        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0;
+        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 ||
+                           x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0 ||
+                           x.spring[SPRING_HELD] > 0;
         if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
         if (found) set_past(&to->s, to->slot[k], &x);
@@ -389,6 +406,9 @@ static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, 
     *t = (struct small_touch){ .wall = w, .body = i, .mu = p->mu[m], .e = { p->en[m], p->et[m] } };
     contact_laws_rolling(p, -1 - w, i, &t->most[1], &t->most[0]);
     if (l->s.hold) small_tie_set(t->hold, p, -1 - w, i, p->dt);
+    const double im = l->s.body[i].im, r = p->radius[i];
+    if (l->stiffness)
+        small_stiff_set(t->spring, l->stiffness, p, -1 - w, i, im, im + r * r * l->s.body[i].ii);
     return true;
 }
 
@@ -547,6 +567,8 @@ int small_list_make(struct small_list *l, const struct packing *p, const struct 
     bool room = true;
     vec3 mean;
     if (small_bodies(l, p, failure)) return failure->status;
+    if (!l->stiffness && small_stiff_acts(p) && !(l->stiffness = small_stiff_table(p, l->interval)))
+        return failure_set(failure, EX_SOFTWARE, "no memory for the springs");
     was = *l;
     small_forget(l);
     l->spare = MARGIN * packing_whole(p).small;

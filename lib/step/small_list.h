@@ -17,7 +17,8 @@ struct small_touch {
     double couple[3];                /* N m s: of f about the body's centre, where it was made */
     double m[3], turned[3], most[2]; /* turned: the sum of m */
     double mu, e[2];
-    double hold[HOLD_COUNT]; /* where something attracts */
+    double hold[HOLD_COUNT];     /* where something attracts */
+    double spring[SPRING_COUNT]; /* where the contact has a stiffness */
     /* Of the step in hand */
     bool near;
     vec3 n, v;   /* normal; m/s: of the wall's material there */
@@ -36,11 +37,13 @@ struct small_list {
                              farther than at `wall` */
     double wall;          /* m/s: of walls, when it was made */
     vec3 *listed, *drift; /* [bodies] m, m/s: where the ways begin, and velocities along them */
-    struct pairs pairs;   /* of balls */
-    struct small_meetings meetings; /* of others */
-    const struct surface *surface;  /* [walls] of meshes; borrowed */
-    int64_t *slot;                  /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
-    int64_t images, *image;         /* [images] pairs whose b is an image */
+    double interval;      /* s: of the whole step */
+    struct small_stiffness *stiffness; /* [materials^2]; NULL: no contact has one */
+    struct pairs pairs;                /* of balls */
+    struct small_meetings meetings;    /* of others */
+    const struct surface *surface;     /* [walls] of meshes; borrowed */
+    int64_t *slot;                     /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
+    int64_t images, *image;            /* [images] pairs whose b is an image */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
 };

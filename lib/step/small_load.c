@@ -165,17 +165,25 @@ static int64_t gather_loaded(struct small_run *r, int32_t k, bool again)
     return n;
 }
 
-/* N s: D . df of a touch where the speed changes by ds; l, df: then. *slope gets the derivative of it. */
-static double loaded_at(const struct small_loaded *y, double ds, struct small_law *l, double df[3],
-                        double *slope)
+/* N s: D . df of a touch in a step of h where the speed changes by ds; l, df: then. *slope gets the derivative of it. */
+static double loaded_at(const struct small_loaded *y, double h, double ds, struct small_law *l,
+                        double df[3], double *slope)
 {
     const vec3 n = small_vec(y->l.n), along = v3_scale(v3_dot(y->D, n), n);
     const vec3 across = v3_sub(y->D, along);
     double f2, top;
     *l = y->l;
     l->u[0] -= ds * y->D.x, l->u[1] -= ds * y->D.y, l->u[2] -= ds * y->D.z;
-    small_solve(l, df);
+    small_touch_solve(y->t, l, h, df);
     f2 = dot3(l->f, l->f) - l->rn * l->rn, top = l->mu * l->rn;
+    if (small_spring_acts(y->t->spring)) {
+        const double *x = y->t->spring;
+        const double gn = x[SPRING_PART] * x[SPRING_GN] + x[SPRING_YIELD] * x[SPRING_KN];
+        const double gt = x[SPRING_PART] * x[SPRING_GT] + x[SPRING_YIELD] * x[SPRING_KT];
+        if (l->rn > 0) *slope += v3_dot(along, along) * gn / (1 + gn * l->wn);
+        if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) * gt / (1 + gt * l->wt);
+        return v3_dot(y->D, small_vec(df));
+    }
     if (l->rn > 0) *slope += v3_dot(along, along) / (l->wn + l->cn);
     if (f2 < (1 - 1e-9) * top * top) *slope += v3_dot(across, across) / (l->wt + l->ct);
     return v3_dot(y->D, small_vec(df));
@@ -215,7 +223,7 @@ static double load_off(struct small_run *r, const struct near_load *y, double ds
         const struct small_loaded *t = &r->loads.touch[i];
         struct small_law l;
         double df[3];
-        const double got = loaded_at(t, ds, &l, df, slope);
+        const double got = loaded_at(t, r->h, ds, &l, df, slope);
         g += got - v3_dot(t->D, t->dp), *size += fabs(got);
     }
     r->loads.trial = ds;
@@ -274,7 +282,7 @@ static void sweep_load(struct small_run *r, int32_t k, bool again)
         const struct small_loaded *t = &o->touch[i];
         struct small_law l;
         double df[3], slope = 0;
-        loaded_at(t, ds, &l, df, &slope);
+        loaded_at(t, r->h, ds, &l, df, &slope);
         small_touch_give(r, t->t, &l, df, t->dp, load_weighs(r, k, t->t->body, t->D), again);
     }
     for (int64_t i = 0; i < y.meetings; i++) {

@@ -10,6 +10,7 @@
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_seam.h"
+#include "step/small_springs.h"
 #include "step/small_sums.h"
 #include "step/small_touch.h"
 #include "step/small_wall.h"
@@ -113,7 +114,7 @@ static void solve_touch(struct small_run *r, struct small_touch *t, bool again)
     if (again ? !t->near : small_touch_waits(r, t) || !small_touch_near(r, t)) return;
     small_touch_law(r, t, &l);
     if (!again) dp = small_touch_begin(r, t, &l);
-    small_solve(&l, df);
+    small_touch_solve(t, &l, r->h, df);
     small_touch_give(r, t, &l, df, dp, 1, again);
 }
 
@@ -220,6 +221,8 @@ static void settle_slot(struct small *s, int64_t slot)
     const int64_t a = body_index(c->a[k]), b = body_index(c->b[k]);
     const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
     if (f.x == 0 && f.y == 0 && f.z == 0) return;
+    if (s->spring && s->spring[i].x[SPRING_KN][k] > 0 && !(s->spring[i].x[SPRING_BETA][k] > 0))
+        return;
     const vec3 d = small_branch(s, slot);
     const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
     const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
@@ -391,6 +394,10 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads);
+        if (r->meets && r->begins && r->l->s.spring && !me) {
+            small_springs_recall_points(r);
+            r->stored += small_springs_points(r, r->l->s.before).stored;
+        }
         if (r->meets && r->l->s.hold && !me) small_attract(r);
         if (r->meets && r->l->s.hold) team_meet();
         if (r->meets) small_points_start(r, me, threads);

@@ -21,10 +21,11 @@ struct small_point {
     bool seam;   /* it is none: at a seam of surfaces */
     double f[3], kept, q[3], sum[3], m[3], turned[3]; /* turned: the sum of m */
     double mu, e[2];
-    double soft;  /* C over W in the step in hand; 0: an impact */
-    vec3 had;     /* N s: f before the sweep of an impact */
-    double pulls; /* N s: the attraction of the step in hand, along -n; */
-    vec3 pull;    /* that which bodies have */
+    double soft;                 /* C over W in the step in hand; 0: an impact */
+    vec3 had;                    /* N s: f before the sweep of an impact */
+    double spring[SPRING_COUNT]; /* where the contact has a stiffness */
+    double pulls;                /* N s: the attraction of the step in hand, along -n; */
+    vec3 pull;                   /* that which bodies have */
     /* Where it is, or was last */
     vec3 x, n, t1; /* m: midway in the gap; of the basis (n, t1, t2) */
     double gap;    /* m */
@@ -45,6 +46,8 @@ struct small_meeting {
         *point; /* [points] by feature: those that are there, or have pushed in this interval */
     int rounds; /* of its points in the sweep in hand, at most; 0: none is in reach */
     double hold[HOLD_COUNT]; /* where something attracts */
+    bool pressed;            /* springs have pushed in the interval before; */
+    double rest;             /* m: g_0 of its springs */
     double work;             /* J: on a wall or a body that does not move, in this interval */
 };
 

@@ -201,7 +201,11 @@ static void hand_over(const struct small_run *r, struct small_meeting *m)
                 gone->sum[k] = gone->turned[k] = 0;
             }
         if (!small_is_zero(gone->f) && (next = point_beside(r, m, gone, true)))
-            for (int k = 0; k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+            for (int k = 0; k < 3; k++) {
+                next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+                next->spring[SPRING_X + k] += gone->spring[SPRING_X + k];
+                next->spring[SPRING_DUE] = gone->spring[SPRING_DUE];
+            }
     }
 }
 
@@ -221,7 +225,7 @@ static bool take_points(const struct small_run *r, struct small_meeting *m, stru
             if (!same && !small_point_lasts(was)) continue;
             if (same) set_point(r, m, to, is), j++;
         } else {
-            *to = (struct small_point){ 0 };
+            *to = (struct small_point){ .spring[SPRING_REST] = m->rest };
             set_point(r, m, to, is), j++;
         }
         n++;

@@ -49,6 +49,9 @@ void small_meeting_mark(struct small_run *r, const struct small_meeting *m, doub
                         bool again);
 void small_meeting_end(struct small_run *r, struct small_meeting *m);
 
+/* m/s: of the image of b that a meets against a, at a point, where bodies are of[] */
+vec3 small_point_velocity(const struct small_run *r, const struct small_meeting *m,
+                          const struct small_point *t, const struct body *of);
 /* By one thread: the points where the bodies are now */
 void small_points_last(struct small_run *r);
 

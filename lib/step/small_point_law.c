@@ -2,6 +2,7 @@
 #include "base/team.h"
 #include "solve/local_exact.h"
 #include "step/small_point.h"
+#include "step/small_stiff.h"
 #include "step/small_tie.h"
 
 #include <math.h>
@@ -71,9 +72,8 @@ static vec3 velocity_at_b(const struct small_meeting *m, const struct small_poin
     return v3_add(small_vec(b->v), v3_cross(small_vec(b->w), t->b));
 }
 
-/* m/s: of the image of b that a meets */
-static vec3 point_velocity(const struct small_run *r, const struct small_meeting *m,
-                           const struct small_point *t, const struct body *of)
+vec3 small_point_velocity(const struct small_run *r, const struct small_meeting *m,
+                          const struct small_point *t, const struct body *of)
 {
     vec3 u = v3_sub(velocity_at_b(m, t, of), velocity_at_a(m, t, of));
     if (small_meeting_loaded(r, m)) {
@@ -91,6 +91,18 @@ static double friction_at(const struct packing *p, const struct small_meeting *m
     double mu[2], v_s;
     small_tie_stick(mu, &v_s, p, packing_pair(p, m->key.a, m->key.b));
     return mu[v3_norm(ut) > v_s];
+}
+
+/* Its springs; u: before the step (m/s) */
+static void spring_point(struct small_point *t, struct small_law *l, const double u[3],
+                         const struct small_rates *o)
+{
+    struct small_stretch at = {
+        .gap = l->gap, .mu = t->mu, .spin = l->spin, .h = o->h, .rise = o->rise
+    };
+    memcpy(at.n, l->n, sizeof at.n), memcpy(at.u, u, sizeof at.u);
+    small_spring_begin(t->spring, &at, l->q);
+    t->soft = o->soft, t->kept = dot3(l->n, l->f);
 }
 
 /* The law in the first sweep of a step */
@@ -117,11 +129,15 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
         l.wn += along * along / mass, l.wt += (D2 - along * along) / mass;
     }
     small_press(&l, o);
-    const vec3 u = point_velocity(r, m, t, s->before);
+    const vec3 u = small_point_velocity(r, m, t, s->before);
     if (packing_sticks(r->p)) t->mu = friction_at(r->p, m, v3_axpy(u, -v3_dot(u, t->n), t->n));
     small_array(before, u);
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
+    if (r->l->stiffness) {
+        small_stiff_set(t->spring, r->l->stiffness, r->p, m->key.a, m->key.b, l.wn, l.wt);
+        if (t->spring[SPRING_KN] > 0) spring_point(t, &l, before, o);
+    }
     memcpy(t->q, l.q, sizeof t->q);
 }
 
@@ -153,14 +169,30 @@ static void roll_point(const struct small_run *r, const struct small_meeting *y,
     push_point(r, of, y, t, v3(0, 0, 0), small_vec(dm));
 }
 
+/* The reaction of a point with springs, in its basis e */
+static void spring_law(const struct small_run *r, const struct small_meeting *m,
+                       const struct small_point *t, const vec3 e[3], double is[3])
+{
+    struct small_law l = { .wn = t->W[0], .wt = fmax(t->W[4], t->W[8]), .mu = t->mu };
+    double df[3];
+    small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f), memcpy(l.q, t->q, sizeof l.q);
+    small_array(l.u, small_point_velocity(r, m, t, r->l->s.body));
+    small_solve_springs(&l, t->spring, r->h, df);
+    for (int k = 0; k < 3; k++) is[k] = v3_dot(e[k], small_vec(l.f));
+}
+
 /* The reaction that a point has, f, and the one by its law, in its basis e */
 static void point_law(const struct small_run *r, const struct small_meeting *m,
                       const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
-    const vec3 u = v3_add(point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
+    const vec3 u = v3_add(small_point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
     double W[9], b[3];
     for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
+    if (t->spring[SPRING_KN] > 0) {
+        spring_law(r, m, t, e, is);
+        return;
+    }
     for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
     memcpy(W, t->W, sizeof W);
     W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
@@ -178,7 +210,7 @@ static double solve_point(struct small_run *r, const struct small_meeting *m, st
 {
     struct small *s = &r->l->s;
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
-    const vec3 u = point_velocity(r, m, t, s->body);
+    const vec3 u = small_point_velocity(r, m, t, s->body);
     double f[3], is[3], change2 = 0;
     point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
@@ -359,6 +391,7 @@ static void pull_point(struct small_run *r, const struct small_meeting *m, struc
 void small_meeting_start(struct small_run *r, struct small_meeting *m)
 {
     int64_t n = 0;
+    m->rest = fmin(0, m->rest + r->l->s.rate.rise);
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point t = m->point[i], had = t;
         const vec3 f = small_vec(t.f), moment = small_vec(t.m);
@@ -413,7 +446,7 @@ void small_meeting_end(struct small_run *r, struct small_meeting *m)
                 v3_dot(f, velocity_at_b(m, t, s->body)) + v3_dot(moment, spin_of(r, s->body, b));
         const double rn = v3_dot(small_vec(t->f), t->n), held = t->kept + 2 * t->pulls;
         const double most = small_persists(&s->rate, held, t->W[0], rn);
-        if (!t->near || !(rn > most)) continue;
+        if (!t->near || !(rn > most) || t->spring[SPRING_KN] > 0) continue;
         const double back = 1 - most / rn;
         for (int k = 0; k < 3; k++) {
             t->sum[k] += back * t->f[k], t->turned[k] += back * t->m[k];

@@ -20,6 +20,8 @@
 #include "step/small_near.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
+#include "step/small_springs.h"
+#include "step/small_stiff.h"
 #include "step/small_stress.h"
 #include "step/small_sums.h"
 #include "step/small_wall.h"
@@ -57,9 +59,10 @@ const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (packing_has_springs(p)) return "contacts with a stiffness";
-    for (int32_t k = 0; p->law && k < p->materials * p->materials; k++)
-        if (pair_law_adheres(&p->law[k])) return "adhesion, whose bonds are stiff";
+    if (packing_adheres(p) && (p->shape || p->mesh.elements))
+        return "adhesion of other shapes than balls";
+    if (small_stiff_exceeds(p))
+        return "contacts or bonds so stiff that a step has more than 1000 small ones";
     return NULL;
 }
 
@@ -167,6 +170,7 @@ static double small_carries(const struct packing *p)
     for (int64_t i = 0; i < p->memory.n; i++) {
         const struct recall *c = &p->memory.recall[i];
         double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
+        if (p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)])) continue;
         if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
         most = fmax(most, w * v3_norm(c->r));
     }
@@ -186,10 +190,12 @@ enum { CARRIED_MOST = 4 };
 static int64_t small_count_at(const struct packing *p, double overlap, double hurry)
 {
     const bool points = small_has_shapes(p);
-    const double permits = CARRIED[points] * overlap * small_sizes(p).least;
+    const double size = freedoms_in(p) ? small_sizes(p).least : small_coarse(p);
+    const double permits = CARRIED[points] * overlap * size;
     double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
     const double spared = freedoms_in(p) ? 1 : SPARED[points];
     n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits) / spared, CARRIED_MOST * n));
+    n = fmax(n, small_stiff_count(p));
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
@@ -242,6 +248,7 @@ static void small_set_rates(struct small_run *r)
                               .gives = r->uneven ? INFINITY : 0,
                               .calm = freedoms_calm(p),
                               .pulls = 2 * r->h * small_tie_most(p),
+                              .rise = r->h * fall,
                               .holds = small_tie_range(p, r->h),
                               .allowed = { (r->meets ? ALLOWED_POINTS : ALLOWED[0]) * change,
                                            ALLOWED[1] * change } };
@@ -296,6 +303,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
     }
     small_list_free(r->l);
     r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
+    r->l->interval = r->h * (double)r->n;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
         const double cpu = report_seconds(CLOCK_CPU);
@@ -309,7 +317,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         rep->detection += report_seconds(CLOCK_CPU) - cpu;
         if (r->begins) {
             small_walls_set(r);
-            if (start.v && !freedoms_in(r->p)) small_count_near(r);
+            if (start.v && !freedoms_in(r->p) && !r->l->stiffness) small_count_near(r);
             take_bodies(r), small_set_rates(r), small_walls_set(r);
             if ((!o->bare || o->bound > 0) && small_error_init(r, failure)) break;
             if (r->meets && small_points_init(r, r->l->surface, o->threads, failure)) break;
@@ -317,10 +325,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
                 break;
             }
-            small_bonds_recall(r, o->warm);
+            small_bonds_recall(r, o->warm), small_springs_recall(r);
             r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
-            r->stored = ties.stored - ties.joined; // bridges that are new are of this interval
+            r->stored = ties.stored - ties.joined +
+                        small_springs_sums(r).stored; // bridges that are new are of this interval
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
@@ -382,8 +391,10 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    b->bond_energy = ties.stored, b->bond_change = ties.stored - r->stored;
-    b->broken = -ties.joined;
+    const struct small_spring_sums springs = small_springs_sums(r);
+    b->bond_energy = ties.stored + springs.stored + small_springs_points(r, l->s.body).stored;
+    b->bond_change = b->bond_energy - r->stored;
+    b->broken = springs.broken - ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
@@ -406,6 +417,7 @@ static void small_report(struct report *rep, const struct small_run *r, const st
                             .converged = true,
                             .sweeps = (int32_t)r->sweeps,
                             .substeps = 1,
+                            .soft = packing_has_springs(r->p),
                             .tied = r->p->law != NULL,
                             .sheared = energy_has_peculiar(r->p),
                             .small = r->n,

@@ -49,7 +49,7 @@ double small_tie_range(const struct packing *p, double h)
 
 double small_tie_reach(const struct packing *p)
 {
-    return small_tie_holds(p) ? contact_laws_reach(p) : 0;
+    return small_tie_holds(p) || packing_adheres(p) ? contact_laws_reach(p) : 0;
 }
 
 double small_tie_speed(const struct packing *p)

@@ -24,24 +24,55 @@ static vec3 touch_moment(const struct small_touch *t)
     return v3_add(small_vec(t->couple), small_vec(t->m));
 }
 
+/* Springs and the bond, in the first sweep; u: before it (m/s). q: as of small_spring_begin() */
+static void stretch_touch(const struct small_run *r, struct small_touch *t,
+                          const struct small_law *l, const double u[3], bool pushed, double q[3])
+{
+    struct small_stretch at = { .gap = l->gap,
+                                .mu = t->mu,
+                                .spin = l->spin,
+                                .pushed = pushed ? -1 : 0,
+                                .h = r->h,
+                                .rise = r->l->s.rate.rise };
+    memcpy(at.n, l->n, sizeof at.n), memcpy(at.u, u, sizeof at.u);
+    small_spring_begin(t->spring, &at, q);
+}
+
 /* The law in the first sweep of a step */
 static void begin_touch(const struct small_run *r, struct small_touch *t, struct small_law *l)
 {
     const struct small *s = &r->l->s;
     const double warm = s->rate.warm;
     double before[3];
+    const bool pushed = dot3(l->n, l->f) > 0;
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], l->f[k] *= warm, t->f[k] *= warm;
     for (int k = 0; k < 3; k++) t->turned[k] += t->m[k], t->m[k] *= warm, t->couple[k] *= warm;
-    t->kept = dot3(l->n, l->f);
     const vec3 lacks = v3_sub(touch_couple(t, l->f), small_vec(t->couple)); // where it is now
     const vec3 turn = v3_scale(-t->arm * s->body[t->body].ii, v3_cross(lacks, t->n));
     l->u[0] += turn.x, l->u[1] += turn.y, l->u[2] += turn.z;
     vec3 w = v3_add(r->wall[t->wall].spin, small_vec(s->body[t->body].w));
     l->spin = 0.5 * r->h * v3_dot(w, t->n);
-    small_press(l, &s->rate);
     small_array(before, small_touch_before(r, t));
-    small_meet(l, &s->rate, before, &t->kept, t->e[0], t->e[1]);
+    double p[3] = { 0, 0, 0 }, q[3], e[2] = { t->e[0], t->e[1] };
+    if (r->l->stiffness) stretch_touch(r, t, l, before, pushed, q);
+    if (t->spring[SPRING_BETA] > 0) small_bond_pull(t->spring, l->n, l->gap, p);
+    if (small_bond_stills(t->spring)) e[0] = e[1] = 0;
+    for (int k = 0; k < 3; k++) l->f[k] -= p[k];
+    t->kept = dot3(l->n, l->f);
+    const double kept = t->kept;
+    small_press(l, &s->rate);
+    small_meet(l, &s->rate, before, &t->kept, e[0], e[1]);
+    for (int k = 0; k < 3; k++) l->f[k] += p[k];
+    if (small_spring_acts(t->spring)) memcpy(l->q, q, sizeof l->q), t->kept = kept;
     memcpy(t->q, l->q, sizeof t->q);
+}
+
+void small_touch_solve(const struct small_touch *t, struct small_law *l, double h, double df[3])
+{
+    if (t->spring[SPRING_KN] > 0 || t->spring[SPRING_SN] > 0)
+        small_solve_springs(l, t->spring, h, df);
+    else
+        small_solve(l, df);
 }
 
 /* dc: the change of the couple, which leaves dm to be made */
@@ -95,6 +126,7 @@ static void leave_touch(struct small_run *r, struct small_touch *t)
     if (pushed) small_body_push(&r->l->s.body[t->body], f, m);
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     for (int k = 0; k < 3; k++) t->f[k] = t->couple[k] = t->m[k] = 0;
+    for (int k = SPRING_X; k <= SPRING_HELD; k++) t->spring[k] = 0;
     t->kept = 0, t->near = false;
 }
 
@@ -107,11 +139,12 @@ bool small_touch_waits(const struct small_run *r, const struct small_touch *t)
 bool small_touch_near(struct small_run *r, struct small_touch *t)
 {
     const struct small *s = &r->l->s;
-    const double reach = s->hold ? r->l->margin : s->rate.reach;
+    const bool held = s->hold || t->spring[SPRING_BETA] > 0;
+    const double reach = held ? r->l->margin : s->rate.reach;
     const bool within = small_look_at_touch(r, t, reach);
     t->near = within && !small_at_seam(r, t - r->l->touch, reach);
     if (!t->near) leave_touch(r, t);
-    if (within || s->hold || s->moves || !r->wall[t->wall].there) return t->near;
+    if (within || held || s->moves || !r->wall[t->wall].there) return t->near;
     const bool close = small_look_at_touch(r, t, r->l->margin);
     const double gap = close ? t->arm - s->place[t->body].r : r->l->margin;
     t->until = s->rate.gone + gap - s->slack;
@@ -163,6 +196,7 @@ vec3 small_touch_end(struct small_run *r, struct small_touch *t)
     if (t->near) t->work += t->hold[HOLD_PULL] * v3_dot(t->n, t->v);
     if (small_is_zero(t->f)) return none;
     t->work -= v3_dot(f, t->v) + v3_dot(m, r->wall[t->wall].spin);
+    if (small_spring_acts(t->spring)) return none;
     const double rn = v3_dot(f, t->n), w = l->s.body[t->body].im;
     const double held = t->kept + 2 * t->hold[HOLD_PULL];
     const double most = small_persists(&l->s.rate, held, w, rn);

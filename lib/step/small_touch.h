@@ -17,6 +17,8 @@ bool small_touch_near(struct small_run *r, struct small_touch *t);
 /* First sweep: the law of this step, attraction and static friction. Returns the change of the pull (N s), which l->u
    has. */
 vec3 small_touch_begin(const struct small_run *r, struct small_touch *t, struct small_law *l);
+/* The reaction, l->f, and its change df (N s), with the springs of the touch, in steps of h (s) */
+void small_touch_solve(const struct small_touch *t, struct small_law *l, double h, double df[3]);
 /* The body gets the change df of its reaction, l->f, a change dp of the pull, and what rolling friction makes of them. */
 void small_touch_give(struct small_run *r, struct small_touch *t, const struct small_law *l,
                       double df[3], vec3 dp, double heavy, bool again);

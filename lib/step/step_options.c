@@ -331,7 +331,7 @@ double options_small_of(const struct options *o, const struct packing *p)
 {
     if (options_has(o, &options.small)) return o->small;
     const bool asks = p->overlap && p->overlap != overlap_usual(p);
-    const bool once = asks || packing_has_springs(p) || options_solve_once(o);
+    const bool once = asks || packing_has_compliance(p) || options_solve_once(o);
     return once ? 0 : usual.small;
 }
 

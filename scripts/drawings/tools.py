@@ -114,7 +114,7 @@ def choose():
     yes(142)
     answer(104, '--solver auto', ['one solve per step, to --tolerance;', '0.01 or less for exact forces;', 'dt decides about overlaps: below'], 76)
     no(180, 206)
-    question(206, ['Adhesion or a stiffness', 'of contacts?'])
+    question(206, ['A compliance of contacts,', '--stiffness auto?'])
     yes(235)
     answer(206, '(no option)', ['nsd-step makes one solve per step', 'by itself; dt as below'], 62)
     no(264, 290)

@@ -36,11 +36,11 @@ like "with the cure" "$(cat "$tmp/err")" 'leave out --dt, for small steps'
 ok "small steps make the same step" nsd-step -e -n 1 -o "$tmp/out.h5" "$tmp/in.h5"
 refuses 64 "--substeps says what to do" nsd-step --substeps 5 "$tmp/in.h5"
 
-# ---- what small steps lack something for, here a stiffness: parts of a step, in which nothing is too fast ----
+# ---- what small steps lack something for, here contacts that are too stiff: parts of a step, in which nothing is too fast ----
 
 soft() # SPEED STEPS: the ball's place in the end, where nothing was too fast
 {
-    jq -n "{ dt: 1e-3, gravity: [0, 0, 0], stiffness: 1e6, walls: [{ rectangle: { center: [1, 0, 0], normal: [1, 0, 0], sides: [2, 2] } }],
+    jq -n "{ dt: 1e-3, gravity: [0, 0, 0], stiffness: 1e12, walls: [{ rectangle: { center: [1, 0, 0], normal: [1, 0, 0], sides: [2, 2] } }],
         bodies: [{ x: [0, 0.1, 0.2], radius: 0.01, v: [$1, 0, 0] }] }" | nsd-gen - >"$tmp/in.h5"
     nsd-step --small-steps 0.01 -e -n "$2" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err" && nsd-info -p --last "$tmp/out.h5" | jq -s 'map(select(.id == 0))[0].x[0]'
 }

@@ -457,7 +457,7 @@ for k in 1e5 1e6; do
     rm "$tmp/rest.h5"
 done
 for e in 0 0.3 0.7 1; do
-    soft '{"e_n": '$e'}' 0.11 0 | step -n 200 -o "$tmp/bounce.h5"
+    soft '{"e_n": '$e'}' 0.11 0 | step --small-steps 0 -n 200 -o "$tmp/bounce.h5"
     ok "a ball rebounds with $e of its speed" near "$(nsd-info -p "$tmp/bounce.h5" | jq -s '-(map(.v[2]) | max) / (map(.v[2]) | min)')" "$e" 1e-4
     rm "$tmp/bounce.h5"
 done
@@ -531,7 +531,7 @@ like "the global form is the same problem" "$(jq '.natural < 1e-9' "$tmp/global.
 
 # a wedge that locks itself: Newton's law has no solution there
 jq -n '{ dt: 2e-4, mu: 0.5, e_n: 0.9, stiffness: 1e6, bodies: [{ x: [0, 0, 0.01], radius: 1e-3 }],
-    walls: [1, -1 | { point: [0, 0, 0], normal: [. * 0.94, 0, 0.34] }] }' | nsd-gen - | nsd-step -e -n 400 --contacts -o "$tmp/vee.h5" 2>"$tmp/said" && vee=0 || vee=$?
+    walls: [1, -1 | { point: [0, 0, 0], normal: [. * 0.94, 0, 0.34] }] }' | nsd-gen - | nsd-step -e --small-steps 0 -n 400 --contacts -o "$tmp/vee.h5" 2>"$tmp/said" && vee=0 || vee=$?
 is "every step of an impact in a self-locking wedge has a solution" "$vee" 0
 like "the force is bounded: with e = 0 it is 7.9e-3 N" \
     "$(nsd-stat -m boundaries "$tmp/vee.h5" | jq -s '[.[].boundaries.force | flatten | map(fabs) | max] | max < 0.12')" true
@@ -546,7 +546,7 @@ like "its energy is balanced with what the rise gives, and in the sum of all ste
 like "a ball that is in a floor rises at g dt" "$(nsd-info -p "$tmp/deep.h5" | jq -s '(map(.v[2]) | max) < 0.01 and (.[-1].x[2] | . > 0.00999)')" true
 
 # with rolling friction, and with bonds, which have no springs besides
-jq '.stiffness = 1e5 | .rolling = { mu_r: 1e-4, mu_p: 1e-4 } | .walls = .walls[:1]' scenes/press.json | nsd-gen - | step -n 600 --every 600 --contacts --log "$tmp/press.log" -o "$tmp/press.h5"
+jq '.stiffness = 1e5 | .rolling = { mu_r: 1e-4, mu_p: 1e-4 } | .walls = .walls[:1]' scenes/press.json | nsd-gen - | step --small-steps 0 -n 600 --every 600 --contacts --log "$tmp/press.log" -o "$tmp/press.h5"
 like "a heap with a stiffness and rolling friction: energy is balanced" "$(misfit "$tmp/press.log" | jq '. < 1e-9')" true
 like "and what the springs of moments store is positive" "$(nsd-info --last -c "$tmp/press.h5" | jq -s 'map(select(.turn) | .rolling_stiffness * (.turn | map(. * .) | add)) | add > 0')" true
 nsd-cat --last "$tmp/press.h5" >"$tmp/rolls.h5"
