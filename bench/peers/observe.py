@@ -7,7 +7,11 @@ from scipy.spatial import cKDTree
 
 def overlap(x, radius):
     """The largest overlap of two balls over the smaller of their radii, not across the edges of a cell; 0 where none touch."""
-    i, j = cKDTree(x).query_pairs(2 * radius.max(), output_type="ndarray").T
+    tree, wide = cKDTree(x), radius > 2 * np.median(radius)  # few wide ones would be near all others
+    i, j = tree.query_pairs(2 * radius[~wide].max(), output_type="ndarray").T
+    for k in np.flatnonzero(wide):
+        near = np.setdiff1d(tree.query_ball_point(x[k], radius[k] + radius.max()), k)
+        i, j = np.append(i, np.full(len(near), k)), np.append(j, near.astype(int))
     deep = (radius[i] + radius[j] - np.linalg.norm(x[i] - x[j], axis=1)) / np.minimum(radius[i], radius[j])
     return float(max(deep.max(initial=0), 0))
 

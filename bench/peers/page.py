@@ -101,7 +101,7 @@ def job_section(name, job, quick):
         if "modulus" in last:
             title += f" ({last['modulus']:.0e} Pa)".replace("e+0", "e")
         out.append(row(title, text(last["dt"]), text(last["span"]) + (", cut" if last["cut"] else ""), cost_text(v),
-                       text(per_second(v, "wall")), text(max(r["memory"] for r in v["runs"])), text(at(v["series"], common), 4), text(last["pairs"], 2), text(last.get("overlap"), 2)))
+                       text(per_second(v, "wall")), text(max(r["memory"] for r in v["runs"])), text(at(v["series"], common), 4), text(last.get("pairs"), 2), text(last.get("overlap"), 2)))
     r = ratio(variants)
     if not variants["nsd"]["runs"]:
         return out + [""]

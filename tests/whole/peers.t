@@ -49,6 +49,12 @@ turn = np.array([[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)
 m = np.ones(len(heap))
 got = observe.angle({"x": heap @ turn.T, "mass": m}, {})
 assert abs(got["angle"] - 30) < 1e-9, got
+# a row of balls of 1 and 2, the last two of which overlap by 0.03; one of 9 that overlaps a ball of 2 by 0.1
+x = np.array([[0, 0, 0], [3, 0, 0], [6, 0, 0], [7.97, 0, 0]])
+radius = np.array([1, 2, 1, 1.0])
+assert abs(observe.overlap(x, radius) - 0.03) < 1e-12
+assert abs(observe.overlap(np.vstack([x, [3, 0, 10.9]]), np.append(radius, 9)) - 0.05) < 1e-12
+assert observe.overlap(x[:2], radius[:2] * 0.9) == 0
 PY
 }
 ok "solid fraction, energy and angle of known arrangements" observes
