@@ -35,16 +35,20 @@ solvers intel-xeon-processor-avx512 xeon_
 for f in docs/peers/*.json; do
     jq -r '[.jobs | to_entries[] | .value.variants as $v | select($v.nsd and $v["liggghts-soft"]) |
         ($v.nsd.runs[0].cpu / $v.nsd.runs[0].span) / ($v["liggghts-soft"].runs[0].cpu / $v["liggghts-soft"].runs[0].span)] |
-        "peers_jobs\t\(length)", "peers_less\t\(map(select(. < 0.995)) | length)", "peers_least\t\(min * 100 | round / 100)",
+        "peers_jobs\t\(length)", "peers_least\t\(min * 100 | round / 100)",
         "peers_most\t\(max * 10 | round / 10)", "peers_median\t\(sort | (.[length / 2 | floor] + .[(length - 1) / 2 | floor]) / 2 * 100 | round / 100)"' "$f"
-    jq -r '[.jobs[].variants | select(.nsd and ."liggghts-soft")] |
-        def cost: .runs[0] | .cpu / .span;
-        ([.[].nsd.runs[0].overlap // empty]) as $deep |
-        ([.[] | select(."nsd-auto".runs[0].steps > 10) | (."nsd-auto" | cost) / (."liggghts-soft" | cost)]) as $auto |
-        "peers_deep\t\($deep | map(select(. > 0.1)) | length)", "peers_deepest\t\($deep | max * 10 | round / 10)",
-        "peers_auto_least\t\($auto | min * 100 | round / 100)", "peers_auto_most\t\($auto | max * 10 | round / 10)"' "$f"
+    jq -r '[.jobs[].variants | map_values(.runs[0])] |
+        def cost: .cpu / .span;
+        def over(a; b): map(select(a and b and (a.steps >= 10)) | (a | cost) / (b | cost));
+        def hundredth: . * 100 | round / 100;
+        def thousandth: . * 1000 | round / 1000;
+        over(.nsd; ."liggghts-stiff") as $stiff | over(."nsd-one"; ."liggghts-soft") as $one |
+        "peers_deepest\t\(map(.nsd.overlap // empty) | max | thousandth)", "peers_pairs\t\(map(.nsd.pairs // empty) | max | thousandth)",
+        "peers_soft\t\(map(."liggghts-soft".pairs // empty) | [min, max] | map(thousandth) | "\(.[0]) to \(.[1])")",
+        "peers_stiff\t\(map(."liggghts-stiff".pairs // empty) | [min, max] | map(thousandth) | "\(.[0]) to \(.[1])")",
+        "peers_stiff_least\t\($stiff | min | hundredth)", "peers_stiff_most\t\($stiff | max | hundredth)",
+        "peers_one\t\($one | [min, max] | map(hundredth) | "\(.[0]) to \(.[1])")", "peers_one_deepest\t\(map(."nsd-one".overlap // empty) | max * 10 | round / 10)"' "$f"
 done | sort -u
-printf 'peers_blind\t%s\n' "$(grep -c '^Until then both codes have the same value' docs/peers/README.md)"
 
 jq -r 'def count(f): map(select(f)) | length; def judged: .kind == "judged" and .verdict != "not yet run";
     "gallery_rows\t\(length)", "gallery_judged\t\(count(judged))", "gallery_within\t\(count(judged and .verdict != "differs"))",
