@@ -68,11 +68,12 @@ const char *small_lacks(const struct packing *p)
 
 /* ---- the interval ---- */
 
-/* m: what ways and overlaps are to be small against: of a ball its radius, else half the thickness, of thin bodies half the radius */
+/* m: what ways and overlaps are to be small against: of a ball its radius, else half the thickness; where grains break, half the radius
+   of splinters that are thinner */
 static double small_size(const struct packing *p, int64_t i)
 {
-    return packing_shape(p, i) ? fmax(tunnelling_thickness(p, i), 0.5 * p->radius[i])
-                               : p->radius[i];
+    const double half = packing_shape(p, i) ? tunnelling_thickness(p, i) : p->radius[i];
+    return p->breakage ? fmax(half, 0.5 * p->radius[i]) : half;
 }
 
 static bool small_has_shapes(const struct packing *p)
@@ -97,14 +98,13 @@ static struct small_sizes small_sizes(const struct packing *p)
     return s;
 }
 
-/* m: in a small step a body goes R of its own size and of this one at most. Among shapes and grains that break, few small bodies
+/* m: in a small step a body goes R of its own size and of this one at most. Where grains break, few small bodies
    that are slow do not set the number of small steps; what a large one leaves of an overlap with a small one is bounded. */
 #define COARSE 4
 static double small_coarse(const struct packing *p)
 {
     const struct small_sizes s = small_sizes(p);
-    const bool own = p->breakage || small_has_shapes(p);
-    return own ? fmin(s.most, COARSE * s.least) : s.least;
+    return p->breakage ? fmin(s.most, COARSE * s.least) : s.least;
 }
 
 /* m/s: of a point of a body, of balls the centre; of walls */
@@ -209,6 +209,7 @@ static void small_count_near(struct small_run *r)
 {
     struct packing *p = r->p;
     const double was = r->ahead, dt = (double)r->n * r->h;
+    if (r->l->serves < dt) return; // it does not have what fast bodies meet later
     p->dt = dt;
     const double fastest = small_near_speed(r) + packing_most_fall(p) + small_tie_speed(p);
     const int64_t n = small_count_at(p, r->overlap, fastest / r->thin);
