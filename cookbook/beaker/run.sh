@@ -4,6 +4,6 @@ grain=${GRAIN:-2.8} dt=${DT:-4e-4} surfaces=${SURFACES:-} # the powder itself: G
 read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --arg surfaces "$surfaces" | nsd-gen - |
     nsd-step "${step[@]}" --until "${UNTIL:-0.52}" --every 0.1s -o beaker.h5
-nsd-view -c height --boundaries lines beaker.h5 >beaker.png
+nsd-view -c height --walls lines beaker.h5 >beaker.png
 # what is left in the beaker over its volume
 nsd-info -p --last beaker.h5 | jq -rs 'map(select(.x[2] > 0)) | [length, (map(.mass) | add) / (3.14159265 * 4e-4 * 0.055)] | @tsv' | tee density.tsv

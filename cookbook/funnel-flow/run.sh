@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 set -euo pipefail
 # the instrument itself: GRAIN=1 DT=3e-4 TUBE=23.7 ORIFICES="10 14 20" SURFACES=FOLDER, where FOLDER has the STL files
-grain=${GRAIN:-1.8} dt=${DT:-6e-4} tube=${TUBE:-13} surfaces=${SURFACES:-} orifices=${ORIFICES:-13 15.5 18}
+grain=${GRAIN:-1.8} dt=${DT:-6e-4} tube=${TUBE:-13} surfaces=${SURFACES:-} orifices=${ORIFICES:-15.5 18 20.5}
 read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 for d in $orifices; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson orifice "$d" --argjson tube "$tube" --arg surfaces "$surfaces" |
@@ -12,7 +12,7 @@ for d in $orifices; do
         (map(.[0]) | add / length) as $t | (map(.[1]) | add / length) as $w |
         [$d, (map((.[0] - $t) * .[1]) | add) / (map(.[0] * (.[0] - $t)) | add)] | @tsv'
 done | tee rate.tsv
-nsd-view -s "$(jq -n "0.3 / $dt | round")" -c speed --clip 0,1,0,0 --boundaries lines "flow-${orifices##* }.h5" >funnel-flow.png
+nsd-view -s "$(jq -n "0.3 / $dt | round")" -c speed --clip 0,1,0,0 --walls lines "flow-${orifices##* }.h5" >funnel-flow.png
 # Beverloo: W = C rho sqrt(g) (D - k d)^2.5, a line of W^0.4 against D; rho: bulk density at a fraction of 0.58. And k at his C of 0.58.
 awk -v d="$grain" 'BEGIN { d *= 1.22e-3; s = 0.58 * 1580 * sqrt(9.81) }
     { x = $1 / 1000; y = ($2 / 1000) ^ 0.4; n++; sx += x; sy += y; sxx += x * x; sxy += x * y; k += (x - ($2 / 1000 / (0.58 * s)) ^ 0.4) / d }

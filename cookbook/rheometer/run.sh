@@ -8,7 +8,7 @@ scene "" | nsd-gen - | nsd-step "${step[@]}" --until "${SETTLE:-0.15}" --every 1
 scene settled.h5 >rheometer.json
 last=$(jq '[.walls[].drives[0].until // 0] | max' rheometer.json)
 nsd-gen rheometer.json | nsd-step "${step[@]}" --wall-loads --until "$last" --every 0.02s -o rheometer.h5
-nsd-view -c speed --boundaries lines --solid blade --clip 0,1,0,0 rheometer.h5 >rheometer.png
+nsd-view -c speed --walls lines --solid blade --clip 0,1,0,0 rheometer.h5 >rheometer.png
 # depth to which the blade has descended, mm; its torque, N mm, and the force on it, N; the work done by it so far, mJ
 nsd-stat -m wall_loads_by_name rheometer.h5 | jq -rn --argjson v "$tip" 'foreach (inputs | select(.wall_loads_by_name.span[0])) as $f (0;
     . - 1000 * ($f.wall_loads_by_name | .span[0] * .power[(.name | index("blade"))]);

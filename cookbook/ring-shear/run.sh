@@ -27,7 +27,7 @@ for part in 0.3 0.5 0.75; do # of the load: the peak of the mean over three fram
     stresses "shear-$part.h5" | awk -v p=$part '{ a[NR] = $3; b[NR] = $2 } END {
         for (i = 5; i <= NR; i++) { t = (a[i] + a[i - 1] + a[i - 2]) / 3; if (t > most) { most = t; at = (b[i] + b[i - 1] + b[i - 2]) / 3 } } printf "%s\t%.0f\t%.0f\n", p, at, most }'
 done >>locus.tsv
-nsd-view -c speed --solid head --boundaries lines preshear.h5 >ring-shear.png
+nsd-view -c speed --solid head --walls lines preshear.h5 >ring-shear.png
 # the yield locus: a line through the three points; the effective angle: that of the preshear
 awk '$1 == 1 { print "effective angle\t" atan2($3, $2) * 57.29578 } $1 < 1 { n++; x += $2; y += $3; xx += $2^2; xy += $2 * $3 }
     END { b = (n * xy - x * y) / (n * xx - x * x); print "internal friction angle\t" atan2(b, 1) * 57.29578; print "cohesion, Pa\t" y / n - b * x / n }' locus.tsv | tee angles.tsv
