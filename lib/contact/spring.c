@@ -101,18 +101,13 @@ static void spring_turned(struct contact_law *t, const struct contact *c, const 
     spring_cut(t->mu_r * push / t->roll, t->turn + 1);
 }
 
-static double inverse_mass(const struct packing *p, int32_t i)
-{
-    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
-}
-
 /* N/m: k_n and k_t of the contact; false: it is rigid. */
 static bool spring_stiffness(const struct packing *p, const struct contact *c, double k[2])
 {
     const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
     k[0] = l->kn, k[1] = l->kt;
     if (l->soft > 0) {
-        const double W = inverse_mass(p, c->a) + inverse_mass(p, c->b);
+        const double W = packing_inverse_mass(p, c->a) + packing_inverse_mass(p, c->b);
         k[0] = 1 / (l->soft * W * p->dt * p->dt), k[1] = SPRING_ACROSS * k[0];
     }
     return k[1] > 0 && isfinite(k[0]);

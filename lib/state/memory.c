@@ -21,16 +21,6 @@ void memory_set(struct memory *m, bool on)
     m->on = on;
 }
 
-int memory_copy(struct memory *to, const struct memory *from, struct failure *failure)
-{
-    *to = (struct memory){ .on = from->on, .n = from->n, .room = from->n };
-    if (!from->n) return 0;
-    to->recall = malloc((size_t)from->n * sizeof *to->recall);
-    if (!to->recall) return failure_set(failure, EX_SOFTWARE, "no memory for the last reactions");
-    memcpy(to->recall, from->recall, (size_t)from->n * sizeof *to->recall);
-    return 0;
-}
-
 /* What is remembered of the contact with this key, or NULL. *from, 0 at first, is where to look from on:
    contacts are asked for in their order. */
 static const struct recall *memory_find(const struct memory *m, struct contact_key key,

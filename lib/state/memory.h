@@ -34,8 +34,6 @@ struct memory {
 void memory_free(struct memory *m);
 /* Whether solves are to start from it; where not, what there is is forgotten. */
 void memory_set(struct memory *m, bool on);
-/* to = a deep copy of from; to need not be initialised. Returns 0 or EX_SOFTWARE. */
-int memory_copy(struct memory *to, const struct memory *from, struct failure *failure);
 /* Remembers the reactions of solved contacts, in place of the older ones; nothing where it is not on. Returns 0
    or EX_SOFTWARE. */
 int memory_keep(struct memory *m, const struct contacts *s, struct failure *failure);

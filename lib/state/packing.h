@@ -200,6 +200,12 @@ int packing_alloc_laws(struct packing *p, struct failure *failure);
 int packing_alloc_passages(struct packing *p, int32_t pours, int32_t removals,
                            struct failure *failure);
 
+/* 1/kg: of a body; 0: it is fixed, or a wall (i < 0) */
+static inline double packing_inverse_mass(const struct packing *p, int32_t i)
+{
+    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
+}
+
 /* Are there inlets or outlets? */
 static inline bool packing_flows(const struct packing *p)
 {

@@ -82,11 +82,6 @@ struct projected_contact {
     double slop;   /* m */
 };
 
-static double inverse_mass(const struct packing *p, int32_t i)
-{
-    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
-}
-
 /* m: as much of what overlaps as a step may remove */
 static double removed(double overlap, double small)
 {
@@ -104,7 +99,8 @@ static struct projected_contact projected_contact_of(const struct packing *p,
                                        .b = c->b,
                                        .n = c->n,
                                        .gap = gap < 0 ? -removed(-gap, small) : gap,
-                                       .w = inverse_mass(p, c->a) + inverse_mass(p, c->b),
+                                       .w = packing_inverse_mass(p, c->a) +
+                                            packing_inverse_mass(p, c->b),
                                        .slop = slop };
 }
 
@@ -189,7 +185,7 @@ static void begin_some(void *arg, int64_t first, int64_t end)
 {
     const struct shifting *y = arg;
     for (int64_t i = first; i < end; i++)
-        y->d[i] = (struct displaced){ { 0, 0, 0 }, inverse_mass(y->p, (int32_t)i) };
+        y->d[i] = (struct displaced){ { 0, 0, 0 }, packing_inverse_mass(y->p, (int32_t)i) };
 }
 
 static void shift_some(void *arg, int64_t first, int64_t end)

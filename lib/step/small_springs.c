@@ -11,11 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-static double inverse_mass(const struct packing *p, int32_t i)
-{
-    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
-}
-
 /* ---- where springs are ---- */
 
 /* A contact with springs or bonds, where its bodies are */
@@ -304,7 +299,7 @@ void small_springs_law(struct contact_law *law, const struct packing *p, const s
                        const struct bond *b)
 {
     const struct pair_law *l = &p->law[packing_pair(p, c->a, c->b)];
-    const double W = inverse_mass(p, c->a) + inverse_mass(p, c->b);
+    const double W = packing_inverse_mass(p, c->a) + packing_inverse_mass(p, c->b);
     if (b) law->jump[1] = v3_dot(b->slip, c->t1), law->jump[2] = v3_dot(b->slip, contact_t2(c));
     if (b && pair_law_adheres(l) && (b->beta > 0 || !(b->wet || b->pressed)))
         law->state |= CONTACT_LAW_BONDED;

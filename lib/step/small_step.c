@@ -17,7 +17,6 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
-#include "step/small_near.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_springs.h"
@@ -26,6 +25,7 @@
 #include "step/small_sums.h"
 #include "step/small_wall.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -204,6 +204,26 @@ int64_t small_count(const struct packing *p, double overlap)
     return small_count_at(p, overlap, small_hurry(p, packing_most_fall(p) + small_tie_speed(p)));
 }
 
+/* m/s: the largest speed of the bodies of a pair of the list against each other where the interval begins, or of a body against a wall
+   that it comes near, which may then be as fast as it ever is. A body that flies alone, or with its neighbours, needs no small steps: its
+   motion is exact for any h. The list has straight ways. */
+static double small_near_speed(struct small_run *r)
+{
+    struct small_list *l = r->l;
+    double most = 0;
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        const struct pair *pair = &l->pairs.pair[i];
+        most = fmax(most, v3_norm(v3_sub(l->drift[pair->b], l->drift[pair->a])));
+    }
+    for (int64_t i = 0; i < l->touches; i++) {
+        struct small_touch *t = &l->touch[i];
+        if (!small_look_at_touch(r, t, INFINITY)) continue;
+        const double more = r->wall[t->wall].top - v3_norm(t->v); // it may begin to move
+        most = fmax(most, v3_norm(v3_sub(r->p->v[t->body], t->v)) + fmax(0, more));
+    }
+    return most;
+}
+
 /* Where the list has been made: fewer, longer small steps, if what is fast is so against nothing near it */
 static void small_count_near(struct small_run *r)
 {
@@ -280,12 +300,22 @@ static bool small_is_finite(const struct small_run *r)
     return true;
 }
 
+/* A velocity that a bond has damped to a denormal number is 0: arithmetic is slow with them, and awk reads them as text. */
+static vec3 small_settled(const double v[3])
+{
+    vec3 u = small_vec(v);
+    if (fabs(u.x) < DBL_MIN) u.x = 0;
+    if (fabs(u.y) < DBL_MIN) u.y = 0;
+    if (fabs(u.z) < DBL_MIN) u.z = 0;
+    return u;
+}
+
 static void give_bodies(const struct small_run *r)
 {
     struct packing *p = r->p;
     const struct small *s = &r->l->s;
     for (int64_t i = 0; i < p->n; i++) {
-        p->v[i] = small_vec(s->body[i].v), p->w[i] = small_vec(s->body[i].w);
+        p->v[i] = small_settled(s->body[i].v), p->w[i] = small_settled(s->body[i].w);
         p->x[i] = v3_axpy(small_vec(s->place[i].x), -r->ahead, p->v[i]);
         if (packing_shape(p, i))
             p->q[i] = small_points_q(r, i, &p->w[i]);

@@ -65,11 +65,6 @@ bool small_stiff_acts(const struct packing *p)
     return packing_has_springs(p) || packing_adheres(p);
 }
 
-static double inverse_mass(const struct packing *p, int32_t i)
-{
-    return i >= 0 && p->mass[i] > 0 ? 1 / p->mass[i] : 0;
-}
-
 /* kg: h times what a dashpot pushes by for each m/s */
 static double damping(const double zeta[2], double h, double k, double w)
 {
@@ -92,7 +87,7 @@ void small_stiff_set(double x[SPRING_COUNT], const struct small_stiffness *table
                      const struct packing *p, int32_t a, int32_t b, double wn, double wt)
 {
     const struct small_stiffness *k = &table[packing_pair(p, a, b)];
-    const double h = p->dt, W = inverse_mass(p, a) + inverse_mass(p, b);
+    const double h = p->dt, W = packing_inverse_mass(p, a) + packing_inverse_mass(p, b);
     double kn = k->kn, kt = k->kt;
     if (k->soft > 0) kn = 1 / (k->soft * W), kt = SPRING_ACROSS * kn;
     x[SPRING_KN] = x[SPRING_KT] = x[SPRING_GN] = x[SPRING_GT] = 0;
