@@ -4,25 +4,21 @@
 #include "base/array.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
+#include "step/small_group.h"
 #include "step/small_stiff.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Of the smallest radius: how much farther than contacts pairs are listed, and how near those are that come first */
-#define MARGIN 0.3
-#define BESIDE 0.1
 /* Of the margin: by how much sooner pairs are looked at again than bounds of ways say */
 #define CLOSE 1e-3
-
-enum { COLOURS = 64 };
 
 static void small_arrays_free(struct small_list *l)
 {
     struct small *s = &l->s;
     free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->spring),
         free(s->live), free(s->late), free(s->until), free(s->group);
-    free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
+    free(l->slot), free(l->early), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
 
@@ -33,7 +29,7 @@ static void small_forget(struct small_list *l)
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
     s->spring = NULL, s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
-    l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
+    l->slot = l->early = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
 }
 
@@ -68,88 +64,6 @@ static int small_bodies(struct small_list *l, const struct packing *p, struct fa
         s->body[i].ii = s->before[i].ii = 1 / p->inertia[i];
     }
     return 0;
-}
-
-/* ---- groups ---- */
-
-/* A pair's group; those of a class come after those of the classes before. */
-struct small_colours {
-    uint64_t *used; /* [bodies] */
-    uint8_t *of;    /* [pairs] its colour; COLOURS: none is left */
-    int64_t count[2][COLOURS + 1];
-};
-
-static double pair_gap(const struct packing *p, const vec3 *x, const vec3 *edge,
-                       const struct pair *pair)
-{
-    vec3 d = v3_sub(x[pair->b], x[pair->a]);
-    if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
-    return v3_norm(d) - p->radius[pair->a] - p->radius[pair->b];
-}
-
-static void colour_class(struct small_colours *c, const struct packing *p,
-                         const struct small_list *l, const bool *beside, int class)
-{
-    memset(c->used, 0, (size_t)p->n * sizeof *c->used);
-    for (int64_t i = 0; i < l->pairs.n; i++) {
-        const struct pair *pair = &l->pairs.pair[i];
-        if (beside[i] != !class) continue;
-        const uint64_t free = ~(c->used[pair->a] | c->used[pair->b]);
-        const int k = free ? __builtin_ctzll(free) : COLOURS;
-        c->of[i] = (uint8_t)k, c->count[class][k]++;
-        if (free) c->used[pair->a] |= 1ULL << k, c->used[pair->b] |= 1ULL << k;
-    }
-}
-
-static int64_t in_bundles(int64_t pairs)
-{
-    return (pairs + BUNDLE - 1) / BUNDLE;
-}
-
-/* Groups and slots of all pairs; false when memory is short. */
-static bool small_lay(struct small_list *l, struct small_colours *c, const bool *beside)
-{
-    struct small *s = &l->s;
-    int64_t next[2][COLOURS + 1], groups = 0, alone = c->count[0][COLOURS] + c->count[1][COLOURS];
-    s->group = malloc((size_t)(2 * COLOURS + alone + 1) * sizeof *s->group);
-    if (!s->group) return false;
-    s->bundles = 0;
-    for (int class = 0; class < 2; class ++)
-        for (int k = 0; k < COLOURS; k++) {
-            next[class][k] = BUNDLE * s->bundles;
-            if (!c->count[class][k]) continue;
-            s->group[groups++] = s->bundles;
-            s->bundles += in_bundles(c->count[class][k]);
-        }
-    s->serial = groups;
-    for (int class = 0; class < 2; class ++) {
-        next[class][COLOURS] = BUNDLE * s->bundles;
-        for (int64_t i = 0; i < c->count[class][COLOURS]; i++) s->group[groups++] = s->bundles++;
-    }
-    s->groups = groups, s->group[groups] = s->bundles;
-    for (int64_t i = 0; i < l->pairs.n; i++) {
-        int64_t *at = &next[!beside[i]][c->of[i]];
-        l->slot[i] = *at;
-        *at += c->of[i] == COLOURS ? BUNDLE : 1;
-    }
-    return true;
-}
-
-static bool small_colour(struct small_list *l, const struct packing *p, const vec3 *x,
-                         const vec3 *edge)
-{
-    struct small_colours c = { .used = malloc((size_t)(p->n + 1) * sizeof *c.used),
-                               .of = malloc((size_t)l->pairs.n + 1) };
-    bool *beside = malloc((size_t)l->pairs.n + 1);
-    l->slot = malloc((size_t)(l->pairs.n + 1) * sizeof *l->slot);
-    bool room = c.used && c.of && beside && l->slot;
-    const double near = BESIDE / MARGIN * l->spare;
-    for (int64_t i = 0; room && i < l->pairs.n; i++)
-        beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
-    for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
-    room = room && small_lay(l, &c, beside);
-    free(c.used), free(c.of), free(beside);
-    return room;
 }
 
 /* ---- pairs ---- */
@@ -211,7 +125,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
                             const vec3 edge[3])
 {
     struct small *s = &l->s;
-    if (!small_colour(l, p, x, edge)) return false;
+    if (!small_groups_lay(l, p, x, edge)) return false;
     s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
     if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
     if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
@@ -232,14 +146,7 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
     return true;
 }
 
-/* What a slot has of the past */
-struct small_past {
-    double f[3], couple[3], m[3], sum[3], turned[3];
-    double held[HOLD_COUNT];     /* from HOLD_WET on */
-    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
-};
-
-static struct small_past past_of(const struct small *s, int64_t slot)
+struct small_past small_slot_past(const struct small *s, int64_t slot)
 {
     struct small_past x;
     const int k = (int)(slot % BUNDLE);
@@ -268,7 +175,7 @@ void small_list_wake(struct small *s, int64_t slot)
     memset(&s->live[slot / BUNDLE * BUNDLE], 1, BUNDLE);
 }
 
-static void set_past(struct small *s, int64_t slot, const struct small_past *x)
+void small_slot_set_past(struct small *s, int64_t slot, const struct small_past *x)
 {
     const int k = (int)(slot % BUNDLE);
     struct small_bundle *c = &s->bundle[slot / BUNDLE];
@@ -336,7 +243,7 @@ static bool has_pushed(const double f[3], const double sum[3], const double held
 
 static bool pair_has_pushed(const struct small_list *l, int64_t i)
 {
-    const struct small_past x = past_of(&l->s, l->slot[i]);
+    const struct small_past x = small_slot_past(&l->s, l->slot[i]);
     return has_pushed(x.f, x.sum, x.held);
 }
 
@@ -371,13 +278,13 @@ static void carry_pairs(struct small_list *to, const struct small_list *from)
     int64_t k = 0;
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
-        const struct small_past x = past_of(&from->s, from->slot[i]);
+        const struct small_past x = small_slot_past(&from->s, from->slot[i]);
         const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 ||
                            x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0 ||
                            x.spring[SPRING_HELD] > 0;
         if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
-        if (found) set_past(&to->s, to->slot[k], &x);
+        if (found) small_slot_set_past(&to->s, to->slot[k], &x);
     }
 }
 
@@ -571,7 +478,7 @@ int small_list_make(struct small_list *l, const struct packing *p, const struct 
         return failure_set(failure, EX_SOFTWARE, "no memory for the springs");
     was = *l;
     small_forget(l);
-    l->spare = MARGIN * packing_whole(p).small;
+    l->spare = SMALL_MARGIN * packing_whole(p).small;
     l->margin = l->spare + small_tie_reach(p), l->s.slack = CLOSE * l->margin;
     set_ways(l, p, o, &mean);
     if (!seek_along(l, p, o, mean, failure)) {
@@ -613,7 +520,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
             continue;
         }
         at = small_list_pair(l, at, recall_key(r), &found);
-        if (found) set_past(&l->s, l->slot[at], &x);
+        if (found) small_slot_set_past(&l->s, l->slot[at], &x);
     }
     return room;
 }
@@ -666,7 +573,7 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
     }
     for (int64_t i = 0; i < l->pairs.n; i++) {
         if (!pair_pushes(&l->s, l->slot[i])) continue;
-        const struct small_past x = past_of(&l->s, l->slot[i]);
+        const struct small_past x = small_slot_past(&l->s, l->slot[i]);
         remember_one(&m, small_pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
     }
     for (int64_t i = 0; i < l->meetings.n; i++) {

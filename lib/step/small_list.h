@@ -43,7 +43,10 @@ struct small_list {
     struct small_meetings meetings;    /* of others */
     const struct surface *surface;     /* [walls] of meshes; borrowed */
     int64_t *slot;                     /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
-    int64_t images, *image;            /* [images] pairs whose b is an image */
+    int64_t *early; /* [groups] bundles of a group from there on are swept later */
+    struct small_part
+        *part;              /* of these pairs and bodies [step/small_part.h]; NULL: all. Borrowed */
+    int64_t images, *image; /* [images] pairs whose b is an image */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
 };
@@ -81,6 +84,16 @@ struct small_touch *small_list_find_touch(const struct small_list *l, int32_t bo
 /* The bundle of a slot has a lane that pushes, or is held. */
 void small_list_wake(struct small *s, int64_t slot);
 struct contact_key small_pair_key(const struct pair *pair);
+
+/* What a slot has of the past */
+struct small_past {
+    double f[3], couple[3], sum[3];
+    double m[3], turned[3];
+    double held[HOLD_COUNT];     /* from HOLD_WET on */
+    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
+};
+struct small_past small_slot_past(const struct small *s, int64_t slot);
+void small_slot_set_past(struct small *s, int64_t slot, const struct small_past *x);
 
 /* The image of b in lane k is so far from b (m), and moves against it (m/s) */
 static inline void small_shift_set(struct small_shift *to, int k, vec3 d, vec3 v)

@@ -17,6 +17,7 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
+#include "step/small_part.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_springs.h"
@@ -81,6 +82,20 @@ static bool small_has_shapes(const struct packing *p)
     bool any = false;
     for (int64_t i = 0; p->shape && i < p->n && !any; i++) any = packing_shape(p, i) != NULL;
     return any;
+}
+
+const char *small_undivided(const struct packing *p, double bound)
+{
+    if (bound > 0) return "with a bound on what is missing of reactions";
+    if (small_has_shapes(p) || p->mesh.elements)
+        return "of other shapes than balls, or with meshes";
+    if (freedoms_in(p)) return "with walls or cells that loads move";
+    if (small_cell_moves(p)) return "in a cell that moves";
+    if (packing_adheres(p) || small_stiff_acts(p)) return "with bonds or stiff contacts";
+    if (small_tie_holds(p) || packing_sticks(p)) return "with attraction or static friction";
+    if (p->outside.force || p->outside.torque || p->pulls.n) return "with forces on bodies";
+    if (p->sums.n) return "with sums of forces on faces";
+    return NULL;
 }
 
 struct small_sizes { /* m */
@@ -333,7 +348,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         r->v[i] = r->p->v[i];
     }
     small_list_free(r->l);
-    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
+    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves, r->l->part = r->part;
     r->l->interval = r->h * (double)r->n;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
@@ -364,6 +379,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
+        if (r->part && !r->lost) r->lost = !small_part_collect(r);
         if (r->lost) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
         for (int64_t i = 0; i < r->p->n; i++) {
             r->x[i] = small_vec(r->l->s.place[i].x);
@@ -476,7 +492,9 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     packing_wrap(p, NULL);
     if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
+    struct small_part part = { .ranks = o->ranks };
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
+    if (o->ranks && o->ranks->n > 1) r.part = &part;
     r.n = count, r.overlap = o->overlap, r.kernel = backend_widest()->small;
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
@@ -517,7 +535,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_loads_free(&r, !*made), small_stress_free(&r);
-    small_points_free(&r), small_error_free(&r);
+    small_points_free(&r), small_error_free(&r), small_part_free(&part);
+    l->part = NULL;
     free(r.wall), free(r.x), free(r.v), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }
