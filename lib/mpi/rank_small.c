@@ -29,7 +29,9 @@ static void send_to_rank(struct small_ranks *ranks, int rank, const void *bytes,
     struct rank_small *y = (struct rank_small *)ranks;
     const int k = y->next;
     y->next = (k + 1) % RANK_SMALL_FLIES;
+    const double since = comm_busy();
     MPI_Wait(&y->flies[k].request, MPI_STATUS_IGNORE);
+    comm_waited(y->comm, since);
     if (size > INT_MAX) comm_fail(y->comm, EX_SOFTWARE, "a message of a small step is too long");
     if (size > y->flies[k].room) {
         free(y->flies[k].bytes);
@@ -49,27 +51,32 @@ static void receive_from_rank(struct small_ranks *ranks, int rank, void *bytes, 
     comm_waited(t, since);
 }
 
-static char *gather_ranks(struct small_ranks *ranks, const void *bytes, size_t size, size_t *at)
+static char *gather_ranks(struct small_ranks *ranks, const void *bytes, size_t size,
+                          struct gathered *at)
 {
     struct comm *t = ((struct rank_small *)ranks)->comm;
     int *blocks = comm_new(t, t->n, sizeof *blocks), *first = comm_new(t, t->n, sizeof *first);
+    uint64_t *sizes = comm_new(t, t->n, sizeof *sizes);
     const double since = comm_busy();
     MPI_Datatype block;
-    blocks[t->me] = (int)((size + BLOCK - 1) / BLOCK);
-    MPI_Allgather(MPI_IN_PLACE, 1, MPI_INT, blocks, 1, MPI_INT, t->mpi);
-    at[0] = 0;
+    size_t end = 0;
+    sizes[t->me] = size;
+    MPI_Allgather(MPI_IN_PLACE, 1, MPI_UINT64_T, sizes, 1, MPI_UINT64_T, t->mpi);
     for (int q = 0; q < t->n; q++) {
-        first[q] = (int)(at[q] / BLOCK), at[q + 1] = at[q] + BLOCK * (size_t)blocks[q];
-        if (at[q + 1] / BLOCK > INT_MAX) comm_fail(t, EX_SOFTWARE, "a packing is too large");
+        at[q] = (struct gathered){ end, sizes[q] };
+        first[q] = (int)(end / BLOCK), blocks[q] = (int)((sizes[q] + BLOCK - 1) / BLOCK);
+        end += BLOCK * ((sizes[q] + BLOCK - 1) / BLOCK);
+        if (end / BLOCK > INT_MAX) comm_fail(t, EX_SOFTWARE, "a packing is too large");
     }
-    char *all = comm_new(t, (int64_t)at[t->n], 1);
-    memcpy(all + at[t->me], bytes, size);
+    char *all = malloc(end + 1);
+    if (!all) comm_fail(t, EX_SOFTWARE, "no memory for the messages of the ranks");
+    memcpy(all + at[t->me].first, bytes, size);
     MPI_Type_contiguous(BLOCK, MPI_BYTE, &block), MPI_Type_commit(&block);
     MPI_Allgatherv(MPI_IN_PLACE, 0, block, all, blocks, first, block, t->mpi);
     MPI_Type_free(&block);
     comm_waited(t, since);
     t->bytes += (int64_t)size * (t->n - 1), t->messages += t->n - 1;
-    free(blocks), free(first);
+    free(blocks), free(first), free(sizes);
     return all;
 }
 
@@ -119,7 +126,9 @@ int rank_small_make(struct rank_small *y, const struct rank_small_step *first,
     }
     const double since = comm_busy() - t->waited;
     const int64_t bytes = t->bytes, messages = t->messages;
+    const double before = comm_busy();
     MPI_Bcast(&told, sizeof told, MPI_BYTE, 0, t->mpi);
+    comm_waited(t, before);
     of_all.small = told.small, of_all.bound = told.bound, of_all.warm = told.warm;
     of_all.small_warm = told.small_warm, of_all.bare = told.bare, of_all.compare = told.compare;
     of_all.ranks = &y->ranks;

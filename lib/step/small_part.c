@@ -80,6 +80,31 @@ static bool divide_bodies(struct small_part *y, const struct small_list *l)
 
 /* ---- pairs ---- */
 
+int small_part_join(struct pairs *s, struct small_ranks *ranks, struct failure *failure)
+{
+    double status = failure->status;
+    struct gathered *at = malloc((size_t)ranks->n * sizeof *at);
+    ranks->most(ranks, &status, 1);
+    if (status > 0) {
+        free(at);
+        if (failure->status) return failure->status;
+        return failure_set(failure, (int)status, "another process could not find its pairs");
+    }
+    const size_t size = (size_t)s->n * sizeof *s->pair;
+    char *all = at ? ranks->gather(ranks, s->pair, size, at) : NULL;
+    int64_t n = 0;
+    for (int q = 0; all && q < ranks->n; q++) n += (int64_t)(at[q].size / sizeof *s->pair);
+    struct pair *pair = all ? realloc(s->pair, (size_t)(n + 1) * sizeof *pair) : NULL;
+    if (pair) s->pair = pair, s->n = 0, s->room = n + 1;
+    for (int q = 0; pair && q < ranks->n; q++) {
+        memcpy(s->pair + s->n, all + at[q].first, at[q].size);
+        s->n += (int64_t)(at[q].size / sizeof *s->pair);
+    }
+    if (!pair || !pairs_sort(s)) failure_set(failure, EX_SOFTWARE, "no memory for the neighbours");
+    free(at), free(all);
+    return failure->status;
+}
+
 /* The order of one process's slots */
 static bool order_pairs(struct small_part *y, const struct small_list *l, const int64_t *in)
 {

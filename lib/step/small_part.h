@@ -14,6 +14,10 @@
 
 #include "step/small_run.h"
 
+struct gathered {
+    size_t first, size;
+};
+
 /* What processes tell each other; all is collective but send() and receive() */
 struct small_ranks {
     int me, n;
@@ -23,8 +27,8 @@ struct small_ranks {
     /* Messages to a rank arrive in their order; `bytes` may be changed afterwards. */
     void (*send)(struct small_ranks *y, int rank, const void *bytes, size_t size);
     void (*receive)(struct small_ranks *y, int rank, void *bytes, size_t size);
-    /* The bytes of all, one rank after the other, to be freed; at[n + 1]: where each rank's begin. NULL: memory was short */
-    char *(*gather)(struct small_ranks *y, const void *bytes, size_t size, size_t *at);
+    /* The bytes of all, to be freed; at[n]: where those of each rank are. NULL: memory was short */
+    char *(*gather)(struct small_ranks *y, const void *bytes, size_t size, struct gathered *at);
 };
 
 /* In a group: pairs after which something is told, others, and those of other processes alone */
@@ -66,6 +70,8 @@ static inline vec3 small_along(const struct small_run *r, const struct small_bun
     return v3(c->f[0][k], c->f[1][k], c->f[2][k]);
 }
 
+/* What each process has found of the pairs becomes the list of all, unless one has failed. Returns 0 or a status. */
+int small_part_join(struct pairs *s, struct small_ranks *ranks, struct failure *failure);
 /* The pairs of l, in groups in[pairs], are divided: their kinds. False when memory is short. */
 bool small_part_divide(struct small_part *y, const struct small_list *l, const int64_t *in,
                        uint8_t *kind);

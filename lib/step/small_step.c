@@ -514,7 +514,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
     // grains that break need the reactions of each step
-    if (*made && !small_give_contacts(&r, s, o->bare && !p->breakage, failure))
+    const bool reads = !r.part || !r.part->ranks->me || r.uneven; // others need no contacts
+    if (*made && reads && !small_give_contacts(&r, s, o->bare && !p->breakage, failure))
         *made = !r.uneven || !small_error_crushes(&r, s, o->overlap);
     if (*made && !failure->status && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&

@@ -96,148 +96,167 @@ void small_part_begin(struct small_run *r)
 
 /* ---- all ---- */
 
-/* All of a body that steps change */
-struct told_body {
-    int64_t i;
-    double x[3];
-    struct body body, before;
-    vec3 turned;
-    double missing, load;
-    struct small_pull pull;
-};
+/* put or take `size` bytes at *at, which moves behind them */
+typedef void tell_bytes(char **at, void *x, size_t size);
 
-/* Bytes of all that this process owns; of a pair that has a past: its number, and as much of struct small_past as there may be. */
-struct told_pair {
+static void put_bytes(char **at, void *x, size_t size)
+{
+    memcpy(*at, x, size), *at += size;
+}
+
+static void take_bytes(char **at, void *x, size_t size)
+{
+    memcpy(x, *at, size), *at += size;
+}
+
+/* All that steps change of a body; what was before a step the next one needs. */
+static void tell_body(struct small_run *r, int64_t i, char **at, tell_bytes tell)
+{
+    struct small *s = &r->l->s;
+    tell(at, s->place[i].x, sizeof s->place->x), tell(at, &r->turned[i], sizeof *r->turned);
+    tell(at, s->body[i].v, sizeof s->body->v), tell(at, s->body[i].w, sizeof s->body->w);
+    if (r->made < r->n)
+        tell(at, s->before[i].v, sizeof s->before->v),
+            tell(at, s->before[i].w, sizeof s->before->w);
+    if (r->judged) tell(at, &s->missing[i], sizeof *s->missing);
+    if (r->judged) tell(at, &s->load[i], sizeof *s->load);
+    if (r->pull) tell(at, &r->pull[i], sizeof *r->pull);
+}
+
+enum { BODY_MOST = 20 * sizeof(double) + sizeof(struct small_pull) };
+
+/* A touch or pair that has a past: its number, and as much of the past as there may be */
+struct told_past {
     int64_t i;
+    double work; /* J: of a touch */
     struct small_past past;
 };
 
-/* Of struct told_pair: what may differ from 0 */
-static size_t pair_bytes(const struct small *s)
+static size_t past_bytes(const struct small *s)
 {
-    if (s->spring) return sizeof(struct told_pair);
-    if (s->hold) return offsetof(struct told_pair, past.spring);
-    return s->turn ? offsetof(struct told_pair, past.held) : offsetof(struct told_pair, past.m);
+    if (s->spring) return sizeof(struct told_past);
+    if (s->hold) return offsetof(struct told_past, past.spring);
+    return s->turn ? offsetof(struct told_past, past.held) : offsetof(struct told_past, past.m);
 }
 
-static char *put_bodies(const struct small_run *r, char *to)
+/* Is x more than zeros without a sign? */
+static bool has_bits(const void *x, size_t size)
 {
-    const struct small *s = &r->l->s;
-    for (int64_t i = 0; i < s->bodies; i++) {
-        struct told_body b = { .i = i };
-        if (!small_is_own(r, i)) continue;
-        memcpy(b.x, s->place[i].x, sizeof b.x);
-        b.body = s->body[i], b.before = s->before[i], b.turned = r->turned[i];
-        if (r->judged) b.missing = s->missing[i], b.load = s->load[i];
-        if (r->pull) b.pull = r->pull[i];
-        memcpy(to, &b, sizeof b), to += sizeof b;
+    static const double none[sizeof(struct told_past) / sizeof(double)];
+    return memcmp(x, none, size) != 0;
+}
+
+static void touch_past(const struct small_touch *t, struct told_past *x)
+{
+    memcpy(x->past.f, t->f, sizeof t->f), memcpy(x->past.couple, t->couple, sizeof t->couple);
+    memcpy(x->past.sum, t->sum, sizeof t->sum), memcpy(x->past.m, t->m, sizeof t->m);
+    memcpy(x->past.turned, t->turned, sizeof t->turned);
+    memcpy(x->past.held, t->hold, sizeof t->hold);
+    memcpy(x->past.spring, t->spring, sizeof t->spring);
+    x->work = t->work;
+}
+
+static void touch_set_past(struct small_touch *t, const struct told_past *x, const struct small *s)
+{
+    memcpy(t->f, x->past.f, sizeof t->f), memcpy(t->couple, x->past.couple, sizeof t->couple);
+    memcpy(t->sum, x->past.sum, sizeof t->sum), memcpy(t->m, x->past.m, sizeof t->m);
+    memcpy(t->turned, x->past.turned, sizeof t->turned);
+    if (s->hold) memcpy(t->hold, x->past.held, sizeof t->hold);
+    if (s->spring) memcpy(t->spring, x->past.spring, sizeof t->spring);
+    t->work = x->work;
+}
+
+/* Has a pair more than a place in the list? */
+static bool pair_has_past(const struct small *s, int64_t slot)
+{
+    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
+    const int k = (int)(slot % BUNDLE);
+    const double x[6] = { c->f[0][k],   c->f[1][k],   c->f[2][k],
+                          c->sum[0][k], c->sum[1][k], c->sum[2][k] };
+    return s->hold || s->spring || s->turn || has_bits(x, sizeof x);
+}
+
+/* Does nobody tell this process of the pair, which has one of its bodies? */
+static bool is_swept_here(const struct small_run *r, const struct pair *q)
+{
+    return small_is_own(r, q->a) || small_is_own(r, q->b);
+}
+
+/* This process's own, into `at`, where there is room. Returns their end. */
+static char *put_all(struct small_run *r, char *at)
+{
+    struct small_list *l = r->l;
+    const size_t bytes = past_bytes(&l->s);
+    int64_t count = 0;
+    for (int64_t i = 0; i < l->s.bodies; i++)
+        if (small_is_own(r, i)) tell_body(r, i, &at, put_bytes);
+    char *many = at;
+    put_bytes(&at, &count, sizeof count);
+    for (int64_t i = 0; i < l->touches; i++) {
+        struct told_past t = { .i = i };
+        if (!small_is_own(r, l->touch[i].body)) continue;
+        touch_past(&l->touch[i], &t);
+        if (has_bits(&t.work, bytes - sizeof t.i)) put_bytes(&at, &t, bytes), count++;
     }
-    return to;
-}
-
-static void take_body(struct small_run *r, const struct told_body *b)
-{
-    struct small *s = &r->l->s;
-    const int64_t i = b->i;
-    memcpy(s->place[i].x, b->x, sizeof b->x);
-    s->body[i] = b->body, s->before[i] = b->before, r->turned[i] = b->turned;
-    if (r->judged) s->missing[i] = b->missing, s->load[i] = b->load;
-    if (r->pull) r->pull[i] = b->pull;
-}
-
-static char *put_touches(const struct small_run *r, char *to)
-{
-    for (int64_t i = 0; i < r->l->touches; i++) {
-        if (!small_is_own(r, r->l->touch[i].body)) continue;
-        memcpy(to, &r->l->touch[i], sizeof *r->l->touch), to += sizeof *r->l->touch;
-    }
-    return to;
-}
-
-/* Is it more than zeros without a sign? */
-static bool has_past(const struct small_past *x)
-{
-    static const struct small_past none;
-    return memcmp(x, &none, sizeof none) != 0;
-}
-
-static char *put_pairs(const struct small_run *r, char *to)
-{
-    const struct small_list *l = r->l;
-    const size_t bytes = pair_bytes(&l->s);
+    put_bytes(&many, &count, sizeof count), count = 0, many = at;
+    put_bytes(&at, &count, sizeof count);
     for (int64_t i = 0; i < l->pairs.n; i++) {
-        struct told_pair t = { .i = i };
-        if (!small_is_own(r, l->pairs.pair[i].b)) continue;
+        struct told_past t = { .i = i };
+        if (!small_is_own(r, l->pairs.pair[i].b) || !pair_has_past(&l->s, l->slot[i])) continue;
         t.past = small_slot_past(&l->s, l->slot[i]);
-        if (has_past(&t.past)) memcpy(to, &t, bytes), to += bytes;
+        put_bytes(&at, &t, bytes), count++;
     }
-    return to;
+    put_bytes(&many, &count, sizeof count);
+    return at;
 }
 
-/* Pairs of which this process knows nothing have no past until it is told. */
-static void forget_pairs(struct small_run *r)
+/* What rank q owns */
+static void take_all(struct small_run *r, int q, char *at)
 {
     struct small_list *l = r->l;
-    const struct small_past none = { 0 };
-    const int32_t me = r->part->ranks->me, *owner = r->part->owner;
-    for (int64_t i = 0; i < l->pairs.n; i++) {
-        const struct pair *q = &l->pairs.pair[i];
-        if (owner[q->a] != me && owner[q->b] != me) small_slot_set_past(&l->s, l->slot[i], &none);
+    const size_t bytes = past_bytes(&l->s);
+    int64_t count;
+    for (int64_t i = 0; i < l->s.bodies; i++)
+        if (r->part->owner[i] == q) tell_body(r, i, &at, take_bytes);
+    take_bytes(&at, &count, sizeof count);
+    for (int64_t k = 0; k < count; k++) {
+        struct told_past t = { 0 };
+        take_bytes(&at, &t, bytes);
+        touch_set_past(&l->touch[t.i], &t, &l->s);
     }
-}
-
-/* What one process owns: numbers of bodies, touches and pairs, and these */
-static void take_part(struct small_run *r, const char *from)
-{
-    struct small_list *l = r->l;
-    const size_t bytes = pair_bytes(&l->s);
-    int64_t n[3], at = 0;
-    memcpy(n, from, sizeof n), from += sizeof n;
-    for (int64_t k = 0; k < n[0]; k++, from += sizeof(struct told_body)) {
-        struct told_body b;
-        memcpy(&b, from, sizeof b);
-        take_body(r, &b);
-    }
-    for (int64_t k = 0; k < n[1]; k++, from += sizeof *l->touch) {
-        struct small_touch t;
-        memcpy(&t, from, sizeof t);
-        while (l->touch[at].body != t.body || l->touch[at].wall != t.wall) at++;
-        l->touch[at] = t;
-    }
-    for (int64_t k = 0; k < n[2]; k++, from += bytes) {
-        struct told_pair t = { 0 };
-        memcpy(&t, from, bytes);
-        const struct pair *q = &l->pairs.pair[t.i];
-        const int32_t me = r->part->ranks->me, *owner = r->part->owner;
-        if (owner[q->a] != me && owner[q->b] != me)
+    take_bytes(&at, &count, sizeof count);
+    for (int64_t k = 0; k < count; k++) {
+        struct told_past t = { 0 };
+        take_bytes(&at, &t, bytes);
+        if (!is_swept_here(r, &l->pairs.pair[t.i]))
             small_slot_set_past(&l->s, l->slot[t.i], &t.past);
     }
 }
 
-bool small_part_collect(struct small_run *r)
+/* What is not told of has no past. */
+static void forget_all(struct small_run *r)
 {
     struct small_list *l = r->l;
+    const struct told_past none = { 0 };
+    for (int64_t i = 0; i < l->touches; i++)
+        if (!small_is_own(r, l->touch[i].body)) touch_set_past(&l->touch[i], &none, &l->s);
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        if (!is_swept_here(r, &l->pairs.pair[i]) && pair_has_past(&l->s, l->slot[i]))
+            small_slot_set_past(&l->s, l->slot[i], &none.past);
+}
+
+bool small_part_collect(struct small_run *r)
+{
+    const struct small_list *l = r->l;
     struct small_ranks *y = r->part->ranks;
-    int64_t n[3] = { 0, 0, l->pairs.n };
-    for (int64_t i = 0; i < l->s.bodies; i++) n[0] += small_is_own(r, i);
-    for (int64_t i = 0; i < l->touches; i++) n[1] += small_is_own(r, l->touch[i].body);
-    const size_t bytes = pair_bytes(&l->s);
-    const size_t fixed =
-        sizeof n + (size_t)n[0] * sizeof(struct told_body) + (size_t)n[1] * sizeof *l->touch;
-    char *mine = malloc(fixed + (size_t)n[2] * bytes + 1);
-    size_t *at = malloc((size_t)(y->n + 1) * sizeof *at);
-    if (!mine || !at) {
-        free(mine), free(at);
-        return false;
-    }
-    char *end = put_touches(r, put_bodies(r, mine + sizeof n));
-    char *last = put_pairs(r, end);
-    n[2] = (last - end) / (int64_t)bytes;
-    memcpy(mine, n, sizeof n);
-    char *all = y->gather(y, mine, (size_t)(last - mine), at);
-    if (all) forget_pairs(r);
+    const size_t n = (size_t)l->s.bodies, m = (size_t)(l->touches + l->pairs.n);
+    char *mine = malloc(n * BODY_MOST + m * past_bytes(&l->s) + 3 * sizeof(int64_t));
+    struct gathered *at = malloc((size_t)y->n * sizeof *at);
+    char *all = NULL;
+    if (mine && at) all = y->gather(y, mine, (size_t)(put_all(r, mine) - mine), at);
+    if (all) forget_all(r);
     for (int q = 0; all && q < y->n; q++)
-        if (q != y->me) take_part(r, all + at[q]);
+        if (q != y->me) take_all(r, q, all + at[q].first);
     free(mine), free(at), free(all);
     return all != NULL;
 }
