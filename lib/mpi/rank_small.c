@@ -90,6 +90,7 @@ void rank_small_begin(struct rank_small *y, struct comm *t)
                                          .receive = receive_from_rank,
                                          .gather = gather_ranks },
                               .comm = t };
+    y->part.ranks = &y->ranks;
     for (int k = 0; k < RANK_SMALL_FLIES; k++) y->flies[k].request = MPI_REQUEST_NULL;
 }
 
@@ -100,6 +101,7 @@ void rank_small_free(struct rank_small *y)
         free(y->flies[k].bytes);
     }
     packing_free(&y->p), contacts_free(&y->s), report_free(&y->report), step_forget(&y->memory);
+    small_part_free(&y->part);
 }
 
 /* ---- steps ---- */
@@ -131,8 +133,9 @@ int rank_small_make(struct rank_small *y, const struct rank_small_step *first,
     comm_waited(t, before);
     of_all.small = told.small, of_all.bound = told.bound, of_all.warm = told.warm;
     of_all.small_warm = told.small_warm, of_all.bare = told.bare, of_all.compare = told.compare;
-    of_all.ranks = &y->ranks;
-    if (!told.same) settings_spread_all(t, step->p), neighbours_free(&y->memory.near);
+    of_all.part = &y->part;
+    if (!told.same)
+        settings_spread_all(t, step->p), step_forget(&y->memory), small_part_free(&y->part);
     step_in_small(step->p, step->s, step->memory, &of_all, step->report, made, parts, failure);
     // what is wrong with the packing the first says; others wait
     if (t->me && failure->status == EX_SOFTWARE) comm_fail(t, failure->status, failure->text);

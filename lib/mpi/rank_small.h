@@ -12,6 +12,7 @@ enum { RANK_SMALL_FLIES = 64 }; /* messages on their way at the same time */
 
 struct rank_small {
     struct small_ranks ranks; /* first: what small steps are given leads back here */
+    struct small_part part;
     struct comm *comm;
     struct packing p; /* of other ranks than the first */
     struct contacts s;

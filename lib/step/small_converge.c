@@ -82,9 +82,9 @@ double small_copy_change(const struct small_run *r, struct body *was)
 {
     const struct small *s = &r->l->s;
     double most = 0;
-    for (int64_t i = 0; i < s->bodies; i++) {
+    for (int64_t k = 0; k < small_bodies_here(r); k++) {
+        const int64_t i = small_body_here(r, k);
         const struct body *b = &s->body[i];
-        if (!small_is_own(r, i)) continue;
         const vec3 dv = v3_sub(small_vec(b->v), small_vec(was[i].v));
         const vec3 dw = v3_sub(small_vec(b->w), small_vec(was[i].w));
         const double change = v3_norm(dv) + s->place[i].r * v3_norm(dw);

@@ -118,7 +118,7 @@ bool small_groups_lay(struct small_list *l, const struct packing *p, const vec3 
     for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
     if (room) small_number_groups(l, &c, beside, in), memset(kind, PAIR_LATER, n);
     if (room && l->part) room = small_part_divide(l->part, l, in, kind);
-    room = room && small_lay(l, in, kind);
+    room = room && small_lay(l, in, kind) && (!l->part || small_part_laid(l->part, l));
     free(c.used), free(c.of), free(beside), free(in), free(kind);
     return room;
 }

@@ -149,26 +149,17 @@ static bool small_pairs_lay(struct small_list *l, const struct packing *p, const
 
 struct small_past small_slot_past(const struct small *s, int64_t slot)
 {
-    struct small_past x;
+    struct small_past x = { 0 };
     const int k = (int)(slot % BUNDLE);
-    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
-    for (int j = 0; j < 3; j++) {
+    const int64_t i = slot / BUNDLE;
+    const struct small_bundle *c = &s->bundle[i];
+    for (int j = 0; j < 3; j++)
         x.f[j] = c->f[j][k], x.couple[j] = c->couple[j][k], x.sum[j] = c->sum[j][k];
-        x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
-        x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
-    }
-    for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
-    for (int j = 0; j < SPRING_COUNT; j++)
-        x.spring[j] = s->spring ? s->spring[slot / BUNDLE].x[j][k] : 0;
+    for (int j = 0; j < 3 && s->turn; j++)
+        x.m[j] = s->turn[i].m[j][k], x.turned[j] = s->turn[i].sum[j][k];
+    for (int j = 0; j < HOLD_COUNT && s->hold; j++) x.held[j] = s->hold[i].x[j][k];
+    for (int j = 0; j < SPRING_COUNT && s->spring; j++) x.spring[j] = s->spring[i].x[j][k];
     return x;
-}
-
-/* Does the reaction of a slot persist? */
-static bool pair_pushes(const struct small *s, int64_t slot)
-{
-    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
-    const int k = (int)(slot % BUNDLE);
-    return c->f[0][k] != 0 || c->f[1][k] != 0 || c->f[2][k] != 0;
 }
 
 void small_list_wake(struct small *s, int64_t slot)
@@ -574,9 +565,13 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
         remember_one(&m, k, by[i]->f, by[i]->m, 1 / part);
     }
     for (int64_t i = 0; i < l->pairs.n; i++) {
-        if (!pair_pushes(&l->s, l->slot[i])) continue;
-        const struct small_past x = small_slot_past(&l->s, l->slot[i]);
-        remember_one(&m, small_pair_key(&l->pairs.pair[i]), x.f, x.m, 1 / part);
+        const int64_t slot = l->slot[i];
+        const int k = (int)(slot % BUNDLE);
+        const struct small_bundle *c = &l->s.bundle[slot / BUNDLE];
+        const struct small_turn *t = l->s.turn ? &l->s.turn[slot / BUNDLE] : NULL;
+        const double f[3] = { c->f[0][k], c->f[1][k], c->f[2][k] };
+        const double moment[3] = { t ? t->m[0][k] : 0, t ? t->m[1][k] : 0, t ? t->m[2][k] : 0 };
+        remember_one(&m, small_pair_key(&l->pairs.pair[i]), f, moment, 1 / part);
     }
     for (int64_t i = 0; i < l->meetings.n; i++) {
         const struct small_meeting *y = &l->meetings.of[i];

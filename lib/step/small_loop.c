@@ -74,15 +74,15 @@ static double begin_bodies(struct small_run *r, double warm, int64_t first, int6
     double most = 0;
     if (r->begins) warm = 0;
     if (r->pull) return small_pull_bodies(r, warm, first, end);
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
-        if (!small_is_own(r, i)) continue;
-        for (int k = 0; k < 3; k++) {
-            const double v = b->v[k], w = b->w[k], free = b->im > 0 ? fall[k] : 0;
-            b->v[k] = v + free + warm * (v - was->v[k] - free);
-            b->w[k] = w + warm * (w - was->w[k]);
-            was->v[k] = v, was->w[k] = w;
+        for (int j = 0; j < 3; j++) {
+            const double v = b->v[j], w = b->w[j], free = b->im > 0 ? fall[j] : 0;
+            b->v[j] = v + free + warm * (v - was->v[j] - free);
+            b->w[j] = w + warm * (w - was->w[j]);
+            was->v[j] = v, was->w[j] = w;
             v2 += v * v;
         }
         if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
@@ -97,11 +97,11 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
     const struct small *s = &l->s;
     int64_t shaken = 0;
     double most = 0;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         const struct body *b = &s->body[i];
-        if (!small_is_own(r, i)) continue;
         shaken += shaken_by(r, i);
-        for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
+        for (int j = 0; j < 3; j++) s->place[i].x[j] += r->h * b->v[j];
         const vec3 way = v3_axpy(l->listed[i], l->since, l->drift[i]);
         const vec3 d = v3_sub(small_vec(s->place[i].x), way);
         most = fmax(most, v3_dot(d, d));
@@ -251,8 +251,8 @@ static void fade_reactions(struct small_run *r, int me, int threads)
     int64_t shaken = 0;
     team_meet();
     if (!me) r->load = mean_load(r);
-    for (int64_t i = 0; !me && i < r->p->n; i++)
-        if (small_is_own(r, i)) shaken += shaken_by(r, i);
+    for (int64_t k = 0; !me && k < small_bodies_here(r); k++)
+        shaken += shaken_by(r, small_body_here(r, k));
     if (!me) shaken = small_of_all(r, shaken);
     if (!me) *warm = small_warm(r, shaken) - 1;
     team_meet();
@@ -439,8 +439,9 @@ static void finish_step(struct small_run *r)
 void small_loop(void *arg, int me, int threads)
 {
     struct small_run *r = arg;
-    int64_t first, end;
-    small_share(r->l->s.bodies, me, threads, &first, &end);
+    int64_t first, end, from, to; // bodies of this process; of all, for touches
+    small_share(small_bodies_here(r), me, threads, &first, &end);
+    small_share(r->l->s.bodies, me, threads, &from, &to);
     while (r->made < r->n && !r->stop) {
         if (r->cell.moves) {
             if (!me) small_cell_begin(r);
@@ -474,7 +475,7 @@ void small_loop(void *arg, int me, int threads)
         if (r->judged) small_error_step(r, me, threads);
         if (r->compares && r->made + 1 == r->n) small_converge(r, me, threads);
         if (r->cell.moves && !me) small_cell_end(r);
-        end_touches(r, first, end);
+        end_touches(r, from, to);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
         if (r->loads.of && !me) small_loads_end(r);

@@ -20,7 +20,7 @@ static void small_wires_free(struct small_part *y)
 void small_part_free(struct small_part *y)
 {
     small_wires_free(y);
-    free(y->owner), free(y->along), free(y->message);
+    free(y->owner), free(y->own), free(y->along), free(y->pair), free(y->message);
     *y = (struct small_part){ .ranks = y->ranks };
 }
 
@@ -66,14 +66,23 @@ static void bisect(int32_t *owner, const vec3 *x, struct placed_body *b, int64_t
     bisect(owner, x, b + cut, n - cut, first + half, ranks - half);
 }
 
+/* Lists after which bodies are divided anew: they flow from one process to another, and every division costs */
+enum { DIVIDES_AFTER = 20 };
+
 static bool divide_bodies(struct small_part *y, const struct small_list *l)
 {
     const int64_t n = l->s.bodies;
+    if (y->bodies == n && y->lists > 0 && y->lists++ < DIVIDES_AFTER) return true;
     struct placed_body *b = malloc((size_t)(n + 1) * sizeof *b);
-    if (!y->owner) y->owner = malloc((size_t)(n + 1) * sizeof *y->owner);
-    const bool room = b && y->owner;
+    free(y->owner), free(y->own);
+    y->owner = malloc((size_t)(n + 1) * sizeof *y->owner);
+    y->own = malloc((size_t)(n + 1) * sizeof *y->own);
+    const bool room = b && y->owner && y->own;
     for (int64_t i = 0; room && i < n; i++) b[i].i = i;
     if (room) bisect(y->owner, l->listed, b, n, 0, y->ranks->n);
+    y->bodies = n, y->lists = 1, y->owns = 0;
+    for (int32_t i = 0; room && i < n; i++)
+        if (y->owner[i] == y->ranks->me) y->own[y->owns++] = i;
     free(b);
     return room;
 }
@@ -280,4 +289,15 @@ bool small_part_divide(struct small_part *y, const struct small_list *l, const i
     if (room) mark_early(&d, kind);
     free(d.border), free(d.pair), free(d.since);
     return room;
+}
+
+bool small_part_laid(struct small_part *y, const struct small_list *l)
+{
+    const int64_t lanes = BUNDLE * l->s.bundles;
+    free(y->pair);
+    y->pair = malloc((size_t)(lanes + 1) * sizeof *y->pair);
+    if (!y->pair) return false;
+    for (int64_t k = 0; k < lanes; k++) y->pair[k] = -1;
+    for (int64_t i = 0; i < l->pairs.n; i++) y->pair[l->slot[i]] = i;
+    return true;
 }

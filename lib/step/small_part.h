@@ -46,13 +46,27 @@ struct small_wire {
 
 struct small_part {
     struct small_ranks *ranks;
-    int32_t *owner; /* [bodies] */
+    int64_t bodies, lists; /* lists made since the bodies were divided; 0: they are to be */
+    int32_t *owner;        /* [bodies] */
+    int64_t owns;
+    int32_t *own; /* [owns] this process's bodies */
     int64_t phases;
     int wires;
     struct small_wire *wire; /* [wires] */
     int64_t *along;          /* [pairs] pairs in the order of one process's slots */
+    int64_t *pair;           /* [lanes] the pair in a slot; -1: none */
     char *message;           /* [the longest] */
 };
+
+/* Bodies of this process, and the k-th of them */
+static inline int64_t small_bodies_here(const struct small_run *r)
+{
+    return r->part ? r->part->owns : r->l->s.bodies;
+}
+static inline int64_t small_body_here(const struct small_run *r, int64_t k)
+{
+    return r->part ? r->part->own[k] : k;
+}
 
 /* Is body i this process's own? */
 static inline bool small_is_own(const struct small_run *r, int64_t i)
@@ -75,6 +89,8 @@ int small_part_join(struct pairs *s, struct small_ranks *ranks, struct failure *
 /* The pairs of l, in groups in[pairs], are divided: their kinds. False when memory is short. */
 bool small_part_divide(struct small_part *y, const struct small_list *l, const int64_t *in,
                        uint8_t *kind);
+/* Pairs have their slots. False when memory is short. */
+bool small_part_laid(struct small_part *y, const struct small_list *l);
 void small_part_free(struct small_part *y);
 
 /* A small step begins: copies are where their bodies are, with their velocities before it. */

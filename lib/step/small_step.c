@@ -492,9 +492,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     packing_wrap(p, NULL);
     if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
-    struct small_part part = { .ranks = o->ranks };
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
-    if (o->ranks && o->ranks->n > 1) r.part = &part;
+    if (o->part && o->part->ranks->n > 1) r.part = o->part;
     r.n = count, r.overlap = o->overlap, r.kernel = backend_widest()->small;
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
@@ -536,7 +535,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->seconds = report_seconds(CLOCK_CPU) - cpu - rep->detection;
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_loads_free(&r, !*made), small_stress_free(&r);
-    small_points_free(&r), small_error_free(&r), small_part_free(&part);
+    small_points_free(&r), small_error_free(&r);
     l->part = NULL;
     free(r.wall), free(r.x), free(r.v), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;

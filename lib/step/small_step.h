@@ -20,9 +20,8 @@ struct small_opt {
     bool bare;               /* nobody reads the errors and the contacts of this step */
     bool compare;            /* its last reactions are compared with converged ones */
     double bound;            /* of what is missing of reactions in each small step; 0: none */
-    struct small_ranks
-        *ranks; /* processes that divide them, each with the same packing; NULL: alone */
-    bool warm;  /* the first one starts from what the packing remembers */
+    struct small_part *part; /* this process's, of several with the same packing; NULL: alone */
+    bool warm;               /* the first one starts from what the packing remembers */
 };
 
 /* What of a packing small steps do not have, in words; NULL: they have all */

@@ -188,8 +188,7 @@ static char *put_all(struct small_run *r, char *at)
     struct small_list *l = r->l;
     const size_t bytes = past_bytes(&l->s);
     int64_t count = 0;
-    for (int64_t i = 0; i < l->s.bodies; i++)
-        if (small_is_own(r, i)) tell_body(r, i, &at, put_bytes);
+    for (int64_t k = 0; k < r->part->owns; k++) tell_body(r, r->part->own[k], &at, put_bytes);
     char *many = at;
     put_bytes(&at, &count, sizeof count);
     for (int64_t i = 0; i < l->touches; i++) {
@@ -200,10 +199,12 @@ static char *put_all(struct small_run *r, char *at)
     }
     put_bytes(&many, &count, sizeof count), count = 0, many = at;
     put_bytes(&at, &count, sizeof count);
-    for (int64_t i = 0; i < l->pairs.n; i++) {
-        struct told_past t = { .i = i };
-        if (!small_is_own(r, l->pairs.pair[i].b) || !pair_has_past(&l->s, l->slot[i])) continue;
-        t.past = small_slot_past(&l->s, l->slot[i]);
+    const int64_t swept = BUNDLE * l->s.group[l->s.groups];
+    for (int64_t slot = 0; slot < swept; slot++) {
+        struct told_past t = { .i = r->part->pair[slot] };
+        if (t.i < 0 || !pair_has_past(&l->s, slot)) continue;
+        if (!small_is_own(r, l->pairs.pair[t.i].b)) continue;
+        t.past = small_slot_past(&l->s, slot);
         put_bytes(&at, &t, bytes), count++;
     }
     put_bytes(&many, &count, sizeof count);
@@ -240,9 +241,8 @@ static void forget_all(struct small_run *r)
     const struct told_past none = { 0 };
     for (int64_t i = 0; i < l->touches; i++)
         if (!small_is_own(r, l->touch[i].body)) touch_set_past(&l->touch[i], &none, &l->s);
-    for (int64_t i = 0; i < l->pairs.n; i++)
-        if (!is_swept_here(r, &l->pairs.pair[i]) && pair_has_past(&l->s, l->slot[i]))
-            small_slot_set_past(&l->s, l->slot[i], &none.past);
+    for (int64_t slot = BUNDLE * l->s.group[l->s.groups]; slot < BUNDLE * l->s.bundles; slot++)
+        if (pair_has_past(&l->s, slot)) small_slot_set_past(&l->s, slot, &none.past);
 }
 
 bool small_part_collect(struct small_run *r)
