@@ -86,15 +86,11 @@ static bool small_has_shapes(const struct packing *p)
 
 const char *small_undivided(const struct packing *p, double bound)
 {
-    if (bound > 0) return "with a bound on what is missing of reactions";
-    if (small_has_shapes(p) || p->mesh.elements)
-        return "of other shapes than balls, or with meshes";
-    if (freedoms_in(p)) return "with walls or cells that loads move";
-    if (small_cell_moves(p)) return "in a cell that moves";
-    if (packing_adheres(p) || small_stiff_acts(p)) return "with bonds or stiff contacts";
-    if (small_tie_holds(p) || packing_sticks(p)) return "with attraction or static friction";
-    if (p->outside.force || p->outside.torque || p->pulls.n) return "with forces on bodies";
-    if (p->sums.n) return "with sums of forces on faces";
+    if (bound > 0) return "a bound on the error of small steps";
+    if (small_has_shapes(p) || p->mesh.elements) return "shapes other than balls, or meshes";
+    if (freedoms_in(p)) return "walls or cells that loads move";
+    if (small_cell_moves(p)) return "a cell that moves";
+    if (p->sums.n) return "sums of forces on faces";
     return NULL;
 }
 
