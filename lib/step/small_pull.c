@@ -70,7 +70,8 @@ static void next_forces(struct small_run *r, int64_t i)
 double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
 {
     double most = 0;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
         const struct small_pull had = r->pull[i], *y = &r->pull[i];
         const vec3 v = small_vec(b->v), w = small_vec(b->w);

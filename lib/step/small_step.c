@@ -86,7 +86,7 @@ static bool small_has_shapes(const struct packing *p)
 
 const char *small_undivided(const struct packing *p, double bound)
 {
-    if (bound > 0) return "a bound on the error of small steps";
+    if (bound > 0) return "a bound on the missing impulse";
     if (small_has_shapes(p) || p->mesh.elements) return "shapes other than balls, or meshes";
     if (freedoms_in(p)) return "walls or cells that loads move";
     if (small_cell_moves(p)) return "a cell that moves";
