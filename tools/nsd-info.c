@@ -23,7 +23,7 @@ static bool shown;              /* whether any frame had what was asked for: con
 static const struct cli_option own[] = {
     { CLI_FLAG, 'b', "bodies", &bodies, .help = "print one line per body" },
     { CLI_FLAG, 'p', "particles", &particles,
-      .help = "the same with the former keys x, v, w, q: scripts read them" },
+      .help = "print it with the former keys x, v, w, q, which scripts read" },
     { CLI_FLAG, 'c', "contacts", &contacts, .help = "print one line per contact" },
     { CLI_FLAG, 'w', "walls", &walls, .help = "print one line per wall" },
     { CLI_FLAG, 0, "history", &history,

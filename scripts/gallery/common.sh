@@ -49,9 +49,9 @@ start()
     nsd-step "$@" -o "$file" 2>"${file%.h5}.log" || { cat "${file%.h5}.log" >&2; return 1; }
 }
 
-# soft: set or liggghts, the entry of the table that has the parameters of the independent code: dem.c, or LIGGGHTS for tubes.
+# soft: dem or liggghts, the entry of the table that has the parameters of the independent code: dem.c, or LIGGGHTS for tubes.
 # An experiment that has both chooses for a part of it.
-soft=$(jq -r 'if .reference.set? or (.reference.liggghts? | not) then "set" else "liggghts" end' "$P/$name.json")
+soft=$(jq -r 'if .reference.dem? or (.reference.liggghts? | not) then "dem" else "liggghts" end' "$P/$name.json")
 # settings PREFIX: these parameters, PREFIX before each
 settings() { jq -r --arg before "$1" --arg soft "$soft" '.reference[$soft] | to_entries | map("\($before)\(.key)=\(.value)") | join(" ")' "$P/$name.json"; }
 
@@ -68,7 +68,7 @@ step()
     fi
     shift
     read -ra arguments <<<"$(settings '--set ')"
-    "$P/../../bench/reference/$(if [ "$soft" = set ]; then echo run.py; else echo run_liggghts.py; fi)" -o "$file" "${arguments[@]}" "$@" 2>"$log" || { cat "$log" >&2; return 1; }
+    "$P/../../bench/reference/$(if [ "$soft" = dem ]; then echo run.py; else echo run_liggghts.py; fi)" -o "$file" "${arguments[@]}" "$@" 2>"$log" || { cat "$log" >&2; return 1; }
     sed -n 's/.*ov\/r //p; s/^steps \([0-9]*\).*/steps \1/p' "$log" | awk '/^steps/ { n = $2; next } $1 > max { max = $1 } END { print max + 0, 0, n }' >>"$out/account.tsv"
 }
 
@@ -132,7 +132,7 @@ results()
     local cpu
     cpu=$(awk '{ print ($14 + $15 + $16 + $17) / 100 }' "/proc/$$/stat")
     [ -f "$out/account.tsv" ] || : >"$out/account.tsv"
-    jq -s -L "$P" --arg name "$name" --arg code "$CODE" --arg part "${PART:-}" --argjson quick "$(pick true false)" --argjson cpu "$cpu" --arg options "$(if by nsd; then echo "${options[*]}"; else if [ "$soft" = liggghts ]; then echo -n "LIGGGHTS "; fi; settings ''; fi)" \
+    jq -s -L "$P" --arg name "$name" --arg code "$CODE" --arg part "${PART:-}" --argjson quick "$(pick true false)" --argjson cpu "$cpu" --arg options "$(if by nsd; then echo "${options[*]}"; else echo "$(settings '')$([ "$soft" = dem ] || echo ", LIGGGHTS")"; fi)" \
         --argjson table "$(jq .rows "$P/$name.json")" --rawfile account "$out/account.tsv" '
         include "rows"; (($table | map(.key)) - map(.key)) as $lacks | ((map(.key)) - ($table | map(.key))) as $more |
         if $more != [] then error("no row of the table: " + ($more | join(", ")))

@@ -37,7 +37,7 @@ echo "froude angle seed" >"$out/angle.tsv"
 echo "froude angle seed" >"$out/balls.tsv"
 : >"$out/slip.tsv"
 for s in "${seeds[@]}"; do
-    soft=set
+    soft=dem
     for speed in "${speeds[@]}"; do
         # discs without overlaps: the lowest ones of a block that lie in the circle
         scene drum --argjson seed "$s" --argjson r "$radius" '.seed = $seed | del(.walls) |
@@ -68,7 +68,7 @@ for s in "${seeds[@]}"; do
         echo "$(froude "$speed" 0.03) $(angle balls.h5) $s" >>"$out/balls.tsv"
     done
 done >"$out/lines.json"
-! part discs || soft=set
+! part discs || soft=dem
 for t in angle balls; do
     with 'numbers | map([.[0], .[1]]) | spread[] | "\(.[0]) \(.[1]) \(.[2] // 0)"' -Rsr "$out/$t.tsv" >"$out/$t-mean.tsv"
 done
