@@ -6,7 +6,7 @@
 #include <math.h>
 
 /* May any edge move in the step that begins where the packing is? */
-static bool small_cell_moves(const struct packing *p)
+bool small_cell_moves(const struct packing *p)
 {
     bool any = false;
     for (int k = 0; k < 3; k++) any = any || (p->cell.repeats[k] && cell_moves(&p->cell, k));

@@ -17,6 +17,7 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
+#include "step/small_make.h"
 #include "step/small_part.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
