@@ -52,14 +52,9 @@ struct small_list {
 };
 
 void small_list_free(struct small_list *l);
-/* What is of pairs and touches; and the list has none of them. */
-void small_list_free_arrays(struct small_list *l);
+/* Frees what is made anew with the pairs, and leaves it; the list has none of it. */
+void small_list_empty(struct small_list *l);
 void small_list_forget(struct small_list *l);
-/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
-bool small_list_recall(struct small_list *l, const struct packing *p, double part);
-/* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
-int small_list_remember(const struct small_list *l, struct packing *p, double part,
-                        struct failure *failure);
 /* The first touch that is not before that of this body and wall */
 int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall);
 /* [touches] in the order of contacts; NULL when memory is short. To be freed */
@@ -76,16 +71,6 @@ struct small_touch *small_list_find_touch(const struct small_list *l, int32_t bo
 /* The bundle of a slot has a lane that pushes, or is held. */
 void small_list_wake(struct small *s, int64_t slot);
 struct contact_key small_pair_key(const struct pair *pair);
-
-/* What a slot has of the past */
-struct small_past {
-    double f[3], couple[3], sum[3];
-    double m[3], turned[3];
-    double held[HOLD_COUNT];     /* from HOLD_WET on */
-    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
-};
-struct small_past small_slot_past(const struct small *s, int64_t slot);
-void small_slot_set_past(struct small *s, int64_t slot, const struct small_past *x);
 
 /* The image of b in lane k is so far from b (m), and moves against it (m/s) */
 static inline void small_shift_set(struct small_shift *to, int k, vec3 d, vec3 v)

@@ -1,11 +1,12 @@
-/* step/small_make.c: pairs and touches sought, with a margin, and laid in bundles [step/small_make.h]. */
+/* step/small_make.c: what comes near on straight ways [step/small_make.h]. */
 #include "step/small_make.h"
 
 #include "base/array.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
-#include "step/small_group.h"
+#include "step/small_lay.h"
 #include "step/small_part.h"
+#include "step/small_past.h"
 #include "step/small_stiff.h"
 
 #include <stdlib.h>
@@ -41,43 +42,6 @@ static int small_bodies(struct small_list *l, const struct packing *p, struct fa
 
 /* ---- pairs ---- */
 
-static void set_pair(struct small_list *l, const struct packing *p, const vec3 *edge, int64_t i)
-{
-    const struct pair *pair = &l->pairs.pair[i];
-    const int32_t m = packing_pair(p, pair->a, pair->b);
-    const int k = (int)(l->slot[i] % BUNDLE);
-    struct small_bundle *c = &l->s.bundle[l->slot[i] / BUNDLE];
-    c->a[k] = body_place(pair->a), c->b[k] = body_place(pair->b);
-    c->mu[k] = p->mu[m], c->e[0][k] = p->en[m], c->e[1][k] = p->et[m];
-    if (l->s.shift) {
-        vec3 d = cell_shift(edge, pair->shift);
-        small_shift_set(&l->s.shift[l->slot[i] / BUNDLE], k, d,
-                        cell_shift(p->cell.rate, pair->shift));
-    }
-    if (l->s.hold) {
-        double x[HOLD_COUNT];
-        small_tie_set(x, p, pair->a, pair->b, p->dt);
-        for (int j = 0; j < HOLD_COUNT; j++) l->s.hold[l->slot[i] / BUNDLE].x[j][k] = x[j];
-    }
-    if (l->s.spring) {
-        const struct body *a = &l->s.body[pair->a], *b = &l->s.body[pair->b];
-        const double ra = p->radius[pair->a], rb = p->radius[pair->b], wn = a->im + b->im;
-        double x[SPRING_COUNT] = { 0 };
-        small_stiff_set(x, l->stiffness, p, pair->a, pair->b, wn,
-                        wn + ra * ra * a->ii + rb * rb * b->ii);
-        for (int j = 0; j < SPRING_COUNT; j++) l->s.spring[l->slot[i] / BUNDLE].x[j][k] = x[j];
-    }
-    if (l->s.stick) {
-        struct small_stick *t = &l->s.stick[l->slot[i] / BUNDLE];
-        double mu[2];
-        small_tie_stick(mu, &t->v_s[k], p, m);
-        t->mu[0][k] = mu[0], t->mu[1][k] = mu[1];
-    }
-    if (!l->s.turn) return;
-    struct small_turn *t = &l->s.turn[l->slot[i] / BUNDLE];
-    contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
-}
-
 /* Leaves pairs of balls to l->pairs; others are meetings. */
 static bool take_meetings(struct small_list *l, const struct packing *p)
 {
@@ -94,31 +58,6 @@ static bool take_meetings(struct small_list *l, const struct packing *p)
     return room;
 }
 
-static bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x,
-                            const vec3 edge[3])
-{
-    struct small *s = &l->s;
-    if (!small_groups_lay(l, p, x, edge)) return false;
-    s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
-    if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
-    if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
-    if (small_tie_holds(p)) s->hold = lay_lines(s->bundles, sizeof *s->hold);
-    if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
-    if (l->stiffness) s->spring = lay_lines(s->bundles, sizeof *s->spring);
-    s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
-    s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
-    s->until = calloc((size_t)(s->bundles + 1), BUNDLE * sizeof *s->until);
-    if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
-        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) ||
-        (l->stiffness && !s->spring) || !s->live || !s->late || !s->until)
-        return false;
-    for (int64_t i = 0; i < s->bundles; i++)
-        for (int k = 0; k < BUNDLE; k++)
-            s->bundle[i].a[k] = body_place(p->n), s->bundle[i].b[k] = body_place(p->n + 1);
-    for (int64_t i = 0; i < l->pairs.n; i++) set_pair(l, p, edge, i);
-    return true;
-}
-
 /* Pairs of images that move; false when memory is short. */
 static bool list_images(struct small_list *l)
 {
@@ -131,57 +70,7 @@ static bool list_images(struct small_list *l)
     return l->image != NULL;
 }
 
-static bool has_pushed(const double f[3], const double sum[3], const double held[HOLD_COUNT])
-{
-    return !small_is_zero(f) || !small_is_zero(sum) || held[HOLD_JOINED] < 0;
-}
-
-static bool pair_has_pushed(const struct small_list *l, int64_t i)
-{
-    const struct small_past x = small_slot_past(&l->s, l->slot[i]);
-    return has_pushed(x.f, x.sum, x.held);
-}
-
-static int pair_order(const void *x, const void *y)
-{
-    return contact_key_order(small_pair_key(x), small_pair_key(y));
-}
-
-/* Pairs that have pushed in this interval stay in the list, however far they are: the frame has them. */
-static bool keep_pairs(struct small_list *to, const struct small_list *from)
-{
-    struct pairs *p = &to->pairs;
-    const int64_t n = p->n;
-    int64_t k = 0, more = 0;
-    bool found;
-    for (int64_t i = 0; i < from->pairs.n; i++) more += pair_has_pushed(from, i);
-    struct pair *pair = realloc(p->pair, (size_t)(n + more + 1) * sizeof *pair);
-    if (!pair) return false;
-    p->pair = pair;
-    for (int64_t i = 0; i < from->pairs.n; i++) {
-        if (!pair_has_pushed(from, i)) continue;
-        k = small_list_pair_before(to, k, n, small_pair_key(&from->pairs.pair[i]), &found);
-        if (!found) p->pair[p->n++] = from->pairs.pair[i];
-    }
-    if (p->n > n) qsort(p->pair, (size_t)p->n, sizeof *p->pair, pair_order);
-    return true;
-}
-
-/* Pairs that were in the list before */
-static void carry_pairs(struct small_list *to, const struct small_list *from)
-{
-    int64_t k = 0;
-    bool found;
-    for (int64_t i = 0; i < from->pairs.n; i++) {
-        const struct small_past x = small_slot_past(&from->s, from->slot[i]);
-        const bool holds = x.held[HOLD_WET] > 0 || x.held[HOLD_PULL] > 0 ||
-                           x.spring[SPRING_REST] < 0 || x.spring[SPRING_DUE] > 0 ||
-                           x.spring[SPRING_HELD] > 0;
-        if (!holds && !has_pushed(x.f, x.sum, x.held)) continue;
-        k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
-        if (found) small_slot_set_past(&to->s, to->slot[k], &x);
-    }
-}
+/* ---- walls ---- */
 
 static bool add_touch(struct small_list *l, const struct packing *p, int32_t w, int32_t i)
 {
@@ -214,7 +103,7 @@ static bool near_mesh(const struct small_list *l, const struct packing *p, const
 static bool touch_has_pushed(const struct small_list *l, int32_t i, int32_t w)
 {
     const struct small_touch *t = small_list_find_touch(l, i, w);
-    return t && has_pushed(t->f, t->sum, t->hold);
+    return t && (!small_is_zero(t->f) || !small_is_zero(t->sum) || t->hold[HOLD_JOINED] < 0);
 }
 
 /* Does body i come near wall w, where `pose` has brought it? */
@@ -276,7 +165,7 @@ static void set_ways(struct small_list *l, const struct packing *p, const struct
     if (!o->v || !p->n) return;
     memcpy(l->drift, o->v, (size_t)p->n * sizeof *o->v);
     for (int64_t i = 0; i < p->n; i++) *mean = v3_axpy(*mean, 1.0 / (double)p->n, o->v[i]);
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(o->v[i], *mean)));
+    for (int64_t i = 0; i < p->n; i++) most = dmax(most, v3_norm(v3_sub(o->v[i], *mean)));
     most = fmax(most, o->wall);
     const double way = LONG * packing_whole(p).small;
     l->serves = most * o->span > way ? way / most : o->span, l->wall = o->wall;
@@ -340,15 +229,15 @@ int small_list_make(struct small_list *l, const struct packing *p, const struct 
     l->margin = l->spare + small_tie_reach(p), l->s.slack = CLOSE * l->margin;
     set_ways(l, p, o, &mean);
     if (!seek_along(l, p, o, mean, failure)) {
-        room = (!p->shape || take_meetings(l, p)) && keep_pairs(l, &was) &&
+        room = (!p->shape || take_meetings(l, p)) && small_keep_pairs(l, &was) &&
                small_pairs_lay(l, p, o->x, o->edge) && list_images(l) &&
                find_touches(l, &was, p, o->x, o->t) &&
                ((!p->shape && !p->mesh.elements) ||
                 small_meetings_lay(&l->meetings, p, &was.meetings));
-        if (room) carry_pairs(l, &was), carry_touches(l, &was);
+        if (room) small_carry_pairs(l, &was), carry_touches(l, &was);
         if (room) small_meetings_carry(&l->meetings, &was.meetings);
     }
     if (!room) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    small_list_free_arrays(&was);
+    small_list_empty(&was);
     return failure->status;
 }

@@ -1,4 +1,6 @@
-/* step/small_make.h: the list that small steps work on, made [step/small_list.h]. */
+/*
+ * step/small_make.h: the list of small steps is made: pairs and touches of walls that come near on straight ways.
+ */
 #pragma once
 
 #include "step/small_list.h"

@@ -1,5 +1,6 @@
 /* step/small_tell.c: what processes that divide small steps tell each other [step/small_part.h]. */
 #include "step/small_part.h"
+#include "step/small_past.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,7 @@ static void take_motion(const struct told_motion *from, struct small *s, int64_t
 {
     memcpy(s->body[i].v, from->v, sizeof from->v), memcpy(s->body[i].w, from->w, sizeof from->w);
     s->change[i] = from->change, s->hot[i] = (int32_t)from->hot;
+    if (s->hot[i] >= s->sweep - 1) small_mark_bundles(s, i);
 }
 
 static void send_motion(struct small_run *r, const struct small_wire *w, const int32_t *body,
