@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-/* May any edge move in the step that begins where the packing is? */
-static bool small_cell_moves(const struct packing *p)
+bool small_cell_moves(const struct packing *p)
 {
     bool any = false;
     for (int k = 0; k < 3; k++) any = any || (p->cell.repeats[k] && cell_moves(&p->cell, k));
@@ -23,8 +22,7 @@ static double strain_of(const vec3 edge[3], const vec3 rate[3])
     return sum;
 }
 
-/* 1/s: how fast the flow of the cell stretches at most */
-static double small_cell_strain(const struct packing *p)
+double small_cell_strain(const struct packing *p)
 {
     return small_cell_moves(p) ? strain_of(p->cell.edge, p->cell.rate) : 0;
 }

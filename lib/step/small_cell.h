@@ -7,6 +7,10 @@
 
 #include "step/small_run.h"
 
+/* May any edge move in the step that begins where the packing is? */
+bool small_cell_moves(const struct packing *p);
+/* 1/s: how fast the flow of the cell stretches at most */
+double small_cell_strain(const struct packing *p);
 /* The flow that speeds of balls are relative to, and by how much (m/s) it moves two of them that touch; none where there are
    walls or shapes */
 struct small_flow {
