@@ -70,7 +70,7 @@ static char *gather_ranks(struct small_ranks *ranks, const void *bytes, size_t s
     }
     char *all = malloc(end + 1);
     if (!all) comm_fail(t, EX_SOFTWARE, "no memory for the messages of the ranks");
-    memcpy(all + at[t->me].first, bytes, size);
+    if (size) memcpy(all + at[t->me].first, bytes, size);
     MPI_Type_contiguous(BLOCK, MPI_BYTE, &block), MPI_Type_commit(&block);
     MPI_Allgatherv(MPI_IN_PLACE, 0, block, all, blocks, first, block, t->mpi);
     MPI_Type_free(&block);
