@@ -2,7 +2,7 @@
 #include "measure/ball_part.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
-#include "state/breakable.h"
+#include "state/breakage.h"
 
 #include <math.h>
 #include <stdlib.h>
