@@ -112,6 +112,12 @@ struct small {
     double *missing, *load;     /* [bodies] N s: of small_judge; NULL */
     int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
     double *change; /* [bodies] m/s: by sweeps of this step since then */
+    struct small_stirred {
+        int32_t *last,
+            *of; /* [bundles] the largest `hot` of its bodies; NULL: not yet [small_stirred_init()] */
+        int64_t
+            *first; /* [bodies + 1] body i is in the bundles of[first[i]] .. of[first[i + 1] - 1] */
+    } stirred;
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
     int64_t *group;                  /* [groups + 1] */
     struct small_bundle *bundle;
@@ -300,6 +306,20 @@ ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, do
     const double most = 2 * (kept + o->calm / w);
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }
+
+/* Body i is to be swept again. Threads may write the same to a bundle at the same time. */
+ALWAYS_INLINE void small_stir(struct small *s, int64_t i)
+{
+    s->hot[i] = s->sweep;
+    if (!s->stirred.last) return;
+    for (int64_t k = s->stirred.first[i]; k < s->stirred.first[i + 1]; k++)
+        __atomic_store_n(&s->stirred.last[s->stirred.of[k]], s->sweep, __ATOMIC_RELAXED);
+}
+
+/* Before sweeps after the first of a small step: from then on these do not look at all pairs where few bodies have changed. Without
+   memory they do. */
+void small_stirred_init(struct small *s);
+void small_stirred_free(struct small *s);
 
 /* ---- kernels ---- */
 

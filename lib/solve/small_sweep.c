@@ -179,7 +179,7 @@ static bool small_mark_body(struct small *s, int64_t i, double x, double allowed
 {
     s->change[i] += x;
     if (!(s->change[i] > allowed)) return false;
-    s->change[i] = 0, s->hot[i] = s->sweep;
+    s->change[i] = 0, small_stir(s, i);
     return true;
 }
 
@@ -367,12 +367,14 @@ ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bo
                                  bool rolls, bool rich)
 {
     bool far = false;
-    for (int64_t i = first; i < end; i++)
+    for (int64_t i = first; i < end; i++) {
+        if (again && s->stirred.last && s->stirred.last[i] < s->sweep - 1) continue;
         for (int k = 0; k < BUNDLE; k += LANES) {
             vm hot = NONE;
             if (again) hot = small_hot(s, &s->bundle[i], k);
             if (!again || any(hot)) far |= small_lanes(s, i, k, again ? &hot : NULL, rolls, rich);
         }
+    }
     return far;
 }
 

@@ -22,6 +22,7 @@ static void small_arrays_free(struct small_list *l)
     struct small *s = &l->s;
     free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->spring),
         free(s->live), free(s->late), free(s->until), free(s->group);
+    small_stirred_free(s);
     free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
@@ -33,6 +34,7 @@ static void small_forget(struct small_list *l)
     s->bundle = NULL, s->turn = NULL, s->shift = NULL, s->hold = NULL, s->stick = NULL,
     s->spring = NULL, s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
+    s->stirred = (struct small_stirred){ 0 };
     l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
 }
@@ -600,7 +602,8 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
         for (int k = 0; k < 3; k++)
             x.sum[k] = -x.f[k], x.turned[k] = -x.m[k]; // the interval before has counted it
-        struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
+        struct small_meeting *m =
+            small_meets(p, r->a, r->b) ? small_meetings_find(&l->meetings, recall_key(r)) : NULL;
         if (m) {
             room = room && small_meeting_recall(m, r, part);
             continue;

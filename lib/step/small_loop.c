@@ -291,6 +291,7 @@ static bool small_sweep_all(struct small_run *r, int me, int threads, bool again
     small_share(r->l->s.bodies, me, threads, &first, &end);
     team_meet();
     if (!me) r->l->s.sweep++, r->swept++, r->far = false;
+    if (!me && again) small_stirred_init(&r->l->s);
     team_meet();
     sweep_touches(r, first, end, again);
     team_meet();
@@ -321,8 +322,9 @@ static void small_sweeps(struct small_run *r, int me, int threads)
         far = small_sweep_all(r, me, threads, k > 0);
         if (far) continue;
         far = r->bound > 0 && small_error_exceeds(r, me, threads);
-        far = far || (r->gains && small_gains(r, me, &gain));
         if (far && !me) small_copy_wake(r), r->far = true;
+        if (!far && r->gains && (far = small_gains(r, me, &gain)) && !me)
+            small_points_wake(r), r->far = true;
         team_meet();
     }
 }

@@ -233,7 +233,7 @@ static bool mark_body(struct small *s, int32_t i, double x, double allowed)
     if (i < 0) return false;
     s->change[i] += x;
     if (!(s->change[i] > allowed)) return false;
-    s->change[i] = 0, s->hot[i] = s->sweep;
+    s->change[i] = 0, small_stir(s, i);
     return true;
 }
 
@@ -248,6 +248,17 @@ void small_meeting_mark(struct small_run *r, const struct small_meeting *m, doub
     if (!(change > (again ? 0 : allowed))) return;
     const bool far = mark_body(s, a, change, allowed);
     if (mark_body(s, b, change, allowed) || far) r->far = true;
+}
+
+void small_points_wake(struct small_run *r)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < r->l->meetings.n; i++) {
+        const struct small_meeting *m = &r->l->meetings.of[i];
+        if (!m->points || !m->rounds) continue;
+        small_stir(s, m->key.b);
+        if (m->key.a >= 0) small_stir(s, m->key.a);
+    }
 }
 
 static bool is_hot(const struct small *s, const struct small_meeting *m)

@@ -26,19 +26,19 @@ damage() { nsd-info --last -p "$1" | jq -c 'select(.damage != null).damage'; }
 
 # ---- what a break costs ----
 
-# small STRENGTH: small steps of ten steps of 1 ms, 8 layers of balls, of which one has this strength
+# small STRENGTH: small steps of 11 steps of 1 ms, 21 layers of balls, of which one has this strength
 small() {
     jq -n "{ dt: 1e-3, density: 2600, seed: 5, mu: 0.4,
-        materials: { other: {}, weak: { breaks: { by: \"force\", strength: $1, smallest: 1e-3 } } },
-        walls: [{ box: { x: [0, 16e-3], y: [0, 16e-3], z: [0, null] } }],
-        bodies: [range(512) as \$i | { radius: 1e-3, material: (if \$i == 37 then \"weak\" else \"other\" end),
-            x: [(\$i % 8 * 2 + 1) * 1e-3, ((\$i / 8 | floor) % 8 * 2 + 1) * 1e-3, ((\$i / 64 | floor) * 2 + 1) * 1e-3] }] }" |
-        nsd-gen - | nsd-step -n 3 --every 3 2>&1 >"$tmp/small-$1.h5" | sed -n 's/.* were made in \([0-9]*\) small ones/\1/p'
+        materials: { other: {}, weak: { breaks: { by: \"force\", strength: $1, smallest: 1.5e-3 } } },
+        walls: [{ box: { x: [0, 44e-3], y: [0, 44e-3], z: [0, null] } }],
+        bodies: [range(10164) as \$i | { radius: 1e-3, material: (if \$i == 2000 then \"weak\" else \"other\" end),
+            x: [(\$i % 22 * 2 + 1) * 1e-3, ((\$i / 22 | floor) % 22 * 2 + 1) * 1e-3, ((\$i / 484 | floor) * 2 + 1) * 1e-3] }] }" |
+        nsd-gen - | nsd-step -n 11 --every 11 2>&1 >"$tmp/small-$1.h5" | sed -n 's/.* were made in \([0-9]*\) small ones/\1/p'
 }
 whole=$(small 1e12)
 broken=$(small 1)
-ok "a grain of 512 that breaks into pieces adds less than a fifth to the small steps: $whole, $broken" test $((5 * broken)) -lt $((6 * whole))
-ok "and it has broken" holds -n "$(nsd-info --last "$tmp/small-1.h5" | jq -s '[.[] | select(.step != null)][0].bodies') > 512"
+ok "a grain of 10 164 that breaks into pieces adds less than a fifth to the small steps: $whole, $broken" test $((5 * broken)) -lt $((6 * whole))
+ok "and it has broken" holds -n "$(nsd-info --last "$tmp/small-1.h5" | jq -s '[.[] | select(.step != null)][0].bodies') > 10164"
 
 # ---- loads, by closed forms ----
 
