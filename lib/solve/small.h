@@ -41,6 +41,8 @@
 #include "solve/small_hold.h"
 #include "solve/small_spring.h"
 
+#include <string.h>
+
 /* Where a body is, in the place of its struct body */
 struct small_place {
     double x[3], r; /* m */
@@ -112,12 +114,9 @@ struct small {
     double *missing, *load;     /* [bodies] N s: of small_judge; NULL */
     int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
     double *change; /* [bodies] m/s: by sweeps of this step since then */
-    struct small_stirred {
-        int32_t *last,
-            *of; /* [bundles] the largest `hot` of its bodies; NULL: not yet [small_stirred_init()] */
-        int64_t
-            *first; /* [bodies + 1] body i is in the bundles of[first[i]] .. of[first[i + 1] - 1] */
-    } stirred;
+    /* For repeated sweeps, of bundles that have a hot body alone; NULL before the first one [step/small_mark.h] */
+    int32_t *mark;          /* [bundles] the last repeated sweep that is to look at it */
+    int64_t *meets, *first; /* bundles of body i: meets[first[i]] .. meets[first[i + 1] - 1] */
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
     int64_t *group;                  /* [groups + 1] */
     struct small_bundle *bundle;
@@ -307,19 +306,20 @@ ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, do
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }
 
-/* Body i is to be swept again. Threads may write the same to a bundle at the same time. */
-ALWAYS_INLINE void small_stir(struct small *s, int64_t i)
+/* ---- marks ---- */
+
+/* The sweep in hand is to look at the bundles of body i. Threads may mark the same bundle at the same time. */
+static inline void small_mark_bundles(struct small *s, int64_t i)
 {
-    s->hot[i] = s->sweep;
-    if (!s->stirred.last) return;
-    for (int64_t k = s->stirred.first[i]; k < s->stirred.first[i + 1]; k++)
-        __atomic_store_n(&s->stirred.last[s->stirred.of[k]], s->sweep, __ATOMIC_RELAXED);
+    if (!s->mark) return;
+    for (int64_t k = s->first[i]; k < s->first[i + 1]; k++)
+        __atomic_store_n(&s->mark[s->meets[k]], s->sweep, __ATOMIC_RELAXED);
 }
 
-/* Before sweeps after the first of a small step: from then on these do not look at all pairs where few bodies have changed. Without
-   memory they do. */
-void small_stirred_init(struct small *s);
-void small_stirred_free(struct small *s);
+static inline bool small_is_marked(const struct small *s, int64_t bundle)
+{
+    return !s->mark || __atomic_load_n(&s->mark[bundle], __ATOMIC_RELAXED) == s->sweep;
+}
 
 /* ---- kernels ---- */
 
@@ -333,8 +333,12 @@ typedef void small_push(struct small *s, int64_t first, int64_t end);
    and s->load by the reaction. */
 typedef void small_judge(struct small *s, int64_t first, int64_t end);
 
+/* After the sweeps: what does not persist of the reactions of bundles that are `late` is taken out of v^-. */
+typedef void small_settle(struct small *s, int64_t first, int64_t end);
+
 struct small_kernels {
     small_sweep *sweep;
     small_push *push;
     small_judge *judge;
+    small_settle *settle;
 };

@@ -74,7 +74,6 @@ void small_copy_wake(struct small_run *r)
 {
     struct small *s = &r->l->s;
     for (int64_t i = 0; i < s->bodies; i++) s->hot[i] = s->sweep;
-    for (int64_t i = 0; s->stirred.last && i < s->bundles; i++) s->stirred.last[i] = s->sweep;
     memset(s->live, 1, (size_t)(BUNDLE * s->bundles));
 }
 

@@ -233,7 +233,7 @@ static bool mark_body(struct small *s, int32_t i, double x, double allowed)
     if (i < 0) return false;
     s->change[i] += x;
     if (!(s->change[i] > allowed)) return false;
-    s->change[i] = 0, small_stir(s, i);
+    s->change[i] = 0, s->hot[i] = s->sweep;
     return true;
 }
 
@@ -256,8 +256,8 @@ void small_points_wake(struct small_run *r)
     for (int64_t i = 0; i < r->l->meetings.n; i++) {
         const struct small_meeting *m = &r->l->meetings.of[i];
         if (!m->points || !m->rounds) continue;
-        small_stir(s, m->key.b);
-        if (m->key.a >= 0) small_stir(s, m->key.a);
+        s->hot[m->key.b] = s->sweep;
+        if (m->key.a >= 0) s->hot[m->key.a] = s->sweep;
     }
 }
 

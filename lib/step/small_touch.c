@@ -177,7 +177,7 @@ void small_touch_give(struct small_run *r, struct small_touch *t, const struct s
     if (!again && !(change > (1 + t->e[0]) * s->rate.allowed[0])) return;
     s->change[t->body] += change;
     if (!(s->change[t->body] > s->rate.allowed[again])) return;
-    s->change[t->body] = 0, small_stir(s, t->body);
+    s->change[t->body] = 0, s->hot[t->body] = s->sweep;
     r->far = true;
 }
 
