@@ -14,7 +14,7 @@ set logscale y
 set xlabel "size d, mm"
 set ylabel "grains of at least d"
 set xrange [0.04:3]
-set yrange [5:*]
+set yrange [5:2e4]
 plot for [s = 1 : 3] sizes(s) using ($3 > 0 ? $2 : 1 / 0):3 with points ls s title word(titles, s), \
      300 * x ** -2.5 with lines ls 9 title "d^{-2.5}"
 unset multiplot

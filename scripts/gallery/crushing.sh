@@ -43,7 +43,9 @@ done
 # from there on a step takes minutes
 ! part balls || [ -n "${QUICK:-}" ] || crush "${seeds[0]}" balls 1000 0.35
 touch "$out"/{discs,few,balls}{,-sizes}.tsv
-part few && picture -c generation --bare "$out/few-${seeds[0]}.h5"
+for kind in balls few; do
+    [ ! -f "$out/$kind-${seeds[0]}.h5" ] || { picture -c generation --bare "$out/$kind-${seeds[0]}.h5" && break; }
+done
 [ -n "${PART:-}" ] || curve
 # the slope of the voids ratio is that from 250 Pa on, where grains break
 with 'def last($k): map(last[$k]); def found($rows; $name): ($rows | numbers | group_by(.[0])) as $runs | if $runs == [] then empty else
