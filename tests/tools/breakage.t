@@ -317,6 +317,28 @@ like "1100 grains are due: 1000 break in a step, which is said" "$(cat "$tmp/sai
 is "the others are there" "$(nsd-info --last "$tmp/some.h5" | jq 'select(.step != null).bodies')" 100
 is "and break in the next" "$(step -n 1 "$tmp/some.h5" | nsd-info | jq 'select(.step != null).bodies')" 0
 
+# ---- together with other things ----
+
+weak='{ "by": "force", "strength": 20, "smallest": 1.5e-3, "into": "balls" }'
+tower='[{ "x": [0, 0, 1e-3], "radius": 1e-3, "material": "g", "fixed": true }, { "x": [0, 0, 3e-3], "radius": 1e-3, "material": "g" },
+    { "x": [0, 0, 5e-3], "radius": 1e-3, "material": "g" }]'
+ground='"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1], "material": "g" }], "gravity": [0, 0, -9.81]'
+for small in 0 0.01; do
+    scene "$weak" "$tower" "$ground" | nsd-gen - | step --small-steps $small -n 20 >"$tmp/tower.h5"
+    is "a held ball and a wall of a material that breaks stay, R = $small" \
+        "$(nsd-info --last -p "$tmp/tower.h5" | jq -s -c '[.[] | select(.id != null)] | [length > 3, (.[] | select(.id == 0) | .generation)]')" '[true,0]'
+    scene "$weak" "${tower/\"fixed\": true/\"v\": [0, 0, 0]}" "$ground, "'"pairs": [{ "pair": ["g", "g"], "adhesion": { "c_n": 2e9, "c_t": 1e9, "w": 0.2, "eta": 1e-4 } }]' |
+        nsd-gen - | step --small-steps $small -n 20 >"$tmp/glued.h5"
+    is "bonded grains break, R = $small" "$(nsd-info --last "$tmp/glued.h5" | jq 'select(.step != null).bodies')" 39
+    scene '{ "by": "force", "strength": 100, "smallest": 1.5e-3 }' \
+        '[{ "count": 20, "radius": 1e-3, "material": "g", "box": { "x": [0, 0.01], "y": [0, 0.01], "z": [0, 0.01] } }]' \
+        '"cell": { "lengths": [0.01, 0.01, 0.01], "stress": { "pressure": 1000, "mass": 1e-3 } }' | nsd-gen - >"$tmp/cell.h5"
+    step --small-steps $small -n 60 "$tmp/cell.h5" >"$tmp/pressed.h5"
+    ok "in a cell under a pressure grains break, and mass is that of the start, R = $small" holds -n \
+        "$(nsd-stat -m breakage "$tmp/pressed.h5" | tail -n 1 | jq .breakage) as \$b | \$b.broken > 0.2 and
+        (($(nsd-info --last -p "$tmp/pressed.h5" | jq -s 'map(.mass // 0) | add') + \$b.dust) / $(nsd-info -p "$tmp/cell.h5" | jq -s 'map(.mass // 0) | add') - 1 | fabs) < 1e-13"
+done
+
 # ---- what is refused ----
 
 breaks() { # NAME PATTERN BREAKS [BODIES [MORE]]
@@ -342,6 +364,9 @@ breaks "damage by force" 'materials.g.breaks.damage: goes with "by": "energy"' \
 breaks "a rounded brick" 'materials.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "brick"' \
     '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' \
     '"shapes": { "brick": { "box": [3e-3, 2e-3, 1e-3], "round": 1e-4 } }'
+breaks "a clump" 'materials.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "pair"' \
+    '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "radius": 1e-3, "material": "g", "shape": "pair" }]' \
+    '"shapes": { "pair": { "balls": [[-0.5, 0, 0, 0.5], [0.5, 0, 0, 0.5]] } }'
 breaks "a brick into balls" 'materials.g.breaks: only balls break into balls' \
     '{ "by": "force", "strength": 1, "smallest": 1e-3, "into": "balls" }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' "$solids"
 
