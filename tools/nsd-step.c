@@ -11,7 +11,7 @@
 #include "scene/breaking.h"
 #include "scene/inlet.h"
 #include "scene/stiffness.h"
-#include "state/breakage.h"
+#include "state/breakable.h"
 #include "step/small_step.h"
 
 #include <float.h>

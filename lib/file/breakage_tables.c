@@ -1,6 +1,6 @@
 #include "file/breakage_tables.h"
 
-#include "state/breakage.h"
+#include "state/breakable.h"
 
 static const char group[] = "/nsd/breakage";
 

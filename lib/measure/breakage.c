@@ -1,8 +1,8 @@
 /* measure/breakage.c: what has broken, and the sizes of grains, to which distributions are fitted. */
-#include "state/breakage.h"
 #include "measure/ball_part.h"
 #include "measure/branch.h"
 #include "measure/measures.h"
+#include "state/breakable.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "contact/contact_law.h"
 #include "measure/measures.h"
 #include "measure/snapshot.h"
-#include "state/breakage.h"
+#include "state/breakable.h"
 #include "state/rotation.h"
 #include "step/contact_motion.h"
 #include "step/move.h"

@@ -5,7 +5,7 @@
 #include "scene/grains.h"
 #include "scene/inlet.h"
 #include "shape/fracture.h"
-#include "state/breakage.h"
+#include "state/breakable.h"
 #include "state/rotation.h"
 
 #include <stdio.h>

@@ -3,7 +3,7 @@
 
 #include "scene/scene_read.h"
 #include "shape/fracture.h"
-#include "state/breakage.h"
+#include "state/breakable.h"
 
 #include <stdlib.h>
 #include <string.h>

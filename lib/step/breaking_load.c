@@ -1,6 +1,6 @@
 #include "step/breaking_load.h"
 
-#include "state/breakage.h"
+#include "state/breakable.h"
 #include "state/placement.h"
 #include "step/balance.h"
 

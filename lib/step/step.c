@@ -7,7 +7,7 @@
 #include "contact/tunnelling.h"
 #include "solve/device.h"
 #include "solve/prepare.h"
-#include "state/breakage.h"
+#include "state/breakable.h"
 #include "state/placement.h"
 #include "state/rotation.h"
 #include "step/balance.h"
