@@ -9,6 +9,7 @@ import argparse
 import json
 import math
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -97,7 +98,7 @@ def input_of(scene, bodies, box, args, begin, folder, order):
     def matrix(key):
         return " ".join("%g" % max(pair(scene, a, b, key, scene.get(key, 0)), 0.06 if key == "e_n" else 0) for a in kinds for b in kinds)
 
-    periodic = np.array(scene.get("cell", {}).get("repeats", [False] * 3))[order]
+    periodic = np.array(scene["cell"].get("repeats", [True] * 3) if "cell" in scene else [False] * 3)[order]
     gravity = np.array(scene.get("gravity", [0, 0, -9.81]))[order]
     columns = "id x y z vx vy vz omegax omegay omegaz" + "".join(f" f_force_{w}[{c}]" for w in fixes.values() for c in (1, 2, 3))
     frame = round(every / dt)
@@ -149,6 +150,9 @@ def main():
     parser.add_argument("--every", required=True)
     parser.add_argument("--set", action="append", default=[], help="modulus=5e6: Young's modulus, Pa")
     args, _ = parser.parse_known_args()
+    if not shutil.which("liggghts"):
+        print("run_liggghts.py: liggghts is not installed", file=sys.stderr)
+        sys.exit(69)
     with tempfile.TemporaryDirectory() as folder:
         start, scene, bodies = run.start_of(folder)
         begin, step = scene.get("time", 0), scene["dt"]
@@ -159,9 +163,10 @@ def main():
         wide = max([w["cylinder"]["radius"] for w in scene["walls"] if "cylinder" in w], default=0)
         box = np.array([x.min(0) - 4 * radius.max(), x.max(0) + 4 * radius.max()]).T
         box = np.array([[min(a, -1.3 * wide), max(b, 1.3 * wide)] for a, b in box])
-        for c, lengths in enumerate(scene.get("cell", {}).get("lengths", [])):
-            if scene["cell"]["repeats"][c]:
-                box[c] = [0, lengths]
+        origin, edges, rates = run.box_of(start)
+        for c in range(3):
+            if "cell" in scene and scene["cell"].get("repeats", [True] * 3)[c]:
+                box[c] = [origin[c], origin[c] + edges[c][c]]
         for gone in scene.get("remove", []):  # what leaves the bounds is lost
             box[2][0] = gone["below"]["point"][2]
         dt, fixes = input_of(scene, bodies, box, args, begin, folder, order)
@@ -170,7 +175,6 @@ def main():
             print(done.stdout[-2000:], file=sys.stderr)
             sys.exit(70)
         write_events(args.out + ".events", os.path.join(folder, "log"), begin, dt)
-        _, edges, rates = run.box_of(start)
         cell = np.zeros(18) if edges is None else np.concatenate([edges.ravel(), rates.ravel()])
         back, frames, deepest, count = np.argsort(order), [], 0, 0
         with open(args.out + ".wall", "w", encoding="ascii") as wall:

@@ -6,6 +6,7 @@
 #include "contact/contact_law.h"
 #include "solve/lay.h"
 #include "step/small_lay.h"
+#include "step/small_part.h"
 #include "step/small_past.h"
 #include "step/small_stiff.h"
 
@@ -225,6 +226,7 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
     vec3 *x = malloc((size_t)(p->n + 1) * sizeof *x);
     double *radius = malloc((size_t)(p->n + 1) * sizeof *radius);
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
+    if (l->part) l->pairs.part = l->part->ranks->me, l->pairs.parts = l->part->ranks->n;
     for (int64_t i = 0; x && radius && i < p->n; i++) {
         x[i] = v3_axpy(l->listed[i], half, l->drift[i]);
         radius[i] = p->radius[i] + half * v3_norm(v3_sub(l->drift[i], mean));
@@ -234,7 +236,7 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
         (!seek_pairs(&l->pairs, &wide, x, o->edge, failure) && !keep_near(l, p, o->edge)))
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
     free(x), free(radius);
-    return failure->status;
+    return l->part ? small_part_join(&l->pairs, l->part->ranks, failure) : failure->status;
 }
 
 /* ---- the list ---- */
