@@ -84,7 +84,7 @@ LIB   := $(patsubst lib/%.c,$B/lib/%.o,$(filter-out lib/run/main.c lib/mpi/%.c l
          $(foreach w,$(WIDE),$(WIDTHS:%=$B/lib/solve/$w-%.o))
 # What programs of others call, lib/run/nsd.h, is in these objects; the linker takes what else they need from internal.a.
 # Every object is hidden but for what that header declares; the archive has one object, in which the hidden names are local.
-COMMAND_LINE := $(addprefix run/,cli completion loop partner options processes tool_filter)
+COMMAND_LINE := $(addprefix run/,cli completion loop partner options processes run_total tool_filter)
 PUBLIC := $(filter-out $(COMMAND_LINE:%=$B/lib/%.o),$(filter $B/lib/run/%,$(LIB)))
 HIDDEN := -fPIC -fvisibility=hidden
 SONAME := libnsd.so.2

@@ -210,11 +210,19 @@ static int open_new(struct output *o, const char *path, struct failure *failure)
     return open_beside(o, failure);
 }
 
+/* A child of fork() that has not run yet still has the file open: what is locked there is unlocked, not only closed. */
+static void unlock_and_close(int fd)
+{
+    if (fd < 0) return;
+    output_unlock(fd);
+    close(fd);
+}
+
 static void output_forget(struct output *o)
 {
     output_unlist(o);
-    if (o->fd >= 0 && !o->borrowed) close(o->fd);
-    if (o->old >= 0) close(o->old);
+    if (!o->borrowed) unlock_and_close(o->fd);
+    unlock_and_close(o->old);
     if (o->at != o->target) free(o->at);
     free(o->target);
     *o = (struct output){ .name = o->name, .fd = -1, .old = -1 };
@@ -234,7 +242,7 @@ static int output_put_in_place(struct output *o, struct failure *failure)
     if (rename(o->at, o->target)) return output_failed(o, failure, errno);
     free(o->at);
     o->at = o->target, o->placed = true;
-    if (o->old >= 0) close(o->old);
+    unlock_and_close(o->old);
     o->old = -1;
     return 0;
 }

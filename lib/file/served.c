@@ -10,7 +10,8 @@
 
 /* ---- what reading a document may cost ---- */
 
-uint64_t budget_unpacked(uint64_t size, uint64_t allowed)
+/* Bytes that the datasets of a document of this size may hold; allowed: by the user, 0: not more than usual */
+static uint64_t budget_unpacked(uint64_t size, uint64_t allowed)
 {
     uint64_t usual = size > BUDGET_LEAST / BUDGET_RATIO ? size * BUDGET_RATIO : BUDGET_LEAST;
     return allowed > usual ? allowed : usual;

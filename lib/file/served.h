@@ -36,9 +36,6 @@ struct budget {
     uint64_t all, most_document; /* since the document was opened */
 };
 
-/* Bytes that the datasets of a document of this size may hold; allowed: by the user, 0: not more than usual */
-uint64_t budget_unpacked(uint64_t size, uint64_t allowed);
-
 void budget_open(struct budget *budget, uint64_t size, uint64_t allowed);
 /* Both return 0, or EX_DATAERR: it is too much for this document. Another frame is begun; */
 int budget_frame(struct budget *budget, struct failure *failure);

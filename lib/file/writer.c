@@ -628,6 +628,7 @@ int writer_close(struct writer *s, struct failure *failure)
     roster_free(&s->roster), vtkhdf_free(s->vtk), packing_free(&s->first.settings);
     if (s->begun) output_drop(s->begun);
     writer_unlist(s);
+    if (!s->output) output_unlock(s->fd);
     if (!s->output && close(s->fd) && !e) e = output_failed(s, failure, strerror(errno));
     if (s->output && e) output_drop(s->output);
     if (s->output && !e) e = output_close(s->output, failure);

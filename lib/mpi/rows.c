@@ -91,6 +91,14 @@ static int holder_of(const struct rows *r, int32_t row)
     return k;
 }
 
+/* Columns of bodies on their way into rows */
+struct haul {
+    const struct rows *rows;
+    const struct subdomain *part; /* NULL: they have not been dealt, and lie in the rows */
+    int64_t n;                    /* rows of this rank */
+    int64_t **at;                 /* [ranks][...] which of these comes from each, in order */
+};
+
 /* The column's numbers of all own bodies, for those who have their rows; c NULL: their rows */
 static void send_off(const struct haul *h, const struct field *c, struct parcel *out)
 {
@@ -107,7 +115,7 @@ static void send_off(const struct haul *h, const struct field *c, struct parcel 
     }
 }
 
-void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y)
+static void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y)
 {
     struct comm *t = r->comm;
     int64_t n = 0;
@@ -133,7 +141,8 @@ void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-void haul_column(struct haul *h, const struct field *c, void *to)
+/* to[n][width] = the column's numbers in the rows of this rank. */
+static void haul_column(struct haul *h, const struct field *c, void *to)
 {
     struct comm *t = h->rows->comm;
     size_t bytes = field_bytes(c);
@@ -150,7 +159,7 @@ void haul_column(struct haul *h, const struct field *c, void *to)
     parcels_free(t, out), parcels_free(t, in);
 }
 
-void haul_end(struct haul *h)
+static void haul_end(struct haul *h)
 {
     for (int q = 0; h->at && q < h->rows->comm->n; q++) free(h->at[q]);
     free(h->at);
@@ -220,7 +229,8 @@ static bool write_by_first(const struct rows *r, hid_t file, const struct target
 
 /* ---- all ranks ---- */
 
-bool files_parallel(void)
+/* Is libhdf5 the one that knows MPI? */
+static bool files_parallel(void)
 {
 #ifdef H5_HAVE_PARALLEL
     return true;

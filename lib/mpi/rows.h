@@ -32,19 +32,6 @@ void rows_deal(struct rows *r, struct subdomain *y, struct decomposition *space,
                const struct packing *settings);
 void rows_free(struct rows *r);
 
-/* Columns of bodies on their way into rows */
-struct haul {
-    const struct rows *rows;
-    const struct subdomain *part; /* NULL: they have not been dealt, and lie in the rows */
-    int64_t n;                    /* rows of this rank */
-    int64_t **at;                 /* [ranks][...] which of these comes from each, in order */
-};
-
-void haul_begin(struct haul *h, const struct rows *r, const struct subdomain *y);
-/* to[n][width] = the column's numbers in the rows of this rank. */
-void haul_column(struct haul *h, const struct field *c, void *to);
-void haul_end(struct haul *h);
-
 /*
  * Bodies into the datasets of a document. Where libhdf5 is the one that knows MPI (libhdf5-openmpi)
  * and all ranks find the file, each writes its rows, all at once, into the place that the first has made for
@@ -63,5 +50,3 @@ struct files_wish {
    accepts. */
 int files_fill(const struct rows *r, const struct subdomain *y, const struct files_wish *wish,
                struct failure *failure);
-/* Is libhdf5 the one that knows MPI? */
-bool files_parallel(void);

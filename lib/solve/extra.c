@@ -49,15 +49,18 @@ static void extra_set_operator(const struct bundle *c, const struct extra *x, in
     q->rho = x->rho[i];
 }
 
-void extra_impulse(const struct extra *x, int i, const double r[3], double out[ROLLING])
+/* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
+   length. */
+static void extra_impulse(const struct extra *x, int i, const double r[3], double out[ROLLING])
 {
     double l = x->length[i];
     for (int j = 0; j < 3; j++) out[j] = r[j];
     out[3] = x->m[0][i] / l, out[4] = -x->m[2][i] / l, out[5] = x->m[1][i] / l;
 }
 
-void extra_solve(struct extra *x, int i, enum method_id method, struct rolling *q,
-                 const struct local_opt *opt, struct rolling_lane *l)
+/* Solves q, relaxed: the moment of lane i becomes that of q->x, and l has its change and how it was found. */
+static void extra_solve(struct extra *x, int i, enum method_id method, struct rolling *q,
+                        const struct local_opt *opt, struct rolling_lane *l)
 {
     double was[ROLLING], tau[ROLLING], length = x->length[i];
     memcpy(was, q->x, sizeof was);

@@ -119,13 +119,6 @@ struct turning {
 double extra_levers_turn(const struct levers *g, double block[9][BUNDLE], struct extra_levers *y,
                          int i, const struct turning *t);
 
-/* What balls and levers share. out = x of lane i: r* (N s), and the moment, turned a quarter and over the
-   length. */
-void extra_impulse(const struct extra *x, int i, const double r[3], double out[ROLLING]);
-/* Solves q, relaxed: the moment of lane i becomes that of q->x, and l has its change and how it was found. */
-void extra_solve(struct extra *x, int i, enum method_id method, struct rolling *q,
-                 const struct local_opt *opt, struct rolling_lane *l);
-
 /* As extra_roll(), extra_push() and extra_rolling() */
 void extra_levers_roll(const struct extra_lane *at, enum method_id method,
                        const struct local_opt *opt, struct rolling_lane *l);

@@ -99,7 +99,9 @@ static int prepare_fill(const struct assembly *A, struct delassus *W, struct fai
     return e;
 }
 
-int bonded_blocks(const struct problem *bodies, struct delassus *W, struct failure *failure)
+/* W^, q^, mu, r = 0, of a packing's problem with its bodies. Returns 0, EX_SOFTWARE or EX_DATAERR, with
+   nothing to free. */
+static int bonded_blocks(const struct problem *bodies, struct delassus *W, struct failure *failure)
 {
     struct assembly A;
     int e = assembly_init(&A, bodies, failure);

@@ -31,9 +31,6 @@
 /* W^ and q^[n d] of an assembly whose problem has bonds; W is to be freed in any case. Returns 0, EX_DATAERR
    or EX_SOFTWARE, also where the machine has no memory for W^. */
 int bonded_local(const struct assembly *A, struct sparse *W, double *q, struct failure *failure);
-/* W^, q^, mu, r = 0, of a packing's problem with its bodies. Returns 0, EX_SOFTWARE or EX_DATAERR, with
-   nothing to free. */
-int bonded_blocks(const struct problem *bodies, struct delassus *W, struct failure *failure);
 
 /* M + H K H^T, H and f - H (a + K w) of an assembly whose problem has bonds; P is to be freed in any
    case. Returns 0, EX_SOFTWARE or EX_DATAERR. */

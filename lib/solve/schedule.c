@@ -84,7 +84,10 @@ static void find_rim(void *arg, int64_t first, int64_t end)
             if (y->shared[y->body[c][k]]) y->zone[c] = ZONE_RIM;
 }
 
-int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing *p, int8_t *zone)
+/* zone[n] = the enum zone of each contact, by its movable bodies: body[n][2], the second -1 where there is one
+   only, both where there is none. Returns 0, or -1 when memory is short. */
+static int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing *p,
+                                   int8_t *zone)
 {
     double *top = malloc(SAMPLE * sizeof *top);
     struct division y = { n, body, p, zone, 0, 0, calloc((size_t)p->n + 1, sizeof *y.shared) };

@@ -39,10 +39,6 @@
 
 enum zone { ZONE_BORDER, ZONE_BEYOND, ZONE_INSIDE, ZONE_RIM, ZONE_COUNT };
 
-/* zone[n] = the enum zone of each contact, by its movable bodies: body[n][2], the second -1 where there is one
-   only, both where there is none. Returns 0, or -1 when memory is short. */
-int two_thread_split_divide(int64_t n, int32_t (*body)[2], const struct packing *p, int8_t *zone);
-
 /* Where each zone begins, and how far the two threads have come */
 struct two_thread_split {
     int64_t beyond, inside, rim, rest;   /* first groups; rest: inside's second part */

@@ -207,8 +207,9 @@ static void find_gains(struct gain *gain, const struct packing *p, const struct 
     }
 }
 
-int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
-                  const struct impulses *sum, struct failure *failure)
+/* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
+static int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
+                         const struct impulses *sum, struct failure *failure)
 {
     struct balance_mean *mean = malloc(((size_t)p->n + 1) * sizeof *mean);
     struct balance unwanted = { 0 };

@@ -53,9 +53,6 @@ struct gain {
     double work,
         scale; /* J: of its contacts, which are from this on; work > 0: gained. 0, 0: no impact */
 };
-/* gain[s->n], at the first contact of each pair. Returns 0 or EX_SOFTWARE. */
-int balance_gains(struct gain *gain, const struct packing *p, const struct contacts *s,
-                  const struct impulses *sum, struct failure *failure);
 /* The first contact after i that is of another pair; the images of one body count as one. */
 int64_t balance_next_pair(const struct contacts *s, int64_t i);
 /* Less than this part of the scale is rounding, or what the solve leaves. */

@@ -22,7 +22,8 @@ static double strain_of(const vec3 edge[3], const vec3 rate[3])
     return sum;
 }
 
-double small_cell_strain(const struct packing *p)
+/* 1/s: how fast the flow of the cell stretches at most */
+static double small_cell_strain(const struct packing *p)
 {
     return small_cell_moves(p) ? strain_of(p->cell.edge, p->cell.rate) : 0;
 }

@@ -7,10 +7,6 @@
 
 #include "step/small_run.h"
 
-/* May any edge move in the step that begins where the packing is? */
-bool small_cell_moves(const struct packing *p);
-/* 1/s: how fast the flow of the cell stretches at most */
-double small_cell_strain(const struct packing *p);
 /* The flow that speeds of balls are relative to, and by how much (m/s) it moves two of them that touch; none where there are
    walls or shapes */
 struct small_flow {
@@ -21,6 +17,8 @@ struct small_flow small_cell_flow(const struct packing *p);
 /* m/s: of the fastest point of body i, of a ball its centre relative to the flow */
 double small_body_speed(const struct packing *p, const struct small_flow *f, int64_t i);
 
+/* May any edge move in the step that begins where the packing is? */
+bool small_cell_moves(const struct packing *p);
 /* r->cell: where the packing's is */
 void small_cell_init(struct small_run *r);
 /* A small step begins: edges where contacts act, rates and flow; by one thread */

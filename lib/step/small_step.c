@@ -200,7 +200,9 @@ static int64_t small_count_at(const struct packing *p, double overlap, double fa
     return n > COUNT_MOST ? 0 : (int64_t)fmax(1, ceil(n));
 }
 
-int64_t small_count(const struct packing *p, double overlap)
+/* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
+   radii of the smallest: of its state alone; 0: too many */
+static int64_t small_count(const struct packing *p, double overlap)
 {
     return small_count_at(p, overlap, small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
 }

@@ -30,9 +30,6 @@ const char *small_lacks(const struct packing *p);
 const char *small_undivided(const struct packing *p, double bound);
 /* Is a step of a packing that they lack something for divided as finely as one that they give up? */
 bool small_divides(const struct packing *p);
-/* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`
-   radii of the smallest: of its state alone; 0: too many */
-int64_t small_count(const struct packing *p, double overlap);
 /* In how many parts a step is solved that small steps could not make: none moves a body by more than four times `overlap` */
 int64_t small_parts(const struct packing *p, double overlap);
 /* The step: rep but for its criterion, and s, as of step_advance(). *made: false where the packing is as it was, for the step is to

@@ -109,7 +109,8 @@ static void stick_touch(const struct small_run *r, struct small_touch *t)
     t->mu = mu[v3_norm(v3_axpy(u, -v3_dot(u, t->n), t->n)) > v_s];
 }
 
-vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t)
+/* N s: what persists of the reaction and the pull of the last step, on the body */
+static vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t)
 {
     return v3_scale(r->l->s.rate.warm,
                     v3_axpy(small_vec(t->f), -t->hold[HOLD_PULL], small_vec(&t->hold[HOLD_X])));

@@ -6,8 +6,6 @@
 /* Body b gets an impulse f and a moment m about its centre. */
 void small_body_push(struct body *b, vec3 f, vec3 m);
 
-/* N s: what persists of the reaction and the pull of the last step, on the body */
-vec3 small_touch_persists(const struct small_run *r, const struct small_touch *t);
 /* The body gets that, with the moment. */
 void small_touch_push(struct small_run *r, struct small_touch *t);
 /* First sweep: a touch that does not push, and whose body cannot have come near its wall */
