@@ -175,7 +175,7 @@ tests: $(TOOLS) $(MPI) $B/nsd-fit $(CTEST) $B/libnsd.a $B/$(SONAME) $(COOKBOOK) 
 
 # ---- set-up, checks, the demonstration ----
 
-setup-run setup-wall setup-site setup-check setup-all:
+setup-run setup-wall setup-reference setup-site setup-check setup-all:
 	scripts/setup.sh $(@:setup-%=%)
 
 # tests/README.md has the table of the two tiers. scripts/prove.sh runs the files, the longest first: one that
@@ -236,7 +236,7 @@ wall wall-keep: setup-wall
 
 # scripts/gallery.mk says what is run; gallery-reference runs it by the independent code, gallery-keep puts results into docs/gallery.
 gallery: setup-run
-gallery-reference: setup-wall
+gallery-reference: setup-reference
 gallery gallery-reference:
 	$(MAKE) -j2 all
 	$(MAKE) -f scripts/gallery.mk $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc)) $(if $(filter gallery,$@),all,reference)
@@ -485,5 +485,5 @@ clean:
 -include $(wildcard $B/lib/*/*.d $B/tools/*.d $B/tests/*/*.d)
 
 PARTS := format manuals scripts cppcheck tidy
-.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list manuals-keep completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-site setup-check setup-all test-rest check-rest check-all
+.PHONY: all tests test check demo paper paper-keep wall wall-keep gallery gallery-reference gallery-keep gallery-page peers peers-keep bench bench-solvers bench-compare rest format lint $(PARTS:%=lint-%) $(TIDY) docs site drawings manuals-list manuals-keep completions install install-tools install-lib install-dev install-python uninstall deb clean setup-run setup-wall setup-reference setup-site setup-check setup-all test-rest check-rest check-all
 .SECONDARY:

@@ -27,8 +27,8 @@ judge()
         jq -rs 'map(.gap) | map(select(. < 0)) | [-(min // 0) * 1e3, -((add // 0) / (length | if . == 0 then 1 else . end)) * 1e3] | map(. * 1e4 | round / 1e4) | @tsv'
 }
 row() { printf '%s\t%s\t%s\t%s\t%s\t%s\n' "$@"; } # name ms overlaps energy height residual
-mgd=$(nsd-info -p "$work/start.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')
-height() { jq -s 'map(.x[2]) | add / length * 1e3' <(nsd-info --last -p "$1"); }
+mgd=$(nsd-info -b "$work/start.h5" | jq -s 'map(.mass * 9.81 * 2 * .radius) | add / length')
+height() { jq -s 'map(.position[2]) | add / length * 1e3' <(nsd-info --last -b "$1"); }
 
 nsd_half() # EPS
 {
@@ -37,9 +37,9 @@ nsd_half() # EPS
     local seconds natural
     { time nsd-step -j 1 -n "$late" --every "$late" --contacts --criterion natural --warm --tolerance "$1" "$work/rests.h5" 2> /dev/null > "$work/end.h5"; } 2> "$work/time"
     seconds=$(cat "$work/time")
-    nsd-info --last -p "$work/end.h5" | jq -s 'map({x, v, w})' > "$work/moving"
+    nsd-info --last -b "$work/end.h5" | jq -s 'map({x: .position, v: .velocity, w: .angular_velocity})' > "$work/moving"
     natural=$(nsd-info --last -c "$work/end.h5" | jq -s --argjson dt $dt --slurpfile bodies "$work/moving" \
-        --argjson m "$(nsd-info -p "$work/start.h5" | jq -s 'map(.mass) | add / length')" '
+        --argjson m "$(nsd-info -b "$work/start.h5" | jq -s 'map(.mass) | add / length')" '
         def norm: map(. * .) | add | sqrt;
         def dot($a; $b): [$a, $b] | transpose | map(.[0] * .[1]) | add;
         def at($i; $x): if $i < 0 then [0, 0, 0] else $bodies[0][$i] as $b | [range(3) | $x[.] - $b.x[.]] as $d | $b.w as $w |
@@ -58,7 +58,7 @@ bullet_half() # ITERATIONS
 {
     {
         echo "0.04 0.03 0.02 $density"
-        nsd-info -p "$work/start.h5" | jq -r '[.x[], .q[], 1] | @tsv'
+        nsd-info -b "$work/start.h5" | jq -r '[.position[], .orientation[], 1] | @tsv'
     } | "$work/boxes" "$steps" $dt $mu "$1" > "$work/bullet"
     # its bricks as a scene, for the same eyes
     awk 'NR > 1 { s = sqrt($5 ^ 2 + $6 ^ 2 + $7 ^ 2); a = s > 0 ? 2 * atan2(s, $4) / s : 0

@@ -19,7 +19,7 @@ jq -n --argjson n "$n" --argjson a "$half" --argjson mu $mu '{ dt: 1e-4, density
 larger=$(nsd-detect "$work/settled.h5" | nsd-info -c | jq -s '1 + 1.05 * ([.[] | -.gap] | max) / 4.4e-4')
 echo "larger by $(jq -n "($larger - 1) * 100 * 1e4 | round / 1e4") %" >&2
 half=$(jq -n "$half * $larger")
-nsd-info -p "$work/settled.h5" | jq -c --argjson s "$larger" '{ x: (.x | map(. * $s)), radius }' | jq -s . > "$work/bodies.json"
+nsd-info -b "$work/settled.h5" | jq -c --argjson s "$larger" '{ x: (.position | map(. * $s)), radius }' | jq -s . > "$work/bodies.json"
 
 # k dt NAME ARGUMENT ...: by nsd
 by_nsd()
@@ -43,7 +43,7 @@ by_dem()
 for k in 2e3 2e4; do
     by_nsd $k 1e-4 nsd,_rigid --stiffness rigid --tolerance 1e-4 --max-sweeps 500
     for dt in 1e-4 1e-5 2e-6; do by_nsd $k $dt nsd; done
-    nsd-info -p "$work/start.h5" | jq -r '[.x[], .radius, .mass, 0, 0, 0, 0, 0, 0, 0] | @tsv' > "$work/start.txt"
+    nsd-info -b "$work/start.h5" | jq -r '[.position[], .radius, .mass, 0, 0, 0, 0, 0, 0, 0] | @tsv' > "$work/start.txt"
     for e in 0.1 0.5; do by_dem $k $e; done
     echo
     echo "k_n = $k N/m, k_t = 2/7 k_n, compared with soft spheres with e = 0.1:"

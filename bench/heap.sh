@@ -16,7 +16,7 @@ settle()
 heap()
 {
     settle
-    nsd-info --last --particles "$work/pile.h5" | jq -r '[.x[], .radius] | @tsv' |
+    nsd-info --last -b "$work/pile.h5" | jq -r '[.position[], .radius] | @tsv' |
         awk -v tiles="$1" '
             { x[NR] = $1; y[NR] = $2; z[NR] = $3; r[NR] = $4 }
             END {

@@ -17,7 +17,7 @@ row() # E GAP ORDER: of five balls of 1 mm along x, in this order in the documen
     jq -n --argjson e "$1" --argjson gap "$2" --argjson order "$3" '{dt: 1e-5, density: 2500, mu: 0, e_n: $e, gravity: [0, 0, 0],
         bodies: [$order[] as $i | {x: [$i * (0.002 + $gap), 0, 0], radius: 0.001, v: [(if $i == 0 then 1 else 0 end), 0, 0]}]}' | nsd-gen -
 }
-last() { nsd-info --last -p | jq -s "max_by(.x[$1]) | .v[$1] * 1000 | round / 1000"; }
+last() { nsd-info --last -b | jq -s "max_by(.position[$1]) | .velocity[$1] * 1000 | round / 1000"; }
 by_nsd() { nsd-step --until 4e-3 --every 4e-3s "$@" 2> /dev/null; }
 by_dem() { bench/reference/run.py --dem "$work/dem" -o "$work/soft.h5" --until 4e-3 --every 4e-3s --set kn=1e6 "$@" 2> /dev/null && cat "$work/soft.h5"; }
 

@@ -41,7 +41,7 @@ bounces() # MODE E: the third top of a ball that fell 1 m, less what it should b
     jq -n --argjson e "$2" '{ dt: 1e-4, e_n: $e, bodies: [{ x: [0, 0, 1.005], radius: 0.005 }],
         walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }] }' | nsd-gen - |
         run --overlap-rule "$1" -n 24000 --every 5 > "$work/a.h5"
-    nsd-info -p "$work/a.h5" | jq 'select(.x) | .x[2] - 0.005' |
+    nsd-info -b "$work/a.h5" | jq 'select(.position) | .position[2] - 0.005' |
         awk -v e="$2" 'NR > 2 && b > a && b >= $1 && ++n == 3 { printf "%+.2f", 100 * (b / e ^ 6 - 1) } { a = b; b = $1 }'
 }
 

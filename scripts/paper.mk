@@ -230,7 +230,7 @@ go      = nsd-step -m $(call part,2) --protocol paper --tolerance 1e-14 --max-sw
 throw   = jq -f $P/closed-scene.jq --argjson dt $(call part,3) scenes/paper/$(scene).json | nsd-gen - | $(call go,$1)
 
 $(OUT)/closed/%.tsv: $P/closed-scene.jq $P/closed.jq | $(OUT)/closed
-	@{ $(call throw,0.2) --every $$(jq -n '0.001 / $(call part,3) | round') | nsd-info --particles; \
+	@{ $(call throw,0.2) --every $$(jq -n '0.001 / $(call part,3) | round') | nsd-info -b; \
 	   $(if $(filter exact,$(call part,2)), $(call throw,0.06) --every 1000000 | $(call go,0.02) --contacts | \
 	       nsd-info --contacts | grep '"stick"';) } 2> /dev/null | \
 	    jq -n -r -f $P/closed.jq --arg scene $(scene) --arg method $(call part,2) --argjson dt $(call part,3) > $@
@@ -286,8 +286,8 @@ $(OUT)/figures/closed.svg: $(OUT)/tables/closed.tsv $P/closed.gp | $(OUT)/figure
 # The ball of example 1 every 20 ms: where it is and how far it has turned.
 $(OUT)/data/strobe.tsv: | $(OUT)/data
 	@{ nsd-gen scenes/paper/example1.json; \
-	   nsd-gen scenes/paper/example1.json | nsd-step -m exact -n $(n_example1) $(limits_example1) --every 200 2> /dev/null; } | nsd-info --particles | \
-	    jq -r '[.x[0], .x[2], .radius, 2 * atan2(.q[2]; .q[0])] | @tsv' > $@
+	   nsd-gen scenes/paper/example1.json | nsd-step -m exact -n $(n_example1) $(limits_example1) --every 200 2> /dev/null; } | nsd-info -b | \
+	    jq -r '[.position[0], .position[2], .radius, 2 * atan2(.orientation[2]; .orientation[0])] | @tsv' > $@
 
 $(OUT)/figures/strobe.svg: $(OUT)/data/strobe.tsv $P/strobe.gp | $(OUT)/figures
 	@gnuplot -e "data='$<'; out='$@'" $P/strobe.gp
@@ -317,7 +317,7 @@ $(OUT)/figures/%-rest.png: $(OUT)/rest/%.h5 | $(OUT)/figures
 $(OUT)/tables/motion.tsv: $(OUT)/runs.json $(PILED_UP:%=$(OUT)/rest/%.h5) $P/motion.jq $P/stats.jq | $(OUT)/tables
 	@{ printf 'scene\tpicture\tstep\ttime\tfastest\tmedian\n'; \
 	   $(foreach s,$(PILED_UP),$(foreach f,end=$(call end_run,$s) rest=$(OUT)/rest/$s.h5, \
-	       { nsd-info --last $(lastword $(subst =, ,$f)); nsd-info --last --particles $(lastword $(subst =, ,$f)); } | \
+	       { nsd-info --last $(lastword $(subst =, ,$f)); nsd-info --last -b $(lastword $(subst =, ,$f)); } | \
 	       jq -r -s -L $P -f $P/motion.jq --arg scene $s --arg picture $(firstword $(subst =, ,$f));)) } > $@
 
 # ---- the page ----

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# setup.sh run|check|wall|site|all: see that what nsd needs is there; install it where that is allowed, else name
+# setup.sh run|check|wall|reference|site|all: see that what nsd needs is there; install it where that is allowed, else name
 # the line that does.
 set -euo pipefail
 
@@ -8,6 +8,7 @@ set -euo pipefail
 run=(build-essential pkg-config libhdf5-dev hdf5-tools libgsl-dev libjansson-dev zlib1g-dev libdeflate-dev libpng-dev
     libcairo2-dev libsuitesparse-dev libqhull-dev jq gnuplot-nox)
 wall=("${run[@]}" python3-h5py python3-scipy)
+reference=("${wall[@]}" liggghts)
 site=("${run[@]}" mandoc cmark-gfm python3)
 check=("${wall[@]}" "${site[@]:${#run[@]}}" python3-numpy python3-jsonschema perl libfclib-dev opencl-c-headers parallel time)
 all=("${check[@]}" shellcheck cppcheck clang libomp-dev libclang-rt-dev
@@ -19,10 +20,11 @@ all=("${check[@]}" shellcheck cppcheck clang libomp-dev libclang-rt-dev
 case "${1:-run}" in
 run) packages=("${run[@]}") ;;
 wall) packages=("${wall[@]}") ;;
+reference) packages=("${reference[@]}") ;;
 site) packages=("${site[@]}") ;;
 check) packages=("${check[@]}") ;;
 all) packages=("${all[@]}") ;;
-*) echo "usage: setup.sh run|check|wall|site|all" >&2; exit 64 ;;
+*) echo "usage: setup.sh run|check|wall|reference|site|all" >&2; exit 64 ;;
 esac
 
 if ! command -v dpkg-query >/dev/null; then

@@ -15,13 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool last, particles, contacts, walls, history, events, scene;
+static bool last, bodies, particles, contacts, walls, history, events, scene;
 static const char *steps, *only;
 static struct selection chosen; /* of the frame at hand, by --only */
 static bool shown;              /* whether any frame had what was asked for: contacts, a history */
 
 static const struct cli_option own[] = {
-    { CLI_FLAG, 'p', "particles", &particles, .help = "print one line per body" },
+    { CLI_FLAG, 'b', "bodies", &bodies, .help = "print one line per body" },
+    { CLI_FLAG, 'p', "particles", &particles,
+      .help = "print it with the former keys x, v, w, q, which scripts read" },
     { CLI_FLAG, 'c', "contacts", &contacts, .help = "print one line per contact" },
     { CLI_FLAG, 'w', "walls", &walls, .help = "print one line per wall" },
     { CLI_FLAG, 0, "history", &history,
@@ -30,7 +32,7 @@ static const struct cli_option own[] = {
     { CLI_FLAG, 0, "scene", &scene,
       .help = "print the scene that restarts from the last frame of FILE" },
     { CLI_TEXT, 0, "only", &only, "NAME,...",
-      .help = "print only these walls, parts, groups, materials (-p, -w, -c) [all]" },
+      .help = "print only these walls, parts, groups, materials (-b, -w, -c) [all]" },
     { CLI_FLAG, 'l', "last", &last, .help = "process only the last frame" },
     { CLI_TEXT, 's', "frames", &steps, "A:B:K",
       .help = "process the frames of steps A to B, every K-th [all]" },
@@ -42,7 +44,7 @@ const struct cli_tool tool = {
     "nsd-info", "[FILE ...]",
     "Prints the contents of documents: one line of JSON per document, then one per frame.", tables,
     "  nsd-info out.h5 | jq -r 'select(.step != null) | [.step, .sweeps, .natural] | @tsv'\n"
-    "  nsd-info --last -p out.h5 | jq -r '[.x[], .radius] | @tsv'\n"
+    "  nsd-info --last -b out.h5 | jq -r '[.position[], .radius] | @tsv'\n"
 };
 
 /* What pairs of materials do beyond friction and restitution */
@@ -206,10 +208,10 @@ static void show_moment(const struct frame *f)
     json_line(j);
 }
 
-static void show_particles(const struct packing *p)
+static void show_bodies(const struct packing *p)
 {
 #define MEMBER(ctype, member, ...) #member,
-    static const char *const key[] = { EACH_BODY_COLUMN(MEMBER) };
+    static const char *const former[] = { EACH_BODY_COLUMN(MEMBER) };
 #undef MEMBER
     const unsigned apart =
         1 << BODY_inertia | 1 << BODY_id | 1 << BODY_material | 1 << BODY_shape | 1 << BODY_group;
@@ -225,7 +227,8 @@ static void show_particles(const struct packing *p)
         for (int k = 0; k < BODY_COLUMNS; k++)
             if (!(apart >> k & 1) && field_array(&body_columns[k], p))
                 json_object_set_new(
-                    j, key[k], json_field(&body_columns[k], field_row(&body_columns[k], p, i)));
+                    j, particles ? former[k] : body_columns[k].name,
+                    json_field(&body_columns[k], field_row(&body_columns[k], p, i)));
         json_line(j);
     }
 }
@@ -242,8 +245,8 @@ static void show_events(const struct packing *p)
         json_object_set_new(j, "id", json_integer(e->id));
         json_object_set_new(j, "radius", json_number(e->radius));
         json_object_set_new(j, "mass", json_number(e->mass));
-        json_object_set_new(j, "x", json_vec(e->x));
-        json_object_set_new(j, "v", json_vec(e->v));
+        json_object_set_new(j, "position", json_vec(e->x));
+        json_object_set_new(j, "velocity", json_vec(e->v));
         json_line(j);
     }
 }
@@ -419,13 +422,13 @@ static void show(const struct frame *f)
     struct failure failure = { 0 };
     if (only && !f->packed) die(EX_DATAERR, "--only: a contact problem has no names");
     if (only && selection_init(&chosen, &f->packing, "--only", only, &failure)) die_why(&failure);
-    if (particles && f->packed) show_particles(&f->packing);
+    if ((bodies || particles) && f->packed) show_bodies(&f->packing);
     if (events && f->packed) show_events(&f->packing);
     if (walls && f->packed) show_walls(&f->packing);
     if (contacts && f->foreign) show_problem_contacts(f);
     if (contacts && f->detected) show_contacts(f);
     if (history && f->report.history) show_sweeps(f);
-    if (!particles && !walls && !contacts && !history && !events) show_moment(f);
+    if (!bodies && !particles && !walls && !contacts && !history && !events) show_moment(f);
     selection_free(&chosen);
 }
 
@@ -546,12 +549,12 @@ int tool_main(int argc, char **argv)
     struct frame f = { 0 };
     struct range range;
     struct failure failure = { 0 };
-    bool more, part = particles || walls || contacts || history || events;
+    bool more, part = bodies || particles || walls || contacts || history || events;
     int64_t frames = 0;
     if (!range_parse(&range, steps ? steps : ":")) die_usage("--frames: '%s' is not A:B:K", steps);
     if (last && steps) die_usage("--last and --frames exclude each other");
-    if (only && (scene || (!particles && !walls && !contacts)))
-        die_usage("--only: needs -p, -w or -c");
+    if (only && (scene || (!bodies && !particles && !walls && !contacts)))
+        die_usage("--only: needs -b, -w or -c");
     if (scene && (argc != 1 || !strcmp(argv[0], "-")))
         die_usage("--scene: one FILE, which the scene names");
     if (reader_open(&in, argc, argv, &failure)) die_why(&failure);

@@ -51,7 +51,7 @@ static const struct cli_option own[] = {
       .help = "measure only these walls, parts, groups, materials [all]" },
     { CLI_ABOVE, 0, "wear", &asked.wear, "K",
       .help = "set Archard's coefficient of all walls, 1/Pa [that of the scene]", .max = 1e300 },
-    { CLI_TEXT, 0, "tracer", &tracer, "KIND",
+    { CLI_TEXT, 0, "tracer", &tracer, "MATERIAL",
       .help =
           "measure mixing of this material, or of large bodies [material of the first, or large]" },
     { CLI_ABOVE, 0, "sample", &asked.sample, "M",

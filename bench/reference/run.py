@@ -167,6 +167,27 @@ def share(group, name, values, made=None):
     return made
 
 
+def start_of(work):
+    """the last frame of standard input as a document in the folder, its scene and its bodies"""
+    start = os.path.join(work, "start.h5")
+    with open(start + ".in", "wb") as file:
+        file.write(sys.stdin.buffer.read())
+    with open(start, "wb") as file:
+        subprocess.run(["nsd-cat", "--last", start + ".in"], check=True, stdout=file)
+    return start, json.loads(nsd("nsd-info", "--scene", start)), [json.loads(line) for line in nsd("nsd-info", "-b", start).splitlines()]
+
+
+def box_of(start):
+    """origin, edges and their rates; None: it has none"""
+    with h5py.File(start, "r") as file:
+        box = file["particles/all/box"]
+        origin = box["origin"][()] if "origin" in box else np.zeros(3)
+        if "edges" not in box:
+            return origin, None, None
+        edges = box["edges/value"][-1] if isinstance(box["edges"], h5py.Group) else np.diag(box["edges"][()])
+        return origin, edges, box["rate/value"][-1] if "rate" in box else np.zeros((3, 3))
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("-o", dest="out", required=True)
@@ -176,21 +197,8 @@ def main():
     parser.add_argument("--dem", default=os.path.join(os.path.dirname(__file__), "../../build/reference/dem"))
     args, _ = parser.parse_known_args()
     with tempfile.TemporaryDirectory() as work:
-        start = os.path.join(work, "start.h5")
-        with open(start + ".in", "wb") as file:
-            file.write(sys.stdin.buffer.read())
-        with open(start, "wb") as file:
-            subprocess.run(["nsd-cat", "--last", start + ".in"], check=True, stdout=file)
-        scene = json.loads(nsd("nsd-info", "--scene", start))
-        bodies = [json.loads(line) for line in nsd("nsd-info", "-p", start).splitlines()]
-        with h5py.File(start, "r") as file:
-            box = file["particles/all/box"]
-            origin = np.zeros(3)
-            edges = rates = None
-            if "edges" in box:
-                edges = box["edges/value"][-1] if isinstance(box["edges"], h5py.Group) else np.diag(box["edges"][()])
-                rates = box["rate/value"][-1] if "rate" in box else np.zeros((3, 3))
-                origin = box["origin"][()] if "origin" in box else origin
+        start, scene, bodies = start_of(work)
+        origin, edges, rates = box_of(start)
         dim, dt, time = scene.get("dim", 3), scene["dt"], scene.get("time", 0)
         arguments = arguments_of(scene, dim, time)
         if edges is not None:
@@ -201,7 +209,7 @@ def main():
             for body in bodies:
                 if body.get("shape", "ball") != "ball":
                     refuse("shapes")
-                numbers = [*body["x"], body["radius"], body["mass"], *body["v"], *body["w"]]
+                numbers = [*body["position"], body["radius"], body["mass"], *body["velocity"], *body["angular_velocity"]]
                 print(*(f"{n:.17g}" for n in numbers), 0 if body["mass"] > 0 else 1, file=file)
         every = float(args.every.rstrip("s"))
         frames = os.path.join(work, "frames")

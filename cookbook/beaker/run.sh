@@ -6,4 +6,4 @@ jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --arg surfaces "$s
     nsd-step "${step[@]}" --until "${UNTIL:-0.52}" --every 0.1s -o beaker.h5
 nsd-view -c height --walls lines beaker.h5 >beaker.png
 # what is left in the beaker over its volume
-nsd-info -p --last beaker.h5 | jq -rs 'map(select(.x[2] > 0)) | [length, (map(.mass) | add) / (3.14159265 * 4e-4 * 0.055)] | @tsv' | tee density.tsv
+nsd-info -b --last beaker.h5 | jq -rs 'map(select(.position[2] > 0)) | [length, (map(.mass) | add) / (3.14159265 * 4e-4 * 0.055)] | @tsv' | tee density.tsv

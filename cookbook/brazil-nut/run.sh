@@ -8,7 +8,7 @@ done
 wait
 nsd-view -s 1120 -c material nut-0.8.h5 >start.png
 nsd-view -c material nut-0.8.h5 >end.png
-heights() { nsd-info -p --only large "$1" | jq -r 'select(.x) | [.step * 2.5e-4, .x[1] / 4e-3] | @tsv'; }
+heights() { nsd-info -b --only large "$1" | jq -r 'select(.position) | [.step * 2.5e-4, .position[1] / 4e-3] | @tsv'; }
 # each second, the mean of a second: seconds, rough walls, smooth walls
 join -t $'\t' <(heights nut-0.8.h5 | sort) <(heights nut-0.h5 | sort) | sort -n |
     awk '{ t = int($1); n[t]++; a[t] += $2; b[t] += $3; if (t > last) last = t }

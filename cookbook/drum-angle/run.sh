@@ -7,7 +7,7 @@ for rpm in ${SPEEDS:-15 45}; do
     jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson rpm "$rpm" --arg surfaces "$surfaces" | nsd-gen - |
         nsd-step "${step[@]}" --until "${UNTIL:-1}" --every 0.02s -o "drum-$rpm.h5"
     # in columns of 4 mm, frames from 0.5 s on: the mean height of the highest grain and its standard deviation
-    nsd-info -p -s "$(jq -n "0.5 / $dt | ceil")": "drum-$rpm.h5" | jq -r '[.step, (.x[0] / 0.004 | floor), .x[2] + .radius] | @tsv' |
+    nsd-info -b -s "$(jq -n "0.5 / $dt | ceil")": "drum-$rpm.h5" | jq -r '[.step, (.position[0] / 0.004 | floor), .position[2] + .radius] | @tsv' |
         awk -v rpm="$rpm" '{ k = $1 "\t" $2; if (!(k in h) || $3 > h[k]) h[k] = $3 }
         END { for (k in h) { split(k, a, "\t"); s[a[2]] += h[k]; q[a[2]] += h[k]^2; n[a[2]]++ }
               for (x in s) if (x >= -8 && x < 8) { m = s[x] / n[x]; print rpm "\t" (x + 0.5) * 4 "\t" m * 1000 "\t" 1000 * sqrt((q[x] / n[x] - m * m > 0) ? q[x] / n[x] - m * m : 0) } }' | sort -k2g >"surface-$rpm.tsv"

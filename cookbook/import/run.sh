@@ -5,5 +5,5 @@ for times in 0 100; do
     jq --argjson f "$(jq -n "$times * $weight")" '.cohesion = { force: $f, range: 2e-5 }' scene.json |
         nsd-gen - | nsd-step --until "${UNTIL:-0.3}" --every 0.3s -o "block-$times.h5"
     nsd-view -c height "block-$times.h5" >"block-$times.png"
-    nsd-info --last -p "block-$times.h5" | jq -rs --arg n "$times" '[$n, (map(.x[2] + .radius) | max) * 1000] | @tsv'
+    nsd-info --last -b "block-$times.h5" | jq -rs --arg n "$times" '[$n, (map(.position[2] + .radius) | max) * 1000] | @tsv'
 done | tee height.tsv

@@ -3,4 +3,4 @@
 set -euo pipefail
 nsd-gen scene.json | nsd-step --until "${UNTIL:-0.7}" --every 0.02s -o intruder.h5
 nsd-view intruder.h5 >intruder.png
-nsd-info -p intruder.h5 | jq -r 'select(.id == 0) | [.step, .x[1], .v[1]] | @tsv'
+nsd-info -b intruder.h5 | jq -r 'select(.id == 0) | [.step, .position[1], .velocity[1]] | @tsv'

@@ -6,5 +6,5 @@ for tilt in 10 35; do
         jq --argjson a "$tilt" '($a / 57.2957795) as $a | .gravity = [9.81 * ($a | sin), -9.81 * ($a | cos)]' |
         nsd-gen - | nsd-step --until 0.9 --every 0.1s -o "tilted-$tilt.h5"
     nsd-view -c speed "tilted-$tilt.h5" >"tilted-$tilt.png"
-    nsd-info --last -p "tilted-$tilt.h5" | jq -rs --arg a "$tilt" 'map(select(.x[1] > 0.006).v[0]) | [$a, add / length] | @tsv'
+    nsd-info --last -b "tilted-$tilt.h5" | jq -rs --arg a "$tilt" 'map(select(.position[1] > 0.006).velocity[0]) | [$a, add / length] | @tsv'
 done | tee speed.tsv

@@ -6,7 +6,7 @@ read -ra step <<<"${STEP---small-steps 0.03}" # options of nsd-step
 jq -n -f scene.jq --argjson grain "$grain" --argjson dt "$dt" --argjson taps "$taps" --argjson period $period --arg surfaces "$surfaces" |
     nsd-gen - | nsd-step "${step[@]}" --until "$(jq -n "0.2 + $taps * $period + 0.04")" --every 0.04s -o taps.h5
 # 0.04 s after each tap: the mass over that of the tube up to twice the height of the centre of mass, which is the height of a column
-mass=$(nsd-info -p --last taps.h5 | jq -s 'map(.mass) | add')
+mass=$(nsd-info -b --last taps.h5 | jq -s 'map(.mass) | add')
 nsd-stat -m energy taps.h5 | jq -rs --argjson m "$mass" --argjson p $period 'map(.k = (.time - 0.24) / $p) |
     map(select(.k > -0.01 and (.k - (.k | round) | fabs) < 0.01)) | .[] | (.energy.potential / ($m * 9.81)) as $z |
     [(.k | round), $m / (3.14159265 * 0.013 * 0.013 * 2 * $z)] | @tsv' >density.tsv

@@ -5,7 +5,7 @@ set -euo pipefail
 
 scene='{ "dt": 1e-3, "gravity": [0, 0, 0],
          "walls": [{ "point": [0, 0, 1], "normal": [0, 0, 1], "load": { "along": [0, 0, 1], "mass": 2 } }] }'
-controller='jq -c --unbuffered ".boundaries[0] | {boundaries: {\"0\": {
+controller='jq -c --unbuffered ".walls[0] | {walls: {\"0\": {
     force: (-2 * (100 * (.position[2] - 0.5) + 20 * .velocity[2]))}}}"'
 
 nsd-gen - <<<"$scene" |

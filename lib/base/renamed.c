@@ -31,6 +31,7 @@ static const struct renamed table[] = {
     { "nsd_read", "boundary_angular_velocity", "wall_angular_velocity", false },
     { "nsd_read", "boundary_force", "wall_force", false },
     { "nsd_read", "boundary_torque", "wall_torque", false },
+    { "answer", "boundaries", "walls", true },
     { "measure", "boundaries", "walls", true },
     { "measure", "sums", "wall_loads", true },
     { "measure", "sums_by_name", "wall_loads_by_name", true },

@@ -9,7 +9,7 @@
 
 struct renamed {
     const char *
-        in; /* with blanks between: tools; "nsd_set"; "nsd_read": its arrays; "column": of tables of grains; "scene"; "document": the options of a solve, which keep their old names there; "surface", "part": values of this option; "measure" and "quantity": of nsd-stat, printed under the name that was asked for */
+        in; /* with blanks between: tools; "nsd_set"; "nsd_read": its arrays; "answer": keys of what a program in the loop answers; "column": of tables of grains; "scene"; "document": the options of a solve, which keep their old names there; "surface", "part": values of this option; "measure" and "quantity": of nsd-stat, printed under the name that was asked for */
     const char *was, *is; /* without dashes */
     bool accepted; /* the old name still works: it stands in scenes and scripts that others keep */
 };

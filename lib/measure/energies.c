@@ -52,10 +52,11 @@ static const struct quantity quantities[] = {
     { "impact", "J", 1, "part of dissipated by normal velocities" },
     { "friction", "J", 1,
       "part of dissipated by tangential velocities and by rolling and pivoting" },
-    { "boundaries", "J", 1, "work of walls on bodies in that step" },
+    { "walls", "J", 1, "work of walls on bodies in that step" },
     { "peculiar", "J", 1, "kinetic energy of translation relative to the flow of the cell" },
     { "breaking", "J", 1,
       "energy that broken grains have lost since the first frame, that of their dust" },
+    { "boundaries", "J", 1, "walls under their former name" },
     { 0 },
 };
 
@@ -144,6 +145,7 @@ static int energies_rows(struct table *t, const struct snapshot *s, struct failu
     if (lacks && p->law) stored = NAN;
     put(&at, kinetic), put(&at, rotation), put(&at, potential), put(&at, stored);
     put(&at, kinetic + rotation + potential + stored);
+    at[6] = at[3];
     return 0;
 }
 

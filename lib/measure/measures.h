@@ -71,7 +71,7 @@ int measure_run(struct table *t, const struct measure *m, const struct snapshot 
         .axis = -1, .layers = 20, .bins = 50, .radius = INFINITY, .view = 1, .pixels = 400         \
     }
 /* box X0,X1,Y0,Y1[,Z0,Z1]; layers AXIS:N; point X,Y,Z; plane NX,NY,NZ; radius M; bins N; distance M; only NAME,...; wear K;
-   tracer KIND, or large; sample M; view AXIS; window LEFT,RIGHT,LOWER,UPPER; pixels N; photo FILE.
+   tracer MATERIAL, or large; sample M; view AXIS; window LEFT,RIGHT,LOWER,UPPER; pixels N; photo FILE.
    Returns 0, or EX_USAGE with "--name: trouble", where nothing has changed. */
 int asked_set(struct asked *asked, const char *name, const char *text, struct failure *failure);
 /* Is there one of that name? The names, NULL past the last */

@@ -295,7 +295,7 @@ static int mixing_rows(struct table *t, const struct snapshot *s, struct failure
         mixture_divide(&m, s);
         put(&at, (double)m.n), put(&at, (double)m.tracers);
         if (!m.tracers || m.tracers == m.n)
-            reason = "all bodies are of one sort: --tracer KIND, or large";
+            reason = "all bodies are of one sort: --tracer MATERIAL, or large";
     }
     if (room && !reason) reason = samples_init(&y, s, &m);
     if (room && !reason) room = y.bodies && y.tracers;

@@ -42,6 +42,7 @@ static const struct cli_option common[] = {
 static char *history;
 static char **arguments;
 static const void *given[OPTIONS]; /* the variables that were set, NULL between */
+static bool formerly[OPTIONS];     /* by a former name */
 
 static void cli_message(const char *format, va_list ap)
 {
@@ -171,6 +172,13 @@ bool cli_given(const void *to)
 {
     for (int k = 0; k < OPTIONS; k++)
         if (given[k] == to) return true;
+    return false;
+}
+
+bool cli_given_formerly(const void *to)
+{
+    for (int k = 0; k < OPTIONS; k++)
+        if (given[k] == to) return formerly[k];
     return false;
 }
 
@@ -325,13 +333,13 @@ int cli_parse(int argc, char **argv)
     }
     add_renamed(lng, n);
     json_t *value[OPTIONS] = { NULL };
-    int c;
+    int c, which = 0;
     stdout_named = !output_removed(STDOUT_FILENO);
     size_t size = ((size_t)argc + 1) * sizeof *argv;
     if (!(arguments = malloc(size))) die(EX_SOFTWARE, "no memory");
     memcpy(arguments, argv, size);
     opterr = 0;
-    while ((c = getopt_long(argc, argv, letters, lng, NULL)) != -1) {
+    while ((c = getopt_long(argc, argv, letters, lng, &which)) != -1) {
         if (c == ':') die_usage("%s: an argument is needed", argv[optind - 1]);
         if (c == '?' && optopt && optopt < 256) die_usage("-%c: no such option", optopt);
         if (c == '?' && optopt)
@@ -344,6 +352,7 @@ int cli_parse(int argc, char **argv)
         json_decref(value[k]);
         value[k] = cli_set(at[k], optarg);
         given[k] = at[k]->to;
+        formerly[k] = c >= FIRST_LONG && which >= n;
         if (wants_help) help();
         if (wants_version) version();
         if (!is_standard_output(at[k], optarg)) continue;

@@ -37,6 +37,8 @@ void begin_stdout(void);
 
 /* Was an option given that sets this variable? Then its value is the user's, else the default. */
 bool cli_given(const void *to);
+/* And by its former name [base/renamed.h]? Scripts that write it read former names, too. */
+bool cli_given_formerly(const void *to);
 
 /*
  * The line for the document's history: {"command":"nsd-step","version":"0.1","options":{...}}, with

@@ -227,11 +227,12 @@ static vec3 force_on(const struct packing *p, const struct contacts *s, int32_t 
 static void loop_put_walls(FILE *out, const struct packing *p, const struct contacts *s)
 {
     const char *mark = "";
-    fputs(",\"boundaries\":[", out);
+    const bool formerly = cli_given_formerly(&walls); // --with-boundaries, and so its keys
+    fprintf(out, ",\"%s\":[", formerly ? "boundaries" : "walls");
     for (int32_t w = 0; w < p->walls; w++) {
         if (!selection_wall(&loop.told, p, w)) continue;
         vec3 x = wall_at(p, &p->wall[w], p->t);
-        fprintf(out, "%s{\"boundary\":%d", mark, w);
+        fprintf(out, "%s{\"%s\":%d", mark, formerly ? "boundary" : "wall", w);
         if (names_of_wall(&p->names, w))
             fprintf(out, ",\"name\":\"%s\"", names_of_wall(&p->names, w));
         put_vector(out, "position", x);

@@ -1,6 +1,7 @@
 #include "run/reply.h"
 
 #include "base/nearest.h"
+#include "base/renamed.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -77,7 +78,7 @@ static const struct {
     { "torques", .array = true, .object = true },
     { "velocities", .array = true, .object = true },
     { "angular_velocities", .array = true, .object = true },
-    { "boundaries", .object = true },
+    { "walls", .object = true },
     { "gravity", .array = true },
     { "friction", .array = true },
     { "stop", .boolean = true },
@@ -132,7 +133,7 @@ static int set_wall(const json_t *j, struct control *acts, struct packing *p, in
     const char *key;
     json_t *x;
     vec3 v;
-    if (!json_is_object(j)) return reply_wrong(failure, "boundaries have velocity and force");
+    if (!json_is_object(j)) return reply_wrong(failure, "walls have velocity and force");
     json_object_foreach((json_t *)j, key, x)
     {
         if (!strcmp(key, "velocity")) {
@@ -140,10 +141,10 @@ static int set_wall(const json_t *j, struct control *acts, struct packing *p, in
                 return reply_wrong(failure, "velocity is a vector [x, y, z]");
             control_velocity(p, wall, v, failure);
         } else if (!strcmp(key, "force")) {
-            if (!json_is_number(x)) return reply_wrong(failure, "force of a boundary is a number");
+            if (!json_is_number(x)) return reply_wrong(failure, "force of a wall is a number");
             control_push(acts, p, wall, json_number_value(x), CONTROL_LASTING, failure);
         } else {
-            failure_set(failure, EX_DATAERR, "the answer's boundaries have no '%.40s'", key);
+            failure_set(failure, EX_DATAERR, "the answer's walls have no '%.40s'", key);
         }
         if (failure->status) return failure->status;
     }
@@ -165,8 +166,7 @@ static int set_walls(const json_t *j, struct control *acts, struct packing *p,
         }
         if (failure->status || (name >= 0 && wall >= 0)) continue;
         if (wall < 0)
-            failure_set(failure, EX_DATAERR, "the answer's boundaries: no wall is named '%.60s'",
-                        key);
+            failure_set(failure, EX_DATAERR, "the answer's walls: no wall is named '%.60s'", key);
         else
             set_wall(x, acts, p, wall, failure);
     }
@@ -181,7 +181,7 @@ static int set_frictions(const json_t *j, struct packing *p, struct failure *fai
                      *mu = json_array_get(x, 2);
         if (json_array_size(x) != 3 || !json_is_string(a) || !json_is_string(b) ||
             !json_is_number(mu))
-            return reply_wrong(failure, "friction is [[KIND, KIND, mu], ...]");
+            return reply_wrong(failure, "friction is [[MATERIAL, MATERIAL, mu], ...]");
         if (control_friction(p, json_string_value(a), json_string_value(b), json_number_value(mu),
                              failure))
             return failure->status;
@@ -195,9 +195,19 @@ static int reply_unknown(const char *key, struct failure *failure)
     for (int k = 0; k < KEYS; k++) nearest_look(&near, key, strlen(key), known[k].key);
     return failure_set(failure, EX_DATAERR,
                        "the answer has no '%.40s'%s%s%s: it has forces, torques, velocities, "
-                       "angular_velocities, boundaries, gravity, friction, stop",
+                       "angular_velocities, walls, gravity, friction, stop",
                        key, near.name ? "; did you mean '" : "", near.name ? near.name : "",
                        near.name ? "'?" : "");
+}
+
+/* The walls of an answer, which programs of version 1 call boundaries; NULL: it has none */
+static const json_t *reply_walls(const json_t *answer)
+{
+    const struct renamed *r;
+    const json_t *walls = json_object_get(answer, "walls");
+    for (int k = 0; !walls && (r = renamed_at(k)); k++)
+        if (!strcmp(r->in, "answer")) walls = json_object_get(answer, r->was);
+    return walls;
 }
 
 int reply_check(const json_t *answer, struct failure *failure)
@@ -206,8 +216,12 @@ int reply_check(const json_t *answer, struct failure *failure)
     json_t *x;
     json_object_foreach((json_t *)answer, key, x)
     {
+        const struct renamed *r = renamed_find("answer", key, strlen(key));
         int k = 0;
-        while (k < KEYS && strcmp(key, known[k].key) != 0) k++;
+        if (r && json_object_get(answer, r->is))
+            return failure_set(failure, EX_DATAERR,
+                               "the answer has %s twice: %s is its former name", r->is, r->was);
+        while (k < KEYS && strcmp(r ? r->is : key, known[k].key) != 0) k++;
         if (!strcmp(key, "document")) return reply_no_document(failure);
         if (k == KEYS) return reply_unknown(key, failure);
         if ((known[k].array && json_is_array(x)) || (known[k].object && json_is_object(x)) ||
@@ -217,7 +231,7 @@ int reply_check(const json_t *answer, struct failure *failure)
         return failure_set(failure, EX_DATAERR, "the answer's %s is %s", key,
                            k < PARTS         ? "an array, or an object by ids"
                            : known[k].object ? "an object by their numbers"
-                           : k == KEYS - 2   ? "[[KIND, KIND, mu], ...]"
+                           : k == KEYS - 2   ? "[[MATERIAL, MATERIAL, mu], ...]"
                                              : "a vector [x, y, z]");
     }
     return 0;
@@ -238,12 +252,11 @@ static void reply_forget(struct reply_before *b)
     control_free(&b->acts);
 }
 
-/* *to = a copy, where the answer has this key; false: no memory */
-static bool reply_copy(void *to, const json_t *answer, const char *key, const void *from,
-                       size_t bytes)
+/* *to = a copy, where the answer has what would change it; false: no memory */
+static bool reply_copy(void *to, const json_t *has, const void *from, size_t bytes)
 {
     void **copy = to;
-    if (!json_object_get(answer, key) || !bytes) return true;
+    if (!has || !bytes) return true;
     if ((*copy = malloc(bytes))) memcpy(*copy, from, bytes);
     return *copy;
 }
@@ -253,10 +266,11 @@ static int reply_remember(struct reply_before *b, const json_t *answer, const st
 {
     const size_t n = (size_t)p->n, walls = (size_t)p->walls, materials = (size_t)p->materials;
     *b = (struct reply_before){ .g = p->g, .steered = p->outside.steered };
-    if (reply_copy(&b->v, answer, "velocities", p->v, n * sizeof *b->v) &&
-        reply_copy(&b->w, answer, "angular_velocities", p->w, n * sizeof *b->w) &&
-        reply_copy(&b->wall, answer, "boundaries", p->wall, walls * sizeof *b->wall) &&
-        reply_copy(&b->mu, answer, "friction", p->mu, materials * materials * sizeof *b->mu))
+    if (reply_copy(&b->v, json_object_get(answer, "velocities"), p->v, n * sizeof *b->v) &&
+        reply_copy(&b->w, json_object_get(answer, "angular_velocities"), p->w, n * sizeof *b->w) &&
+        reply_copy(&b->wall, reply_walls(answer), p->wall, walls * sizeof *b->wall) &&
+        reply_copy(&b->mu, json_object_get(answer, "friction"), p->mu,
+                   materials * materials * sizeof *b->mu))
         return control_copy(&b->acts, acts, p->walls, failure);
     return failure_set(failure, EX_SOFTWARE, "no memory for an answer");
 }
@@ -278,7 +292,7 @@ static int reply_apply_keys(const json_t *answer, struct control *acts, struct p
                             struct failure *failure)
 {
     vec3 g;
-    const json_t *walls = json_object_get(answer, "boundaries");
+    const json_t *walls = reply_walls(answer);
     const json_t *gravity = json_object_get(answer, "gravity");
     const json_t *friction = json_object_get(answer, "friction");
     bool forces = json_object_get(answer, "forces") || json_object_get(answer, "torques");

@@ -4,8 +4,8 @@
  *   { "forces":  { ID: [x, y, z], ... } or [[x, y, z], ...],     N, of bodies by their ids, or of all in their order
  *     "torques": likewise,                                       N m
  *     "velocities", "angular_velocities": likewise,              m/s, rad/s
- *     "boundaries": { NUMBER: { "velocity": [x, y, z], "force": N }, ... },
- *     "gravity": [x, y, z], "friction": [[KIND, KIND, mu], ...], "stop": true }
+ *     "walls": { NUMBER or NAME: { "velocity": [x, y, z], "force": N }, ... },
+ *     "gravity": [x, y, z], "friction": [[MATERIAL, MATERIAL, mu], ...], "stop": true }
  *
  * or the word stop. Forces act until the next answer, all else until it is changed.
  */

@@ -283,7 +283,7 @@ static int check_forces(const struct packing *p, struct failure *failure)
         const int32_t wanted = p->pulls.drive[k].wall;
         if (!bsearch(&wanted, id, (size_t)p->n, sizeof *id, scene_build_by_number))
             failure_set(failure, EX_DATAERR,
-                        "forces: no body has the id %d (nsd-info -p shows them)", wanted);
+                        "forces: no body has the id %d (nsd-info -b shows them)", wanted);
     }
     free(id);
     return failure->status;

@@ -227,7 +227,7 @@ static int check_bodies(jnode a, struct scene *s, void *out)
 
 static const struct key force_key[] = {
     { "bodies", &key_bodies, 0, "-", REQUIRED, "[0, 17]",
-      "Ids of bodies that exist at the start (nsd-info -p).", .read = check_bodies },
+      "Ids of bodies that exist at the start (nsd-info -b).", .read = check_bodies },
     { "force", &key_signal, 0, "N", "-", "0.5",
       "Force on each of the bodies; signals as for the load of a wall.", .choice = 1 },
     { "along", &key_direction, AT(axis), "-", REQUIRED, "[0, 0, 1]", "Direction of the force.",

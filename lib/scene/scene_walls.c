@@ -245,7 +245,7 @@ static const struct key wall_key[] = {
       "Force, torque or pressure on a load-controlled wall; not for a box, which a servo may have.",
       .without = "box", .object = &load_keys },
     { "materials", &key_list, AT(w), "-", "none", "see below",
-      "Kinds and belts of parts of a mesh or of a polygon; not with a load.",
+      "Materials and belts of parts of a mesh or of a polygon; not with a load.",
       .with = "mesh polygon",
       .why = "only a mesh or a polygon has faces; other walls have one material",
       .object = &material_keys, .read = scene_walls_read_materials },

@@ -41,6 +41,8 @@
 #include "solve/small_hold.h"
 #include "solve/small_spring.h"
 
+#include <string.h>
+
 /* Where a body is, in the place of its struct body */
 struct small_place {
     double x[3], r; /* m */
@@ -112,6 +114,9 @@ struct small {
     double *missing, *load;     /* [bodies] N s: of small_judge; NULL */
     int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
     double *change; /* [bodies] m/s: by sweeps of this step since then */
+    /* For repeated sweeps, of bundles that have a hot body alone; NULL before the first one [step/small_mark.h] */
+    int32_t *mark;          /* [bundles] the last repeated sweep that is to look at it */
+    int64_t *meets, *first; /* bundles of body i: meets[first[i]] .. meets[first[i + 1] - 1] */
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */
     int64_t *group;                  /* [groups + 1] */
     struct small_bundle *bundle;
@@ -301,6 +306,21 @@ ALWAYS_INLINE double small_persists(const struct small_rates *o, double kept, do
     return o->calm > 0 || most > 0.125 * rn ? most : 0.125 * rn;
 }
 
+/* ---- marks ---- */
+
+/* The sweep in hand is to look at the bundles of body i. Threads may mark the same bundle at the same time. */
+static inline void small_mark_bundles(struct small *s, int64_t i)
+{
+    if (!s->mark) return;
+    for (int64_t k = s->first[i]; k < s->first[i + 1]; k++)
+        __atomic_store_n(&s->mark[s->meets[k]], s->sweep, __ATOMIC_RELAXED);
+}
+
+static inline bool small_is_marked(const struct small *s, int64_t bundle)
+{
+    return !s->mark || __atomic_load_n(&s->mark[bundle], __ATOMIC_RELAXED) == s->sweep;
+}
+
 /* ---- kernels ---- */
 
 /* Bundles first .. end-1 of one group; again: it is not the first sweep of the step. Returns whether a body has changed by more
@@ -313,8 +333,12 @@ typedef void small_push(struct small *s, int64_t first, int64_t end);
    and s->load by the reaction. */
 typedef void small_judge(struct small *s, int64_t first, int64_t end);
 
+/* After the sweeps: what does not persist of the reactions of bundles that are `late` is taken out of v^-. */
+typedef void small_settle(struct small *s, int64_t first, int64_t end);
+
 struct small_kernels {
     small_sweep *sweep;
     small_push *push;
     small_judge *judge;
+    small_settle *settle;
 };

@@ -1,115 +1,5 @@
 /* solve/small_sweep.c: the sweep of small steps, compiled once for each vector width [solve/small.h]. */
-#include "solve/small.h"
-
-/* LANES pairs of bundle i from lane k on */
-struct small_pairs {
-    struct small_bundle *c;
-    int64_t i;
-    int k;
-    struct bodies a, b;
-    struct twist ma, mb;
-    vd ra, rb, d[3], d2;  /* m: radii; from a to b, the image that a meets; m^2 */
-    vd n[3], gap, la, lb; /* m: arms along n */
-    vd length, sa, sb;    /* m: of d; of that, the arms' parts */
-};
-
-ALWAYS_INLINE void small_load_places(const struct small_place *from, const int32_t *place, vd x[4])
-{
-    const double *at = (const double *)from;
-#if LANES <= 2
-    for (int k = 0; k < 4; k += LANES) {
-        for (int i = 0; i < LANES; i++) x[k + i] = vload(at + place[i] + k);
-        transpose(x + k);
-    }
-#else
-    vd y[LANES];
-    for (int i = 0; i < LANES; i++) y[i] = vload(at + place[i]);
-    transpose(y);
-    for (int k = 0; k < 4; k++) x[k] = y[k];
-#endif
-}
-
-ALWAYS_INLINE void small_load(vd x[3], double (*from)[BUNDLE], int k)
-{
-    for (int i = 0; i < 3; i++) x[i] = vload(from[i] + k);
-}
-ALWAYS_INLINE void small_store(double (*to)[BUNDLE], int k, const vd x[3])
-{
-    for (int i = 0; i < 3; i++) vstore(to[i] + k, x[i]);
-}
-
-/* Distances alone */
-ALWAYS_INLINE void small_pairs_look(struct small_pairs *y, const struct small *s, int64_t i, int k)
-{
-    vd xa[4], xb[4];
-    y->c = &s->bundle[i], y->i = i, y->k = k;
-    small_load_places(s->place, y->c->a + k, xa), small_load_places(s->place, y->c->b + k, xb);
-    for (int j = 0; j < 3; j++) y->d[j] = xb[j] - xa[j];
-    for (int j = 0; j < 3 && s->shift; j++) y->d[j] += vload(s->shift[i].d[j] + k);
-    y->d2 = dot3(y->d, y->d), y->ra = xa[3], y->rb = xb[3];
-}
-
-/* Has no pair of these lanes come in reach since it was last looked at? None of them pushes. */
-ALWAYS_INLINE bool small_is_far(const struct small *s, int64_t i, int k, double reach)
-{
-    return !s->live[BUNDLE * i + k] && s->rate.gone + reach < s->until[(BUNDLE * i + k) / LANES];
-}
-
-/* None of them is in reach: when they are to be looked at again */
-ALWAYS_INLINE void small_wait(const struct small_pairs *y, const struct small *s)
-{
-    double gap[LANES], least = INFINITY;
-    vstore(gap, root(y->d2) - (y->ra + y->rb));
-    for (int j = 0; j < LANES; j++) least = gap[j] >= least ? least : gap[j];
-    if (!s->moves) s->until[(BUNDLE * y->i + y->k) / LANES] = s->rate.gone + least - s->slack;
-}
-
-/* The rest */
-ALWAYS_INLINE void small_pairs_load(struct small_pairs *y, const struct small *s)
-{
-    bodies_load(&y->a, s->body, y->c->a + y->k, &y->ma);
-    bodies_load(&y->b, s->body, y->c->b + y->k, &y->mb);
-    vd distance = root(y->d2), per = 1 / distance;
-    const vm apart =
-        lt(splat(0), distance); // bodies in one place have the normal of small_normal()
-    for (int j = 0; j < 3; j++) y->n[j] = pick(apart, y->d[j] * per, splat(j == 1));
-    y->gap = distance - (y->ra + y->rb);
-    y->la = y->ra + 0.5 * y->gap, y->lb = y->rb + 0.5 * y->gap;
-    per = pick(apart, per, splat(0));
-    y->length = distance, y->sa = per * y->la, y->sb = per * y->lb;
-}
-
-/* m/s: of b against a at the point of contact */
-ALWAYS_INLINE void small_velocity(const struct small_pairs *y, const struct twist *a,
-                                  const struct twist *b, vd u[3])
-{
-    vd m[3];
-    for (int i = 0; i < 3; i++) m[i] = y->la * a->w[i] + y->lb * b->w[i];
-    for (int i = 0, j = 1, k = 2; i < 3; j = k, k = i++)
-        u[i] = b->v[i] - a->v[i] - (m[j] * y->n[k] - m[k] * y->n[j]);
-}
-
-/* The same of images that move with the cell */
-ALWAYS_INLINE void small_velocity_image(const struct small_pairs *y, const struct small *s,
-                                        const struct twist *a, const struct twist *b, vd u[3])
-{
-    small_velocity(y, a, b, u);
-    for (int j = 0; j < 3 && s->moves && s->shift; j++) u[j] += vload(s->shift[y->i].v[j] + y->k);
-}
-
-/* Both bodies get df, their parts of the couple dc, and a moment dm where it is not NULL. */
-ALWAYS_INLINE void small_give(const struct small_pairs *y, struct small *s, const vd df[3],
-                              const vd dc[3], const vd *dm)
-{
-    struct twist da, db;
-    vd ta = -(y->a.ii * y->sa), tb = -(y->b.ii * y->sb);
-    for (int i = 0; i < 3; i++) {
-        da.v[i] = -y->a.im * df[i], db.v[i] = y->b.im * df[i];
-        da.w[i] = ta * dc[i], db.w[i] = tb * dc[i];
-        if (dm) da.w[i] -= y->a.ii * dm[i], db.w[i] += y->b.ii * dm[i];
-    }
-    bodies_add(s->body, y->c->a + y->k, &da), bodies_add(s->body, y->c->b + y->k, &db);
-}
+#include "solve/small_pairs.h"
 
 /* The law in the first sweep of a step; bonds pull by p, and `still` ones do not rebound. l->f is then without p. */
 ALWAYS_INLINE void small_begin(const struct small_pairs *y, const struct small *s,
@@ -180,6 +70,7 @@ static bool small_mark_body(struct small *s, int64_t i, double x, double allowed
     s->change[i] += x;
     if (!(s->change[i] > allowed)) return false;
     s->change[i] = 0, s->hot[i] = s->sweep;
+    small_mark_bundles(s, i);
     return true;
 }
 
@@ -367,12 +258,14 @@ ALWAYS_INLINE bool small_bundles(struct small *s, int64_t first, int64_t end, bo
                                  bool rolls, bool rich)
 {
     bool far = false;
-    for (int64_t i = first; i < end; i++)
+    for (int64_t i = first; i < end; i++) {
+        if (again && !small_is_marked(s, i)) continue;
         for (int k = 0; k < BUNDLE; k += LANES) {
             vm hot = NONE;
             if (again) hot = small_hot(s, &s->bundle[i], k);
             if (!again || any(hot)) far |= small_lanes(s, i, k, again ? &hot : NULL, rolls, rich);
         }
+    }
     return far;
 }
 
@@ -450,8 +343,71 @@ static void small_judge_bundles(struct small *s, int64_t first, int64_t end)
         for (int k = 0; k < BUNDLE; k += LANES) small_judge_lanes(s, i, k);
 }
 
+/* N s: what persists at most of reactions rn along the normal; w (1/kg): of the pairs along it [small_persists()] */
+ALWAYS_INLINE vd small_persists_most(const struct small_pairs *y, const struct small *s, vd w,
+                                     vd rn)
+{
+    const double calm = s->rate.calm;
+    vd held = vload(y->c->kept + y->k), slight = 0.125 * rn;
+    if (s->hold) held = held + 2 * vload(s->hold[y->i].x[HOLD_PULL] + y->k);
+    vd most = 2 * (held + calm / w);
+    if (!(calm > 0)) most = pick(lt(slight, most), most, slight);
+    return pick(lt(held, splat(0)), SMALL_TRACE * rn, most);
+}
+
+/* Takes what does not persist of the reactions out of v^-: v + (v - v^-) then has less of it. */
+static void small_settle_lanes(struct small *s, int64_t i, int k)
+{
+    struct small_pairs y;
+    struct twist da, db;
+    vd f[3], couple[3], sum[3], m[3], turned[3], zero = splat(0);
+    small_pairs_look(&y, s, i, k);
+    bodies_load(&y.a, s->before, y.c->a + k, &y.ma);
+    bodies_load(&y.b, s->before, y.c->b + k, &y.mb);
+    vd length = root(y.d2), per = 1 / length, half = 0.5 * (length - y.ra - y.rb);
+    const vm apart = lt(zero, length);
+    for (int j = 0; j < 3; j++) y.n[j] = pick(apart, y.d[j] * per, splat(j == 1));
+    small_load(f, y.c->f, k), small_load(couple, y.c->couple, k), small_load(sum, y.c->sum, k);
+    for (int j = 0; j < 3; j++) m[j] = turned[j] = zero;
+    if (s->turn) small_load(m, s->turn[i].m, k), small_load(turned, s->turn[i].sum, k);
+    vd rn = dot3(f, y.n), most = small_persists_most(&y, s, y.a.im + y.b.im, rn);
+    vm acts = lt(zero, absolute(f[0]) + absolute(f[1]) + absolute(f[2])) & ~le(rn, most);
+    if (s->spring) {
+        const struct small_springs *x = &s->spring[i];
+        acts = acts &
+               ~(lt(zero, vload(x->x[SPRING_KN] + k)) & ~lt(zero, vload(x->x[SPRING_BETA] + k)));
+    }
+    if (!any(acts)) return;
+    vd left = most / rn, back = 1 - left, nothing = splat(-0.0); // which added changes no sign
+    vd part = pick(apart, back / length, zero);
+    for (int j = 0; j < 3; j++) {
+        vd c = part * couple[j], along = back * f[j], turn = back * m[j];
+        da.v[j] = pick(acts, y.a.im * -along, nothing);
+        db.v[j] = pick(acts, y.b.im * along, nothing);
+        da.w[j] = pick(acts, y.a.ii * (-turn - (y.ra + half) * c), nothing);
+        db.w[j] = pick(acts, y.b.ii * (turn - (y.rb + half) * c), nothing);
+        sum[j] = pick(acts, sum[j] + along, sum[j]), f[j] = pick(acts, f[j] * left, f[j]);
+        couple[j] = pick(acts, couple[j] * left, couple[j]);
+        turned[j] = pick(acts, turned[j] + turn, turned[j]), m[j] = pick(acts, m[j] * left, m[j]);
+    }
+    small_store(y.c->f, k, f), small_store(y.c->couple, k, couple), small_store(y.c->sum, k, sum);
+    if (s->turn) small_store(s->turn[i].m, k, m), small_store(s->turn[i].sum, k, turned);
+    bodies_add(s->before, y.c->a + k, &da), bodies_add(s->before, y.c->b + k, &db);
+}
+
+static void small_settle_bundles(struct small *s, int64_t first, int64_t end)
+{
+    for (int64_t i = first; i < end; i++) {
+        uint64_t late;
+        memcpy(&late, &s->late[BUNDLE * i], sizeof late);
+        if (!late) continue;
+        memset(&s->late[BUNDLE * i], 0, BUNDLE);
+        for (int k = 0; k < BUNDLE; k += LANES) small_settle_lanes(s, i, k);
+    }
+}
+
 #define SMALL_(lanes)   small_##lanes
 #define SMALL_OF(lanes) SMALL_(lanes)
 extern const struct small_kernels SMALL_OF(LANES);
 const struct small_kernels SMALL_OF(LANES) = { small_sweep_bundles, small_push_bundles,
-                                               small_judge_bundles };
+                                               small_judge_bundles, small_settle_bundles };

@@ -178,10 +178,13 @@ double wall_force(const struct packing *p, const struct wall *w, double t)
 /* m: of its points that bodies may touch from a place */
 static double wall_motion_farthest(const struct packing *p, const struct wall *w, vec3 from)
 {
-    double reach = wall_reach(w), most = 0;
+    double reach = wall_reach(w), most2 = 0;
     if (isfinite(reach)) return v3_norm(v3_sub(w->x, from)) + reach;
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, v3_norm(v3_sub(p->x[i], from)));
-    return most;
+    for (int64_t i = 0; i < p->n; i++) {
+        const vec3 d = v3_sub(p->x[i], from);
+        most2 = dmax(most2, v3_dot(d, d));
+    }
+    return sqrt(most2);
 }
 
 /* m/s, rad/s: of a drive, from time t (s) on, until its way ends or the next row of its table comes */

@@ -49,25 +49,9 @@ struct small_list {
 };
 
 void small_list_free(struct small_list *l);
-/* What a list is made of */
-struct small_start {
-    const vec3 *x,
-        *v; /* [bodies] m, m/s; v NULL: where they go is not known, and the list serves a shorter way */
-    const vec3 *edge; /* [3] m: of the cell */
-    double t, span;   /* s: of the walls; in which it is to serve */
-    double wall;      /* m/s: of the fastest point of walls */
-};
-/*
- * Finds the pairs of bodies, and of these with walls. What pairs and touches of the list before have is kept. Returns 0,
- * EX_SOFTWARE or EX_DATAERR.
- */
-int small_list_make(struct small_list *l, const struct packing *p, const struct small_start *o,
-                    struct failure *failure);
-/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
-bool small_list_recall(struct small_list *l, const struct packing *p, double part);
-/* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
-int small_list_remember(const struct small_list *l, struct packing *p, double part,
-                        struct failure *failure);
+/* Frees what is made anew with the pairs, and leaves it; the list has none of it. */
+void small_list_empty(struct small_list *l);
+void small_list_forget(struct small_list *l);
 /* The first touch that is not before that of this body and wall */
 int64_t small_list_touch(const struct small_list *l, int64_t body, int32_t wall);
 /* [touches] in the order of contacts; NULL when memory is short. To be freed */
@@ -76,6 +60,9 @@ struct small_touch **small_list_touches(const struct small_list *l);
 /* From `from` on, the first pair that is not before that of this key; *found: it is that one */
 int64_t small_list_pair(const struct small_list *l, int64_t from, struct contact_key key,
                         bool *found);
+/* The same among the first `end` pairs */
+int64_t small_list_pair_before(const struct small_list *l, int64_t from, int64_t end,
+                               struct contact_key key, bool *found);
 /* The touch of this body and wall, or NULL */
 struct small_touch *small_list_find_touch(const struct small_list *l, int32_t body, int32_t wall);
 /* The bundle of a slot has a lane that pushes, or is held. */

@@ -7,6 +7,7 @@
 #include "step/small_error.h"
 #include "step/small_gain.h"
 #include "step/small_load.h"
+#include "step/small_mark.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_seam.h"
@@ -95,7 +96,7 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
         for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
         const vec3 way = v3_axpy(l->listed[i], l->since, l->drift[i]);
         const vec3 d = v3_sub(small_vec(s->place[i].x), way);
-        most = fmax(most, v3_dot(d, d));
+        most = dmax(most, v3_dot(d, d));
         r->turned[i] = v3_axpy(r->turned[i], r->h, small_vec(b->w));
     }
     pthread_mutex_lock(&r->lock);
@@ -212,50 +213,17 @@ static void fade_reactions(struct small_run *r, int me, int threads)
     if (!me) *warm += 1;
 }
 
-/* Takes what does not persist of the reaction of a slot out of v^-: v + (v - v^-) then has less of it. */
-static void settle_slot(struct small *s, int64_t slot)
+/* What does not persist is taken out of v^-. */
+static void settle_pairs(struct small_run *r, int me, int threads)
 {
-    const int64_t i = slot / BUNDLE;
-    const int k = (int)(slot % BUNDLE);
-    struct small_bundle *c = &s->bundle[i];
-    const int64_t a = body_index(c->a[k]), b = body_index(c->b[k]);
-    const vec3 f = v3(c->f[0][k], c->f[1][k], c->f[2][k]);
-    if (f.x == 0 && f.y == 0 && f.z == 0) return;
-    if (s->spring && s->spring[i].x[SPRING_KN][k] > 0 && !(s->spring[i].x[SPRING_BETA][k] > 0))
-        return;
-    const vec3 d = small_branch(s, slot);
-    const double length = v3_norm(d), half = 0.5 * (length - s->place[a].r - s->place[b].r);
-    const double rn = v3_dot(f, small_normal(d)), w = s->body[a].im + s->body[b].im;
-    const double held = c->kept[k] + (s->hold ? 2 * s->hold[i].x[HOLD_PULL][k] : 0);
-    const double most = small_persists(&s->rate, held, w, rn);
-    if (rn <= most) return;
-    const double left = most / rn, back = 1 - left;
-    vec3 m = v3(0, 0, 0), couple = v3(c->couple[0][k], c->couple[1][k], c->couple[2][k]);
-    couple = v3_scale(length > 0 ? back / length : 0, couple);
-    for (int j = 0; j < 3; j++) {
-        c->sum[j][k] += back * c->f[j][k];
-        c->f[j][k] *= left, c->couple[j][k] *= left;
+    struct small *s = &r->l->s;
+    for (int64_t g = 0; g < s->serial; g++) {
+        int64_t first, end;
+        small_share(s->group[g + 1] - s->group[g], me, threads, &first, &end);
+        r->kernel->settle(s, s->group[g] + first, s->group[g] + end);
+        team_meet();
     }
-    if (s->turn) {
-        struct small_turn *t = &s->turn[i];
-        m = v3(t->m[0][k], t->m[1][k], t->m[2][k]);
-        for (int j = 0; j < 3; j++) t->sum[j][k] += back * t->m[j][k], t->m[j][k] *= left;
-    }
-    small_body_push(&s->before[b], v3_scale(back, f),
-                    v3_axpy(v3_scale(back, m), -(s->place[b].r + half), couple));
-    small_body_push(&s->before[a], v3_scale(-back, f),
-                    v3_axpy(v3_scale(-back, m), -(s->place[a].r + half), couple));
-}
-
-static void settle_pairs(struct small *s)
-{
-    for (int64_t i = 0; i < s->bundles; i++) {
-        uint64_t late;
-        memcpy(&late, &s->late[BUNDLE * i], sizeof late);
-        if (!late) continue;
-        memset(&s->late[BUNDLE * i], 0, BUNDLE);
-        for (int k = 0; k < BUNDLE; k++) settle_slot(s, BUNDLE * i + k);
-    }
+    if (!me) r->kernel->settle(s, s->group[s->serial], s->bundles);
 }
 
 /* ---- a small step ---- */
@@ -290,6 +258,7 @@ static bool small_sweep_all(struct small_run *r, int me, int threads, bool again
     int64_t first, end;
     small_share(r->l->s.bodies, me, threads, &first, &end);
     team_meet();
+    if (!me && again && !r->l->s.mark) small_marks_make(&r->l->s);
     if (!me) r->l->s.sweep++, r->swept++, r->far = false;
     team_meet();
     sweep_touches(r, first, end, again);
@@ -299,6 +268,11 @@ static bool small_sweep_all(struct small_run *r, int me, int threads, bool again
         team_meet();
     }
     if (r->meets) small_points_sweep(r, me, threads, again);
+    if (again) {
+        if (r->meets) team_meet();
+        small_marks_begin(&r->l->s, first, end);
+        team_meet();
+    }
     sweep_pairs(r, me, threads, again);
     team_meet();
     return r->far;
@@ -364,7 +338,6 @@ static void finish_step(struct small_run *r)
     if (r->far && r->uneven) r->failed = r->stop = true;
     r->unsolved += r->far;
     if (r->swept > 1) memset(s->change, 0, (size_t)s->bodies * sizeof *s->change);
-    settle_pairs(s);
     r->sweeps += r->swept, r->swept = 0;
     r->begins = false, r->made++;
     r->p->step0--; // the step that packing_next_time() ends with is the next small one
@@ -416,6 +389,8 @@ void small_loop(void *arg, int me, int threads)
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
         if (r->loads.of && !me) small_loads_end(r);
+        if (r->meets || r->loads.of) team_meet();
+        settle_pairs(r, me, threads);
         if (!me) finish_step(r);
         team_meet();
         move_bodies(r, first, end);

@@ -126,7 +126,7 @@ double small_pull_presses(const struct packing *p)
         if (!(p->mass[i] > 0)) continue;
         mass += p->mass[i];
         force += v3_norm(small_pull_on(p, i, p->t + p->dt / 2, false));
-        for (int k = 0; k < 3; k++) lo[k] = fmin(lo[k], x[k]), hi[k] = fmax(hi[k], x[k]);
+        for (int k = 0; k < 3; k++) lo[k] = dmin(lo[k], x[k]), hi[k] = dmax(hi[k], x[k]);
     }
     for (int k = 0; k < 3; k++) wide = fmax(wide, hi[k] - lo[k]);
     if (!(mass > 0)) return 0;

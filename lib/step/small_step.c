@@ -17,6 +17,8 @@
 #include "step/small_give.h"
 #include "step/small_load.h"
 #include "step/small_loop.h"
+#include "step/small_make.h"
+#include "step/small_past.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_springs.h"
@@ -110,7 +112,7 @@ static double small_fastest(const struct packing *p)
 {
     double most = small_wall_speed(p);
     const struct small_flow flow = small_cell_flow(p);
-    for (int64_t i = 0; i < p->n; i++) most = fmax(most, small_body_speed(p, &flow, i));
+    for (int64_t i = 0; i < p->n; i++) most = dmax(most, small_body_speed(p, &flow, i));
     return most;
 }
 
@@ -122,7 +124,7 @@ static double small_hurry(const struct packing *p, double more)
     double most = (small_wall_speed(p) + more) / coarse;
     for (int64_t i = 0; i < p->n; i++) {
         const double size = fmin(small_size(p, i), coarse);
-        most = fmax(most, (small_body_speed(p, &flow, i) + more) / size);
+        most = dmax(most, (small_body_speed(p, &flow, i) + more) / size);
     }
     return most;
 }
@@ -136,8 +138,8 @@ static double small_heaviest(const struct packing *p)
     double least = INFINITY, most = 0;
     for (int64_t i = 0; i < p->n; i++) {
         const double wide = p->radius[i] / all.small;
-        if (p->mass[i] > 0) least = fmin(least, p->mass[i]);
-        if (p->mass[i] > 0) most = fmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
+        if (p->mass[i] > 0) least = dmin(least, p->mass[i]);
+        if (p->mass[i] > 0) most = dmax(most, p->mass[i] / (p->dim == 2 ? wide : wide * wide));
     }
     return most > 0 ? most / least : 0;
 }
@@ -154,7 +156,7 @@ static double small_steady(const struct packing *p)
     double lo = INFINITY, hi = -INFINITY, pressed = small_pull_presses(p) + small_tie_most(p);
     for (int64_t i = 0; i < p->n; i++) {
         const double z = v3_dot(p->g, p->x[i]);
-        if (p->mass[i] > 0) lo = fmin(lo, z), hi = fmax(hi, z);
+        if (p->mass[i] > 0) lo = dmin(lo, z), hi = dmax(hi, z);
     }
     if (g > 0 && hi >= lo)
         pressed += g * (fmax(1, CARRIES * small_heaviest(p)) + (hi - lo) / g / (2 * size.most));
@@ -170,7 +172,7 @@ static double small_carries(const struct packing *p)
         double w = p->mass[c->b] > 0 ? 1 / p->mass[c->b] : 0;
         if (p->law && pair_law_springs(&p->law[packing_pair(p, c->a, c->b)])) continue;
         if (c->a >= 0 && p->mass[c->a] > 0) w += 1 / p->mass[c->a];
-        most = fmax(most, w * v3_norm(c->r));
+        most = dmax(most, w * v3_norm(c->r));
     }
     return most / p->dt;
 }
@@ -211,13 +213,13 @@ static double small_near_speed(struct small_run *r)
     double most = 0;
     for (int64_t i = 0; i < l->pairs.n; i++) {
         const struct pair *pair = &l->pairs.pair[i];
-        most = fmax(most, v3_norm(v3_sub(l->drift[pair->b], l->drift[pair->a])));
+        most = dmax(most, v3_norm(v3_sub(l->drift[pair->b], l->drift[pair->a])));
     }
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
         if (!small_look_at_touch(r, t, INFINITY)) continue;
         const double more = r->wall[t->wall].top - v3_norm(t->v); // it may begin to move
-        most = fmax(most, v3_norm(v3_sub(r->p->v[t->body], t->v)) + fmax(0, more));
+        most = dmax(most, v3_norm(v3_sub(r->p->v[t->body], t->v)) + dmax(0, more));
     }
     return most;
 }
@@ -249,11 +251,11 @@ static void small_set_rates(struct small_run *r)
     r->free = 0, r->weight = 0;
     for (int64_t i = 0; i < p->n; i++) {
         r->free += p->mass[i] > 0, r->weight += p->mass[i] * r->fall;
-        heaviest = fmax(heaviest, p->mass[i]);
-        if (p->mass[i] > 0) lightest = fmin(lightest, p->mass[i]);
+        heaviest = dmax(heaviest, p->mass[i]);
+        if (p->mass[i] > 0) lightest = dmin(lightest, p->mass[i]);
     }
     for (int32_t w = 0; w < p->walls; w++)
-        if (p->wall[w].load.way == LOAD_GLIDES) heaviest = fmax(heaviest, p->wall[w].load.mass);
+        if (p->wall[w].load.way == LOAD_GLIDES) heaviest = dmax(heaviest, p->wall[w].load.mass);
     r->uneven = heaviest > UNEVEN * lightest;
     const double fastest = small_fastest(p) + fall;
     const double change =
@@ -471,9 +473,12 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
 {
     const double cpu = report_seconds(CLOCK_CPU), elapsed = report_seconds(CLOCK_WALL);
     const struct packing whole = *p;
-    const int64_t count = small_count(p, o->overlap);
     *made = false;
     if (packing_check_clock(p, failure)) return failure->status;
+    const struct whole sizes = packing_whole(p); // radii, which are asked for many times
+    if (!p->whole) p->whole = &sizes;
+    const int64_t count = small_count(p, o->overlap);
+    p->whole = whole.whole;
     if (!count) return 0;
     const size_t n = (size_t)p->n + 1;
     packing_wrap(p, NULL);
@@ -487,6 +492,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     r.x = calloc(n, sizeof *r.x), r.v = calloc(n, sizeof *r.v);
     r.turned = calloc(n, sizeof *r.turned);
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
+    if (!p->whole) p->whole = &sizes;
     r.meets = small_has_shapes(p) || p->mesh.elements, r.thin = small_sizes(p).least;
     r.bonds = r.meets && packing_adheres(p);
     small_cell_init(&r);
@@ -495,7 +501,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     else if (!neighbours_surfaces(o->near, p, failure) && !small_pull_init(&r, failure) &&
              !small_sums_init(&r, failure) && !small_loads_init(&r, failure))
         small_steps(&r, o, rep, failure);
-    p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0;
+    p->dt = whole.dt, p->t0 = whole.t0, p->step0 = whole.step0, p->whole = whole.whole;
     r.failed = r.failed || (!failure->status && !small_is_finite(&r));
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);

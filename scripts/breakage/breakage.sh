@@ -57,7 +57,7 @@ oedometer() {
     : >"$folder/oedometer-grading.tsv"
     for seed in 1 2; do
         jq --argjson seed $seed '.seed = $seed' "$here/oedometer.json" | nsd-gen - >"$start"
-        mass=$(nsd-info -p "$start" | jq -s 'map(.mass // 0) | add')
+        mass=$(nsd-info -b "$start" | jq -s 'map(.mass // 0) | add')
         step --small-steps 0.02 --until 0.45 --every 0.05s "$start" >"$document"
         { nsd-info -w --only lid "$document" && nsd-stat -m breakage "$document"; } |
             jq -rs --argjson seed $seed --argjson mass "$mass" 'map(select(.wall)) as $lid | map(select(.breakage)) as $grains |

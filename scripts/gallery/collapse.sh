@@ -21,7 +21,7 @@ collapse()
         nsd-gen - | start column.h5 --until "$gate" --every 1s
     # the document has its gate, which vanishes at its next step
     step "run-$1-$2.h5" --until "$end" --every "$(jq -n "$end / 8")s" <"$out/column.h5"
-    echo "$2 $(nsd-info --last -p "$out/column.h5" | jq -s --argjson w "$width" 'map(.x[1]) | 2 * add / length / $w') $(front "run-$1-$2.h5" "$d")" |
+    echo "$2 $(nsd-info --last -b "$out/column.h5" | jq -s --argjson w "$width" 'map(.position[1]) | 2 * add / length / $w') $(front "run-$1-$2.h5" "$d")" |
         awk -v w="$width" '{ print $1, $2, ($3 - w) / w }'
 }
 

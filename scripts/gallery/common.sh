@@ -49,6 +49,12 @@ start()
     nsd-step "$@" -o "$file" 2>"${file%.h5}.log" || { cat "${file%.h5}.log" >&2; return 1; }
 }
 
+# soft: dem or liggghts, the entry of the table that has the parameters of the independent code: dem.c, or LIGGGHTS for tubes.
+# An experiment that has both chooses for a part of it.
+soft=$(jq -r 'if .reference.dem? or (.reference.liggghts? | not) then "dem" else "liggghts" end' "$P/$name.json")
+# settings PREFIX: these parameters, PREFIX before each
+settings() { jq -r --arg before "$1" --arg soft "$soft" '.reference[$soft] | to_entries | map("\($before)\(.key)=\(.value)") | join(" ")' "$P/$name.json"; }
+
 # step FILE.h5 [arguments of nsd-step]: the same by the code of the experiment, and account.tsv gets a row: the deepest overlap
 # in radii, steps that did not converge, steps
 step()
@@ -61,8 +67,8 @@ step()
         return
     fi
     shift
-    read -ra arguments <<<"$(jq -r '.reference.set // {} | to_entries | map("--set \(.key)=\(.value)") | join(" ")' "$P/$name.json")"
-    "$P/../../bench/reference/run.py" -o "$file" "${arguments[@]}" "$@" 2>"$log" || { cat "$log" >&2; return 1; }
+    read -ra arguments <<<"$(settings '--set ')"
+    "$P/../../bench/reference/$(if [ "$soft" = dem ]; then echo run.py; else echo run_liggghts.py; fi)" -o "$file" "${arguments[@]}" "$@" 2>"$log" || { cat "$log" >&2; return 1; }
     sed -n 's/.*ov\/r //p; s/^steps \([0-9]*\).*/steps \1/p' "$log" | awk '/^steps/ { n = $2; next } $1 > max { max = $1 } END { print max + 0, 0, n }' >>"$out/account.tsv"
 }
 
@@ -72,19 +78,22 @@ stresses()
     if by reference; then cat "$out/$1.rows"; else nsd-stat -m stress,fraction,coordination "$out/$1"; fi
 }
 
+# events FILE.h5: the lines of nsd-info --events; of LIGGGHTS those that run_liggghts.py has made
+events() { if by reference; then cat "$out/$1.events"; else nsd-info --events "$out/$1"; fi; }
+
 # on FILE.json FILE.h5 [jq's arguments]: a scene that goes on from the trajectory, as a filter changes it
 on() { nsd-info --scene "$out/$1" | jq "${@:2}" >"$out/on.json"; nsd-gen "$out/on.json"; }
 
 # inside RADIUS: a table of the balls of what comes in that lie inside a cylinder about the z axis
 inside()
 {
-    nsd-info -p | jq -r --argjson r "$1" 'select((.x[0] * .x[0] + .x[1] * .x[1] | sqrt) + .radius < $r) | [.x[], .radius] | map(tostring) | join(" ")'
+    nsd-info -b | jq -r --argjson r "$1" 'select((.position[0] * .position[0] + .position[1] * .position[1] | sqrt) + .radius < $r) | [.position[], .radius] | map(tostring) | join(" ")'
 }
 
 # front FILE.h5 D: the right-most point of the largest group of discs between which no gap is wider than 0.05 D
 front()
 {
-    nsd-info --last -p "$out/$1" | jq -r '"\(.x[0]) \(.x[1]) \(.radius)"' | awk -v d="$2" '
+    nsd-info --last -b "$out/$1" | jq -r '"\(.position[0]) \(.position[1]) \(.radius)"' | awk -v d="$2" '
         function root(i) { while (up[i] != i) i = up[i] = up[up[i]]; return i }
         { x[NR] = $1; y[NR] = $2; r[NR] = $3; up[NR] = NR; c = int($1 / d / 1.3) " " int($2 / d / 1.3); cell[c] = cell[c] " " NR }
         END {
@@ -123,7 +132,7 @@ results()
     local cpu
     cpu=$(awk '{ print ($14 + $15 + $16 + $17) / 100 }' "/proc/$$/stat")
     [ -f "$out/account.tsv" ] || : >"$out/account.tsv"
-    jq -s -L "$P" --arg name "$name" --arg code "$CODE" --arg part "${PART:-}" --argjson quick "$(pick true false)" --argjson cpu "$cpu" --arg options "$(if by nsd; then echo "${options[*]}"; else jq -r '.reference.set | to_entries | map("\(.key)=\(.value)") | join(" ")' "$P/$name.json"; fi)" \
+    jq -s -L "$P" --arg name "$name" --arg code "$CODE" --arg part "${PART:-}" --argjson quick "$(pick true false)" --argjson cpu "$cpu" --arg options "$(if by nsd; then echo "${options[*]}"; else echo "$(settings '')$([ "$soft" = dem ] || echo ", LIGGGHTS")"; fi)" \
         --argjson table "$(jq .rows "$P/$name.json")" --rawfile account "$out/account.tsv" '
         include "rows"; (($table | map(.key)) - map(.key)) as $lacks | ((map(.key)) - ($table | map(.key))) as $more |
         if $more != [] then error("no row of the table: " + ($more | join(", ")))

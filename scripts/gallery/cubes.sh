@@ -10,7 +10,7 @@ count=$(pick 40 200) end=$(pick 15 20)
 # one of these axes; 1 if all cubes are turned alike, 0 on the whole if they are turned at random
 order()
 {
-    nsd-info -l -p "$1" | jq -s 'map(.q as [$w, $x, $y, $z] |
+    nsd-info -l -b "$1" | jq -s 'map(.orientation as [$w, $x, $y, $z] |
             [1 - 2 * ($y * $y + $z * $z), 2 * ($x * $y + $w * $z), 2 * ($x * $z - $w * $y)],
             [2 * ($x * $y - $w * $z), 1 - 2 * ($x * $x + $z * $z), 2 * ($y * $z + $w * $x)],
             [2 * ($x * $z + $w * $y), 2 * ($y * $z - $w * $x), 1 - 2 * ($x * $x + $y * $y)]) as $axes |

@@ -20,7 +20,7 @@ pile()
 under()
 {
     nsd-info --last -c "$out/$1" | jq -c 'select(.r[0] > 0) | [.wall, .point[0], .r[0], .n[0], .n[1]]' >"$out/contacts.json"
-    nsd-info --last -p "$out/$1" | jq -c '[.x[0], .x[1], .mass]' >"$out/grains.json"
+    nsd-info --last -b "$out/$1" | jq -c '[.position[0], .position[1], .mass]' >"$out/grains.json"
     jq -nc --slurpfile c "$out/contacts.json" --slurpfile g "$out/grains.json" --argjson h "$half" --argjson dt 5e-4 --arg kind "$2" --argjson seed "$3" '
         ($g | map(.[1]) | sort | .[-3]) as $top | ($c | map(select(.[0] == null))) as $inner |
         {kind: $kind, seed: $seed, floor: ($c | map(select(.[0] != null) | [.[1] / $h, .[2] / $dt])), weight: ($g | map(.[2] * 9.81) | add), height: $top, grains: ($g | length),

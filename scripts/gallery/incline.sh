@@ -13,9 +13,9 @@ layer()
         .bodies[1] |= (.count = ($w * $h | round) | .box.x = [0, $w])' | nsd-gen - | step "$1" "${@:6}"
 }
 # of the last third of the frames: height of the layer above the tops of the bed, from that of its centre of mass, and mean speed
-flows() { nsd-info -p "$out/$1" | jq -s 'map(select(.mass > 0)) | (map(.step) | max * 2 / 3) as $from | map(select(.step > $from)) |
-    "\(2 * ((map(.x[1]) | add / length) - 1)) \(map(.v[0]) | add / length)"' -r; }
-moves() { nsd-info --last -p "$out/$1" | jq -s 'map(select(.mass > 0) | .v[0] | fabs) | add / length > 2e-3'; }
+flows() { nsd-info -b "$out/$1" | jq -s 'map(select(.mass > 0)) | (map(.step) | max * 2 / 3) as $from | map(select(.step > $from)) |
+    "\(2 * ((map(.position[1]) | add / length) - 1)) \(map(.velocity[0]) | add / length)"' -r; }
+moves() { nsd-info --last -b "$out/$1" | jq -s 'map(select(.mass > 0) | .velocity[0] | fabs) | add / length > 2e-3'; }
 
 # A layer that flows is lowered by half a degree at a time until nothing moves: height, degrees to start from, width
 stops=$(pick '3:26:24 7:22:15' '4:27:30 6:25:24 9:23:18 13:21:18 18:20:18 35:18:18')
@@ -49,7 +49,7 @@ echo "height speed seed" >"$out/flow.tsv"
         echo "$(flows "flow-$h-$s.h5") $s" >>"$out/flow.tsv"
     done
     # of the thickest: mean speed by height, where the layer is as dense as inside
-    nsd-info -p "$out/flow-$h-$s.h5" | jq -rs 'map(select(.mass > 0) | [.step, .x[1], .v[0]]) | (map(.[0]) | max * 2 / 3) as $from |
+    nsd-info -b "$out/flow-$h-$s.h5" | jq -rs 'map(select(.mass > 0) | [.step, .position[1], .velocity[0]]) | (map(.[0]) | max * 2 / 3) as $from |
         map(select(.[0] > $from)) | group_by(.[1] | floor) | map([(map(.[1]) | add / length) - 1, (map(.[2]) | add / length), length]) |
         (map(.[2]) | max) as $most | .[] | select(.[2] > $most / 2) | @tsv' >"$out/profile-$s.tsv"
 done

@@ -21,8 +21,12 @@ tube()
 # the weight W above it less the force S of the wall above it. Janssen: S = integral of F / lambda, lambda = R / (2 mu K).
 layers()
 {
-    nsd-info -c --only 0,1 "$out/$1" | jq -c '[.step, .wall, .point[2], .r[0], (.r[0] * .n[2] + .r[1] * .t1[2] + .r[2] * .t2[2])]' >"$out/wall.json"
-    nsd-info --last -p "$out/$1" | jq -c '[.x[2], .mass * 9.81]' >"$out/grains.json"
+    if by reference; then
+        jq -c --argjson from "$(jq -n "($still + $sink - 0.0481) / 4e-4")" 'select(.[0] > $from)' "$out/$1.wall"
+    else
+        nsd-info -c --only 0,1 "$out/$1" | jq -c '[.step, .wall, .point[2], .r[0], (.r[0] * .n[2] + .r[1] * .t1[2] + .r[2] * .t2[2])]'
+    fi >"$out/wall.json"
+    nsd-info --last -b "$out/$1" | jq -c '[.position[2], .mass * 9.81]' >"$out/grains.json"
     with '4e-4 as $dt | ($wall | map(.[0]) | unique | length * $dt) as $time |
         ($grains | map(.[0]) | max) as $top | ($grains | map(.[0]) | min) as $floor | ($top - $floor) as $height | ($grains | map(.[1]) | add) as $weight |
         def share($k; $n): ($top - .[$k]) / $height * $n | floor;
@@ -47,10 +51,15 @@ layers()
 for seed in "${seeds[@]}"; do
     tube "$seed"
     for mu in "${frictions[@]}"; do
+        # the independent code forgets its tangential springs between runs, and sinks the floor in one
         on "fill-$seed.h5" --argjson mu "$mu" --argjson t "$still" --argjson d "$sink" '.dt = 4e-4 | .walls[0].cylinder.length = 0.125 | .pairs = [{pair: ["ball", "wall"], mu: $mu}] |
             .walls[1].drives = [{along: [0, 0, -1], speed: 0.01, from: $t, until: ($t + $d + 1)}]' |
-            step "sunk.h5" --until "$(jq -n "$still + $sink - 0.05")" --every 1s
-        nsd-step -n 120 --every 12 --forces -o "$out/sunk-$mu-$seed.h5" "$out/sunk.h5" 2>"$out/sunk-$mu-$seed.log"
+            if by reference; then
+                step "sunk-$mu-$seed.h5" --until "$(jq -n "$still + $sink - 0.0032")" --every 0.0048s
+            else
+                step sunk.h5 --until "$(jq -n "$still + $sink - 0.05")" --every 1s
+                nsd-step -n 120 --every 12 --forces -o "$out/sunk-$mu-$seed.h5" "$out/sunk.h5" 2>"$out/sunk-$mu-$seed.log"
+            fi
         layers "sunk-$mu-$seed.h5" "$mu"
     done
 done >"$out/runs.json"

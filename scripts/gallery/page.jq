@@ -18,7 +18,7 @@ def hours($all): [$all[].runs[]?.cpu // empty] | add // 0 | . / 3600 | digits(2)
 "# The gallery", "",
 "Experiments of granular physics, each a script of nsd\u0027s tools, jq and gnuplot. Each row below compares a value of nsd with a published one and, where it can be run, with" +
 " an independent code: `bench/reference/dem.c`, soft discs and balls with springs, dashpots and tangential memory, explicit in time, with overlaps of 1e-4 to 1e-2 diameters," +
-" from the same starts and by the same measures. Values are means over the seeds with their standard errors.", "",
+" from the same starts and by the same measures; balls in tubes by LIGGGHTS with Hertz\u0027s contacts. Values are means over the seeds with their standard errors.", "",
 "- A value **differs** where it lies outside the published range by more than two of its own standard errors. The codes differ where their values are apart by more than two standard errors of the difference.",
 "- A range from a source whose text was not read is a *remark*: it judges nothing. Identities of momentum and rows with one bound judge nothing either.",
 "- *Not yet run*: the set-up has changed since the last run; the value in brackets is that of the set-up before.", "",

@@ -27,7 +27,7 @@ heap()
 # the line (root mean square) it is none
 slope()
 {
-    nsd-info --last -p "$out/$1" | with 'map(select(.mass > 0) | [.x[0], .x[1] + .radius]) | (map(.[1]) | max) as $top |
+    nsd-info --last -b "$out/$1" | with 'map(select(.mass > 0) | [.position[0], .position[1] + .radius]) | (map(.[1]) | max) as $top |
         group_by(.[0] / 0.004 | floor) | map([(map(.[0]) | add / length), (map(.[1]) | max)]) | . as $strips |
         [1, -1] | map(. as $side | $strips | map([.[0] * $side, .[1]]) | sort_by(-.[0]) | map(.[1]) as $h |
             ([range(0; $h | length) | select($h[.] >= 0.8 * $top)][0]) as $up | .[:$up + 1] | map(select(.[1] > 0.2 * $top)) |

@@ -12,13 +12,13 @@ until=$(pick 0.2 0.22)  # s after that: the end of the window
 # density FILE.h5: kg/m^3, by the centres of balls more than 3 diameters from floor, wall and surface
 density()
 {
-    nsd-info --last -p "$out/$1" | jq -s --argjson r "$radius" '(map(.x[2]) | sort | .[length * 0.99 | floor]) as $top | ($r - 0.007) as $in |
-        map(select(.x[2] > 0.007 and .x[2] < $top - 0.006 and (.x[0] * .x[0] + .x[1] * .x[1] | sqrt) < $in) | .mass) | add / (3.141592653589793 * $in * $in * ($top - 0.013))'
+    nsd-info --last -b "$out/$1" | jq -s --argjson r "$radius" '(map(.position[2]) | sort | .[length * 0.99 | floor]) as $top | ($r - 0.007) as $in |
+        map(select(.position[2] > 0.007 and .position[2] < $top - 0.006 and (.position[0] * .position[0] + .position[1] * .position[1] | sqrt) < $in) | .mass) | add / (3.141592653589793 * $in * $in * ($top - 0.013))'
 }
 # flow FILE.h5 WIDTH SEED: kg/s in the window, and in both halves of it
 flow()
 {
-    nsd-info --events "$out/$1" | jq -rs --argjson width "$2" --argjson rho "$(density "fill-$3.h5")" --argjson t0 "$still" --argjson t1 "$begin" --argjson t2 "$until" '
+    events "$1" | jq -rs --argjson width "$2" --argjson rho "$(density "fill-$3.h5")" --argjson t0 "$still" --argjson t1 "$begin" --argjson t2 "$until" '
         map(select(.event == "removed") | [.time - $t0, .mass]) |
         def rate($a; $b): map(select(.[0] > $a and .[0] <= $b) | .[1]) | add / ($b - $a);
         [$width, $rho, rate($t1; $t2), rate($t1; ($t1 + $t2) / 2), rate(($t1 + $t2) / 2; $t2)] | @tsv'

@@ -14,7 +14,7 @@ for seed in "${seeds[@]}"; do
             .walls[0].drives[0].amplitude = $gamma * 9.81 / (40 * 3.141592653589793 | . * .)' |
             nsd-gen - | step fall.h5 --until "$(jq -n "0.3 + $periods / 40")" --every 1s
         nsd-step --until "$(jq -n "0.3 + $periods / 20")" --contacts -o "$out/bed.h5" "$out/fall.h5" 2>"$out/bed.log"
-        mass=$(nsd-info -p --last "$out/bed.h5" | jq -s 'map(.mass) | add')
+        mass=$(nsd-info -b --last "$out/bed.h5" | jq -s 'map(.mass) | add')
         nsd-stat -m walls "$out/bed.h5" |
             with '
             # of a ball that does not bounce: the phase from its leaving to its landing, over 2 pi

@@ -17,8 +17,8 @@ for seed in "${seeds[@]}"; do
             nsd-gen - | start column.h5 --until "$gate" --every 1s
         # the document has its gate, which vanishes at its next step
         step "run-$b-$seed.h5" --until 1.8 --every 0.5s <"$out/column.h5"
-        { nsd-info --last -p "$out/column.h5"; nsd-info --last -p "$out/run-$b-$seed.h5"; } |
-            jq -rs --argjson w "$width" --arg b "$b" --argjson front "$(front "run-$b-$seed.h5" 0.01)" 'group_by(.step) | map(map(.x[1] + .radius) | max) as $top |
+        { nsd-info --last -b "$out/column.h5"; nsd-info --last -b "$out/run-$b-$seed.h5"; } |
+            jq -rs --argjson w "$width" --arg b "$b" --argjson front "$(front "run-$b-$seed.h5" 0.01)" 'group_by(.step) | map(map(.position[1] + .radius) | max) as $top |
                 "\($b) \(($front - $w) / $w) \($top[1] / $top[0])"'
     done
 done >"$out/runout.tsv"

@@ -23,8 +23,8 @@ for s in "${seeds[@]}"; do
             map(select(.spread < 0.15 * $r) | .angle | fabs) | if length > $n / 2 then add / length else null end')
         # the surface: the highest disc of each strip two discs wide, turned by the mean angle; how far it is from its
         # line, in diameters, as a mean over the last half of the frames
-        rough=$(nsd-info -p "$out/drum-$b.h5" | with '(($a // 0) * 3.141592653589793 / 180) as $a |
-            (map(.step) | max / 2) as $half | map(select(.step > $half) | [.step, .x[0] * ($a | cos) + .x[1] * ($a | sin), -.x[0] * ($a | sin) + .x[1] * ($a | cos)]) |
+        rough=$(nsd-info -b "$out/drum-$b.h5" | with '(($a // 0) * 3.141592653589793 / 180) as $a |
+            (map(.step) | max / 2) as $half | map(select(.step > $half) | [.step, .position[0] * ($a | cos) + .position[1] * ($a | sin), -.position[0] * ($a | sin) + .position[1] * ($a | cos)]) |
             map(select(.[1] > -0.6 * $r and .[1] < 0.6 * $r)) | group_by(.[0]) |
             map(group_by(.[1] / 0.006 | floor) | map([(map(.[1]) | mean), (map(.[2]) | max)]) |
                 line as $l | (map(.[1] - $l.a - $l.b * .[0] | . * .) | mean | sqrt) / 0.003) | mean' -s --argjson a "$a" --argjson r "$radius")

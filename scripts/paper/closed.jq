@@ -1,5 +1,5 @@
 # Example 1 against its closed solution: sliding v = v0 - mu g t until the ball rolls, then v = c v0,
-# c = 5/7 of a ball, 2/3 of a disc. Lines of nsd-info --particles (errors of x and v), then of
+# c = 5/7 of a ball, 2/3 of a disc. Lines of nsd-info --bodies (errors of x and v), then of
 # nsd-info --contacts of another run, every step (when rolling begins). --arg scene, method;
 # --argjson dt.
 
@@ -16,8 +16,8 @@ reduce inputs as $l ({ x: 0, v: 0, since: {} };
     if $l.status == null then
         $l.id as $k | ($l.step * $dt) as $t
         | (if $scene == "example1" then 0 else 0.5 * $k end) as $from
-        | .x = greatest(.x; $l.x[0] - $from - x($k; $t) | fabs)
-        | .v = greatest(.v; $l.v[0] - v($k; $t) | fabs)
+        | .x = greatest(.x; $l.position[0] - $from - x($k; $t) | fabs)
+        | .v = greatest(.v; $l.velocity[0] - v($k; $t) | fabs)
     elif $l.status == "stick" and .since["\($l.body[1])"] == null then
         .since["\($l.body[1])"] = $l.step * $dt - rolls($l.body[1])
     else . end)

@@ -3,5 +3,5 @@
 include "stats";
 
 [ $scene, $picture, .[0].step, .[0].time, .[0].max_speed,
-  (.[1:] | map(.v | map(. * .) | add | sqrt) | median) ]
+  (.[1:] | map(.velocity | map(. * .) | add | sqrt) | median) ]
 | @tsv

@@ -67,7 +67,7 @@ is "bash: an option" "$(complete nsd-step --loca)" --local
 is "bash: its words" "$(complete nsd-step --local e)" "ebp eal exact"
 is "bash: of a letter" "$(complete nsd-solve -m sb)" sbp
 is "bash: behind =" "$(complete nsd-export --to = l)" lammps
-is "bash: = itself" "$(complete nsd-export --part =)" "grains contacts boundary cell surfaces"
+is "bash: = itself" "$(complete nsd-export --part =)" "grains contacts walls cell surfaces"
 is "bash: files are the shell's" "$(complete nsd-info out)" ""
 lacking() # options in --help that completion does not know
 {

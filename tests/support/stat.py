@@ -102,7 +102,7 @@ def balances(document, of=""):
     q = h5py.File(document)["nsd/solver"]
     for k, s in enumerate(stat("-m", "energy", document)):
         if of == "walls":
-            close(s["energy"]["boundaries"], q["work_drives/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
+            close(s["energy"]["walls"], q["work_drives/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
         close(s["energy"]["dissipated"], q["dissipation/value"][k], 1e-6, abs(q["kinetic_energy/value"][k]))
         if of != "edges":  # these have an energy of their own
             close(s["energy"]["kinetic"] + s["energy"]["rotation"], q["kinetic_energy/value"][k], 1e-9)

@@ -147,7 +147,7 @@ jq -c '.walls[0].segment = [[0.15, 0], [0.15, 0.3]] | .bodies[0].radius = 0.05 |
     .pour = [{ count: 5, rate: 1000, radius: 0.1, opening: { box: { x: [0.6, 0.9], y: [0.5, 0.9] } } }]' "$tmp/post.json" | nsd-gen - >"$tmp/poured.h5"
 refuses 65 'and one that larger bodies would, which an inlet brings' nsd-step -n 5 -o "$tmp/out.h5" "$tmp/poured.h5"
 nsd-gen "$tmp/post.json" >"$tmp/post.h5"
-status 69 'also by a program in the loop' nsd-step --with "jq -c --unbuffered '{boundaries: {\"0\": {velocity: [1, 0]}}}'" -n 3 -o "$tmp/moved.h5" "$tmp/post.h5"
+status 69 'also by a program in the loop' nsd-step --with "jq -c --unbuffered '{walls: {\"0\": {velocity: [1, 0]}}}'" -n 3 -o "$tmp/moved.h5" "$tmp/post.h5"
 jq -c '.walls = [{ mesh: { file: "tri.obj" } }] | .dim = 3 | .gravity = [0, 0, 0] | .cell = { lengths: [1, 1, 1], repeats: [true, false, false] } |
     .bodies[0] += { x: [0.8, 0.1, 0.1], v: [1, 0, 0] }' "$tmp/post.json" >"$tmp/mesh.json"
 printf 'v 0.5 -1 -1\nv 0.5 2 -1\nv 0.5 0 2\nf 1 2 3\n' >"$tmp/tri.obj"

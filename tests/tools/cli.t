@@ -95,8 +95,11 @@ ok "nsd-export --part boundary is --part walls" cmp <(nsd-export -t csv -p bound
 is "nsd-view --surface rub is sliding_work" "$(nsd-view --surface rub "$tmp/heap.h5" 2>&1 >/dev/null)" "$(nsd-view --surface sliding_work "$tmp/heap.h5" 2>&1 >/dev/null)"
 is "which --help has, not the former words" "$(for t in view export; do "nsd-$t" --help; done | grep -cwE 'rub|boundary|boundaries')" 0
 ok "nsd-step --sums is --wall-loads" cmp <(step -n 2 --sums "$tmp/heap.h5") <(step -n 2 --wall-loads "$tmp/heap.h5")
-walls() { nsd-step -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" "$1" all "$tmp/heap.h5" >/dev/null 2>&1 && cat "$tmp/told"; }
-ok "--with-boundaries is --with-walls" cmp <(walls --with-boundaries) <(walls --with-walls)
+walls() { nsd-step -n 1 --with "tee $tmp/told$1 | jq -c --unbuffered '{}'" "$1" all "$tmp/heap.h5" >/dev/null 2>&1 && cat "$tmp/told$1"; }
+ok "--with-boundaries is --with-walls, with the former keys" cmp <(walls --with-boundaries | jq -c '.walls = .boundaries | .walls[] |= (.wall = .boundary | del(.boundary)) | del(.boundaries)' | jq -cS) <(walls --with-walls | jq -cS)
+is "of which a program reads some" "$(walls --with-boundaries | jq '.boundaries | length > 0')" true
+ok "nsd-info -p is -b with the former keys" cmp <(nsd-info -p "$tmp/heap.h5" | jq -c '[.id, .radius, .mass, .x, .v, .w, .q]') <(nsd-info -b "$tmp/heap.h5" | jq -c '[.id, .radius, .mass, .position, .velocity, .angular_velocity, .orientation]')
+is "and -b has no others" "$(nsd-info -b "$tmp/heap.h5" | head -1 | jq -c 'keys_unsorted')" '["step","id","material","radius","mass","position","velocity","angular_velocity","orientation"]'
 is "neither is in --help" "$(nsd-step --help | grep -c -e '--sums' -e '--with-boundaries')" 0
 refuses 64 "the beginning of several options" nsd-step --max 3
 like "names them" "$(head -1 "$tmp/err")" ': --max: .*: --max-sweeps, --max-seconds$'

@@ -35,9 +35,9 @@ nsd-step -n $n pour.h5 2>/dev/null >whole.h5
     ok "the numbers are those of coming, from 0" \
         jq -s -e 'map(select(.event == "poured").id) | . == [range(length)]' events
     ok "removed bodies are beyond the edge, by less than a step's way" \
-        jq -s -e 'map(select(.event == "removed")) | all(([.x[0], .x[1]] | map(fabs) | max) as $far | $far > 4e-3 and $far < 4.2e-3)' events
+        jq -s -e 'map(select(.event == "removed")) | all(([.position[0], .position[1]] | map(fabs) | max) as $far | $far > 4e-3 and $far < 4.2e-3)' events
     ok "poured bodies begin in the opening" \
-        jq -s -e 'map(select(.event == "poured")) | all(.x[2] == 8e-3 and .x[0] * .x[0] + .x[1] * .x[1] <= 9.0000001e-6 and .v == [0, 0, -0.5])' events
+        jq -s -e 'map(select(.event == "poured")) | all(.position[2] == 8e-3 and .position[0] * .position[0] + .position[1] * .position[1] <= 9.0000001e-6 and .velocity == [0, 0, -0.5])' events
     ok "their sizes are those asked for, as often small as large" \
         jq -s -e 'map(select(.event == "poured").radius) | all(. >= 2.5e-4 and . <= 5e-4) and ((add / length) / 3.75e-4 - 1 | fabs < 0.03)' events
     ok "no two bodies overlap by more than a run leaves, for they come where there is room" \

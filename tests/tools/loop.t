@@ -26,7 +26,7 @@ m=$(number -p "$tmp/ball.h5" | jq -s '.[0].mass')
 ok "a force: v = F t/m" near "$(number -p "$tmp/forces.h5" | jq -s '.[0].v[0]')" "$(jq -n "0.1 / $m")"
 ok "a torque: w = T t/(2/5 m r^2)" near "$(number -p "$tmp/forces.h5" | jq -s '.[1].w[2]')" "$(jq -n "0.01 * 0.1 / (0.4 * $m * 0.01)")"
 is "and nothing on the other" "$(number -p "$tmp/forces.h5" | jq -sc '[.[1].v, .[0].w]')" '[[0,0,0],[0,0,0]]'
-quiet -n 100 --with "$(answering '{"boundaries":{"0":{"force":3},"1":{"velocity":[0,0,-2]}},"gravity":[0,0,-4]}')" "$tmp/ball.h5" >"$tmp/walls.h5"
+quiet -n 100 --with "$(answering '{"walls":{"0":{"force":3},"1":{"velocity":[0,0,-2]}},"gravity":[0,0,-4]}')" "$tmp/ball.h5" >"$tmp/walls.h5"
 place() { /usr/bin/python3 -c 'import h5py, sys; f = h5py.File(sys.argv[1]); print(f["particles/boundary/" + sys.argv[2] + "/value"][-1, int(sys.argv[3]), 2])' "$@"; }
 if /usr/bin/python3 -c 'import h5py' 2>/dev/null; then
     ok "a force on a boundary with a load: v = F t/m" near "$(place "$tmp/walls.h5" velocity 0)" 0.15
@@ -36,10 +36,12 @@ else
 fi
 spins='{ "dt": 1e-3, "bodies": [], "walls": [{ "disc": { "center": [0, 0, 0], "normal": [0, 0, 1], "radius": 0.1 }, "drives": [{ "about": [0, 0, 0], "axis": [0, 0, 1], "speed": 3 }] }] }'
 echo "$spins" | nsd-gen - >"$tmp/spins.h5"
-quiet -n 100 --with "$(answering '{"boundaries":{"0":{"velocity":[0,0,2]}}}')" "$tmp/spins.h5" >"$tmp/screw.h5"
+quiet -n 100 --with "$(answering '{"walls":{"0":{"velocity":[0,0,2]}}}')" "$tmp/spins.h5" >"$tmp/screw.h5"
 is "a boundary that rotates glides along its axis, as a screw" \
     "$(nsd-info -w --last "$tmp/screw.h5" | jq -c '[(.point[2] * 1e6 | round / 1e6), .velocity[2], .spin[2]]')" '[0.2,2,3]'
-status 69 "and not across it" nsd-step -n 2 --with "$(answering '{"boundaries":{"0":{"velocity":[1,0,0]}}}')" -o "$tmp/across.h5" "$tmp/spins.h5"
+is "walls under their former name, as programs of version 1 answer" "$(quiet -n 100 --with "$(answering '{"boundaries":{"0":{"velocity":[0,0,2]}}}')" "$tmp/spins.h5" | nsd-info --last -w)" \
+    "$(nsd-info --last -w "$tmp/screw.h5")"
+status 69 "and not across it" nsd-step -n 2 --with "$(answering '{"walls":{"0":{"velocity":[1,0,0]}}}')" -o "$tmp/across.h5" "$tmp/spins.h5"
 ok "gravity: v = g t" near "$(number -p "$tmp/walls.h5" | jq -s '.[0].v[2]')" -0.4
 quiet -n 3 --with 'read -r l; echo "{\"velocities\":{\"1\":[0,2,0]},\"angular_velocities\":{\"1\":[0,0,3]}}"; while read -r l; do echo "{}"; done' "$tmp/ball.h5" >"$tmp/moved.h5"
 is "velocities of bodies" "$(number -p "$tmp/moved.h5" | jq -sc '[.[1].v, .[1].w, .[0].v]')" '[[0,2,0],[0,0,3],[0,0,0]]'
@@ -53,16 +55,16 @@ is "forces of all bodies in their order" "$(number -p "$tmp/all.h5" | jq -sc '.[
 tell() { quiet "$@" --with "tee -a $tmp/told | jq -c --unbuffered '{}'" "$tmp/ball.h5" >"$tmp/plain.h5"; }
 tell -n 3 --with-walls all --with-measures energy,fraction
 is "a line before each step" "$(jq -c '[.step, .time, .dt, .bodies]' "$tmp/told" | paste -sd ' ')" "[0,0,0.001,2] [1,0.001,0.001,2] [2,0.002,0.001,2]"
-is "boundaries, and where they are" "$(jq -c 'select(.step == 2).boundaries | map([.boundary, .position[2], .velocity[2], .force])' "$tmp/told")" "[[0,0,0,[0,0,0]],[1,8.998,-1,[0,0,0]]]"
+is "boundaries, and where they are" "$(jq -c 'select(.step == 2).walls | map([.wall, .position[2], .velocity[2], .force])' "$tmp/told")" "[[0,0,0,[0,0,0]],[1,8.998,-1,[0,0,0]]]"
 is "measures, as nsd-stat has them" "$(jq -c 'select(.step == 2).measures | [.energy.kinetic, (.fraction | type)]' "$tmp/told")" '[0,"object"]'
 quiet -n 3 "$tmp/ball.h5" >"$tmp/alone.h5"
 is "one that changes nothing changes no bit" "$(number -p "$tmp/plain.h5")" "$(number -p "$tmp/alone.h5")"
 rm "$tmp/told"
 tell -n 1 --with-walls 1
-is "some boundaries alone" "$(jq -c '.boundaries | map(.boundary)' "$tmp/told")" "[1]"
+is "some boundaries alone" "$(jq -c '.walls | map(.wall)' "$tmp/told")" "[1]"
 nsd-info --scene "$tmp/ball.h5" | jq '.walls = [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 9], normal: [0, 0, -1], name: "lid" }]' |
     nsd-gen - | quiet -n 1 --with "tee $tmp/told | jq -c --unbuffered '{}'" --with-walls lid >/dev/null
-is "by name" "$(jq -c '.boundaries | map([.boundary, .name])' "$tmp/told")" '[[1,"lid"]]'
+is "by name" "$(jq -c '.walls | map([.wall, .name])' "$tmp/told")" '[[1,"lid"]]'
 cat >"$tmp/reads" <<'EOT'
 while IFS= read -r line; do
     head -c "$(printf '%s' "$line" | jq .document)" >>"$1"
@@ -76,7 +78,7 @@ is "whole documents" "$(nsd-info "$tmp/documents" | jq -sc 'map(select(.step != 
 
 jq -n '{ dt: 1e-3, mu: 1, bodies: [{ x: [0, 0, 0], radius: 0.1, mass: 1 }], walls: [{ point: [0, 0, -0.1], normal: [0, 0, 1], name: "floor" },
     { point: [0, 0, 0.1], normal: [0, 0, -1], name: "lid" }, { point: [9, 0, 0], normal: [-1, 0, 0], name: "lid" }] }' | nsd-gen - >"$tmp/press.h5"
-status 1 "a lid that a program drives down" nsd-step --solver auto -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {boundaries: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
+status 1 "a lid that a program drives down" nsd-step --solver auto -n 4 --with "tee $tmp/told | jq -c --unbuffered 'if .step == 2 then {walls: {lid: {velocity: [0, 0, -0.1]}}} else {} end'" \
     --with-walls lid -o "$tmp/pressed.h5" "$tmp/press.h5"
 is "it is told whether the step before has converged" "$(jq -c .converged "$tmp/told" | paste -sd ' ')" "null true true false"
 is "and the account, with names" "$(jq -c '.account.unconverged | [.value, .step, .bodies[1], .fails]' "$tmp/told" | paste -sd ' ')" \
@@ -117,10 +119,10 @@ stops "one that does not end after the run" 'while read -r l; do echo "{}"; done
 stops "nonsense" 'echo hello; cat >/dev/null' "[0]" 69 'step 1: --with: the answer is not JSON'
 for answer in '[1]:neither a JSON object' '{"force":{}}:no .force.' '{"forces":{"7":[0,0,1]}}:body .7., which does not exist' \
     '{"forces":{"0":[0,0,1],"00":[0,0,2]}}:body .00.' '{"forces":{"+1":[0,0,1]}}:body .+1.' '{"forces":{" 1":[0,0,1]}}:body . 1.' \
-    '{"forces":{"":[0,0,1]}}:body ..' '{"boundaries":{"00":{"force":1}}}:no wall is named .00.' \
+    '{"forces":{"":[0,0,1]}}:body ..' '{"walls":{"00":{"force":1}}}:no wall is named .00.' \
     '{"forces":{"-1":[0,0,1]}}:body .-1.' '{"forces":{"0":[1]}}:vectors' '{"forces":[[0,0,1]]}:1 forces, and there are 2' \
-    '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"boundaries":{"9":{"force":1}}}:no wall 9' \
-    '{"boundaries":{"1":{"force":1}}}:not load-controlled' '{"boundaries":{"0":{"speed":1}}}:no .speed.' '{"boundaries":{"roof":{"force":1}}}:no wall is named .roof.' '{"boundaries":{"-1":{"force":1}}}:no wall is named .-1.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
+    '{"forces":{"0":[1e999,0,0]}}:not JSON' '{"forces":{"0":["1",0,0]}}:vectors' '{"walls":{"9":{"force":1}}}:no wall 9' \
+    '{"walls":{"1":{"force":1}}}:not load-controlled' '{"walls":{"0":{"speed":1}}}:no .speed.' '{"walls":{},"boundaries":{}}:walls twice' '{"walls":{"roof":{"force":1}}}:no wall is named .roof.' '{"walls":{"-1":{"force":1}}}:no wall is named .-1.' '{"velocities":{"0":[1]}}:velocities are vectors' '{"angular_velocities":[[0,0,1]]}:1 angular_velocities, and there are 2' \
     '{"gravity":9.81}:gravity is a vector' \
     '{"friction":[["ball","cheese",1]]}:no material .cheese' '{"friction":[["ball","wall",-1]]}:friction of -1' '{"stop":1}:stop is true or false' \
     '{"gravity":[0,0,1],"gravity":[0,0,2]}:not JSON'; do
@@ -132,8 +134,8 @@ done
 
 nsd-gen 40 >"$tmp/heap.h5"
 quiet -n 20 --with "$(answering '{"forces":{"3":[0,0,2e-5]}}')" -o "$tmp/alone.h5" "$tmp/heap.h5"
-change='"velocities":{"1":[0,0,9]},"angular_velocities":{"1":[0,0,9]},"boundaries":{"0":{"velocity":[0,0,9]}},"forces":{"2":[0,0,9]},"gravity":[0,0,9],"friction":[["ball","wall",9]]'
-for bad in '"torques":{"999":[0,0,1]}' '"boundaries":{"0":{"velocity":[0,0,9]},"1":{"speed":1}}' '"friction":[["ball","wall",9],["ball","cheese",1]]' '"stop":true'; do
+change='"velocities":{"1":[0,0,9]},"angular_velocities":{"1":[0,0,9]},"walls":{"0":{"velocity":[0,0,9]}},"forces":{"2":[0,0,9]},"gravity":[0,0,9],"friction":[["ball","wall",9]]'
+for bad in '"torques":{"999":[0,0,1]}' '"walls":{"0":{"velocity":[0,0,9]},"1":{"speed":1}}' '"friction":[["ball","wall",9],["ball","cheese",1]]' '"stop":true'; do
     bad=$(jq -nc "{$change} + {$bad}")
     nsd-step -n 99 --every 100 --with "n=0; while read -r l; do n=\$((n + 1)); if [ \$n -le 20 ]; then echo '{\"forces\":{\"3\":[0,0,2e-5]}}'; else echo '$bad'; fi; done" -o "$tmp/end.h5" "$tmp/heap.h5" 2>/dev/null || true
     for file in alone end; do # its last frame as a run from there goes on
@@ -155,7 +157,7 @@ while line := sys.stdin.buffer.readline():
         if told["step"]: # it is sent with the forces that were answered before
             assert f["nsd/outside/lasting/force"][0, 0] == told["step"] - 1 + 3
             assert f["nsd/outside/lasting/push"][0, 0] == 5
-        answer = {"forces": {"0": [told["step"] + 3, 0, 0]}, "boundaries": {"0": {"force": 5}},
+        answer = {"forces": {"0": [told["step"] + 3, 0, 0]}, "walls": {"0": {"force": 5}},
                   "velocities": {"1": [0, float(f["particles/all/velocity/value"][-1, 1, 1]) + 1, 0]}}
     print(json.dumps(answer), flush=True)
 EOT
@@ -180,7 +182,7 @@ refuses 65 "a document without answers" nsd-step --replay "$tmp/ball.h5" "$tmp/b
 # ---- the same again ----
 
 program='jq -c --unbuffered "{forces: {\"3\": [(.step | . * 1e-7), 0, 2e-5]}, gravity: [(.time * 100), 0, -9.81], friction: [[\"ball\", \"wall\", (.step % 7 / 10)]],
-    boundaries: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
+    walls: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
 for how in "" "--contacts" "--every 7" "-j 2"; do
     # shellcheck disable=SC2086 # words
     quiet -n 50 $how --with "$program" -o "$tmp/acted.h5" "$tmp/heap.h5" &&

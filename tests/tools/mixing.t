@@ -50,7 +50,7 @@ ok "balls in a box" truth same_as_numpy "$tmp/box.h5" 0.03 b
 mixing() { nsd-stat -m mixing "$@" 2>/dev/null | jq -c "${what:-.why.mixing}"; }
 refuses 65 "a tracer that is no kind" nsd-stat -m mixing --tracer gravel "$tmp/checker.h5"
 like "names the kinds" "$(cat "$tmp/err")" "no material 'gravel' here, but large, ball, wall"
-is "bodies of one size" "$(mixing --tracer large "$tmp/checker.h5")" '"all bodies are of one sort: --tracer KIND, or large"'
+is "bodies of one size" "$(mixing --tracer large "$tmp/checker.h5")" '"all bodies are of one sort: --tracer MATERIAL, or large"'
 is "samples of one body" "$(mixing --sample 2 "$tmp/checker.h5")" '"no sample holds two bodies: --sample is too small"'
 is "too many samples" "$(mixing --sample 1e-9 "$tmp/checker.h5")" '"--sample makes more than 1e8 samples"'
 is "the other kind has the same index" "$(what='.mixing | [.lacey, .variance, .neighbours]' mixing --tracer a "$tmp/random.h5")" \

@@ -112,13 +112,13 @@ done
 # shellcheck disable=SC2016 # for another shell
 acts='jq -c --unbuffered "{forces: [range(.bodies) | [(. * 1e-8), 0, 2e-6]], torques: {\"200\": [0, 0, 1e-8]}, gravity: [(.step | sin), 0, -9.81],
     velocities: (if .step % 4 == 1 then {\"205\": [0.01, 0, 0]} else {} end), friction: [[\"ball\", \"wall\", (.step % 7 / 10)]],
-    boundaries: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
+    walls: {\"0\": {velocity: [0, 0, (.time | sin * 1e-3)]}}}"'
 three=1 ok "forces, torques, velocities, gravity, friction, boundaries that a program answers: the same bytes" \
     same "$tmp/heap.h5" "$all" -n 8 --contacts --with "$acts" --with-walls all
 ranks 2 -n 8 --contacts --replay "$tmp/one.h5" -o "$tmp/replayed.h5" "$tmp/heap.h5" 2>/dev/null
 ok "replayed" cmp "$tmp/one.h5" "$tmp/replayed.h5"
 ok "where grains pour and are taken away" same "$tmp/pour.h5" 3 -n 20 --with 'jq -c --unbuffered "{forces: [range(.bodies) | [1e-6, 0, 0]]}"'
-alone=5 ok "on a piston under a load" same "$tmp/press.h5" 2 -n 5 --with 'jq -c --unbuffered "{boundaries: {\"5\": {force: (.step * 1e-4)}}}"'
+alone=5 ok "on a piston under a load" same "$tmp/press.h5" 2 -n 5 --with 'jq -c --unbuffered "{walls: {\"5\": {force: (.step * 1e-4)}}}"'
 ends() { ranks 2 -n 5 --with 'read -r l; echo "{}"; exit 3' -o "$tmp/ended.h5" "$tmp/heap.h5"; }
 status 69 "a program that ends, ends the run of all" ends
 is "with whole frames" "$(nsd-info "$tmp/ended.h5" | jq -sc 'map(select(.step != null).step)')" "[901]"

@@ -119,7 +119,7 @@ is "constant volume: z is exp(-0.3) as long, to 1e-6, and the volume is the same
     "$(nsd-info -w "$tmp/volume.h5" "$tmp/volumes.h5" | jq -s -c 'map(.load.lever) as $l | ($l[-1] / $l[5] / (-0.3 | exp) - 1 | fabs < 1e-6),
         (([0, 2, 4] | map($l[. - 6] / $l[.]) | .[0] * .[1] * .[2]) - 1 + 1.875e-8 | fabs < 1e-9)' | tr '\n' ' ')" 'true true '
 ok "the walls do the work as drives do" holds -s 'map((.change - .drives + .dissipation | fabs) <= 1e-12 + 1e-9 * (.drives | fabs)) and (map(.loads) | all(. == 0))' <<<"$(balances "$tmp/volumes.h5")"
-ok "no wall yields to a push" eval '! echo "{\"boundaries\": {\"0\": {\"force\": 1}}}" | nsd-step -n 1 --with cat "$tmp/volume.h5" >/dev/null 2>&1'
+ok "no wall yields to a push" eval '! echo "{\"walls\": {\"0\": {\"force\": 1}}}" | nsd-step -n 1 --with cat "$tmp/volume.h5" >/dev/null 2>&1'
 
 # ---- documents, resumed runs, threads, processes ----
 

@@ -81,7 +81,7 @@ def read_options(version: str) -> argparse.Namespace:
     p.add_argument("--timeout", type=seconds)
     p.add_argument("--quiet", action="store_true")
     p.add_argument("-h", "--help", action="help")
-    p.add_argument("-V", "--version", action="version", version=f"nsd-fit {version}")
+    p.add_argument("-V", "--version", action="version", version=f"nsd-fit (nsd) {version}")
     a = p.parse_args()
     if not 1 <= a.jobs <= 4096:
         p.error("--jobs: not from 1 to 4096")

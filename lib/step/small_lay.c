@@ -1,0 +1,157 @@
+/* step/small_lay.c: the bundles of small steps [step/small_lay.h]. */
+#include "step/small_lay.h"
+
+#include "contact/contact_law.h"
+#include "solve/lay.h"
+#include "step/small_stiff.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLOURS = 64 };
+
+/* ---- groups ---- */
+
+/* A pair's group; those of a class come after those of the classes before. */
+struct small_colours {
+    uint64_t *used; /* [bodies] */
+    uint8_t *of;    /* [pairs] its colour; COLOURS: none is left */
+    int64_t count[2][COLOURS + 1];
+};
+
+static double pair_gap(const struct packing *p, const vec3 *x, const vec3 *edge,
+                       const struct pair *pair)
+{
+    vec3 d = v3_sub(x[pair->b], x[pair->a]);
+    if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
+    return v3_norm(d) - p->radius[pair->a] - p->radius[pair->b];
+}
+
+static void colour_class(struct small_colours *c, const struct packing *p,
+                         const struct small_list *l, const bool *beside, int class)
+{
+    memset(c->used, 0, (size_t)p->n * sizeof *c->used);
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        const struct pair *pair = &l->pairs.pair[i];
+        if (beside[i] != !class) continue;
+        const uint64_t free = ~(c->used[pair->a] | c->used[pair->b]);
+        const int k = free ? __builtin_ctzll(free) : COLOURS;
+        c->of[i] = (uint8_t)k, c->count[class][k]++;
+        if (free) c->used[pair->a] |= 1ULL << k, c->used[pair->b] |= 1ULL << k;
+    }
+}
+
+static int64_t in_bundles(int64_t pairs)
+{
+    return (pairs + BUNDLE - 1) / BUNDLE;
+}
+
+/* Groups and slots of all pairs; false when memory is short. */
+static bool small_lay(struct small_list *l, struct small_colours *c, const bool *beside)
+{
+    struct small *s = &l->s;
+    int64_t next[2][COLOURS + 1], groups = 0, alone = c->count[0][COLOURS] + c->count[1][COLOURS];
+    s->group = malloc((size_t)(2 * COLOURS + alone + 1) * sizeof *s->group);
+    if (!s->group) return false;
+    s->bundles = 0;
+    for (int class = 0; class < 2; class ++)
+        for (int k = 0; k < COLOURS; k++) {
+            next[class][k] = BUNDLE * s->bundles;
+            if (!c->count[class][k]) continue;
+            s->group[groups++] = s->bundles;
+            s->bundles += in_bundles(c->count[class][k]);
+        }
+    s->serial = groups;
+    for (int class = 0; class < 2; class ++) {
+        next[class][COLOURS] = BUNDLE * s->bundles;
+        for (int64_t i = 0; i < c->count[class][COLOURS]; i++) s->group[groups++] = s->bundles++;
+    }
+    s->groups = groups, s->group[groups] = s->bundles;
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        int64_t *at = &next[!beside[i]][c->of[i]];
+        l->slot[i] = *at;
+        *at += c->of[i] == COLOURS ? BUNDLE : 1;
+    }
+    return true;
+}
+
+static bool small_colour(struct small_list *l, const struct packing *p, const vec3 *x,
+                         const vec3 *edge)
+{
+    struct small_colours c = { .used = malloc((size_t)(p->n + 1) * sizeof *c.used),
+                               .of = malloc((size_t)l->pairs.n + 1) };
+    bool *beside = malloc((size_t)l->pairs.n + 1);
+    l->slot = malloc((size_t)(l->pairs.n + 1) * sizeof *l->slot);
+    bool room = c.used && c.of && beside && l->slot;
+    const double near = SMALL_BESIDE / SMALL_MARGIN * l->spare;
+    for (int64_t i = 0; room && i < l->pairs.n; i++)
+        beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
+    for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
+    room = room && small_lay(l, &c, beside);
+    free(c.used), free(c.of), free(beside);
+    return room;
+}
+
+/* ---- pairs ---- */
+
+static void set_pair(struct small_list *l, const struct packing *p, const vec3 *edge, int64_t i)
+{
+    const struct pair *pair = &l->pairs.pair[i];
+    const int32_t m = packing_pair(p, pair->a, pair->b);
+    const int k = (int)(l->slot[i] % BUNDLE);
+    struct small_bundle *c = &l->s.bundle[l->slot[i] / BUNDLE];
+    c->a[k] = body_place(pair->a), c->b[k] = body_place(pair->b);
+    c->mu[k] = p->mu[m], c->e[0][k] = p->en[m], c->e[1][k] = p->et[m];
+    if (l->s.shift) {
+        vec3 d = cell_shift(edge, pair->shift);
+        small_shift_set(&l->s.shift[l->slot[i] / BUNDLE], k, d,
+                        cell_shift(p->cell.rate, pair->shift));
+    }
+    if (l->s.hold) {
+        double x[HOLD_COUNT];
+        small_tie_set(x, p, pair->a, pair->b, p->dt);
+        for (int j = 0; j < HOLD_COUNT; j++) l->s.hold[l->slot[i] / BUNDLE].x[j][k] = x[j];
+    }
+    if (l->s.spring) {
+        const struct body *a = &l->s.body[pair->a], *b = &l->s.body[pair->b];
+        const double ra = p->radius[pair->a], rb = p->radius[pair->b], wn = a->im + b->im;
+        double x[SPRING_COUNT] = { 0 };
+        small_stiff_set(x, l->stiffness, p, pair->a, pair->b, wn,
+                        wn + ra * ra * a->ii + rb * rb * b->ii);
+        for (int j = 0; j < SPRING_COUNT; j++) l->s.spring[l->slot[i] / BUNDLE].x[j][k] = x[j];
+    }
+    if (l->s.stick) {
+        struct small_stick *t = &l->s.stick[l->slot[i] / BUNDLE];
+        double mu[2];
+        small_tie_stick(mu, &t->v_s[k], p, m);
+        t->mu[0][k] = mu[0], t->mu[1][k] = mu[1];
+    }
+    if (!l->s.turn) return;
+    struct small_turn *t = &l->s.turn[l->slot[i] / BUNDLE];
+    contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
+}
+
+bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x,
+                     const vec3 edge[3])
+{
+    struct small *s = &l->s;
+    if (!small_colour(l, p, x, edge)) return false;
+    s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
+    if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
+    if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
+    if (small_tie_holds(p)) s->hold = lay_lines(s->bundles, sizeof *s->hold);
+    if (packing_sticks(p)) s->stick = lay_lines(s->bundles, sizeof *s->stick);
+    if (l->stiffness) s->spring = lay_lines(s->bundles, sizeof *s->spring);
+    s->live = calloc((size_t)(s->bundles + 1), BUNDLE);
+    s->late = calloc((size_t)(s->bundles + 1), BUNDLE);
+    s->until = calloc((size_t)(s->bundles + 1), BUNDLE * sizeof *s->until);
+    if (!s->bundle || (packing_rolls(p) && !s->turn) || (cell_repeats(&p->cell) && !s->shift) ||
+        (small_tie_holds(p) && !s->hold) || (packing_sticks(p) && !s->stick) ||
+        (l->stiffness && !s->spring) || !s->live || !s->late || !s->until)
+        return false;
+    for (int64_t i = 0; i < s->bundles; i++)
+        for (int k = 0; k < BUNDLE; k++)
+            s->bundle[i].a[k] = body_place(p->n), s->bundle[i].b[k] = body_place(p->n + 1);
+    for (int64_t i = 0; i < l->pairs.n; i++) set_pair(l, p, edge, i);
+    return true;
+}

@@ -1,0 +1,18 @@
+/*
+ * step/small_past.h: what a list of small steps takes over from the one before it, and from the step before, as the packing
+ * remembers it.
+ */
+#pragma once
+
+#include "step/small_list.h"
+
+/* Pairs of the list before that have pushed in this interval stay, however far they are: the frame has them. False when memory is
+   short. */
+bool small_keep_pairs(struct small_list *to, const struct small_list *from);
+/* Pairs that were in the list before have what they had there. */
+void small_carry_pairs(struct small_list *to, const struct small_list *from);
+/* Reactions as p remembers them, of a step that is `part` of p's; sums begin at 0. False when memory is short. */
+bool small_list_recall(struct small_list *l, const struct packing *p, double part);
+/* p remembers those of the list, of a step `part` times its own. Returns 0 or EX_SOFTWARE. */
+int small_list_remember(const struct small_list *l, struct packing *p, double part,
+                        struct failure *failure);
