@@ -183,12 +183,12 @@ setup-run setup-wall setup-reference setup-site setup-check setup-all:
 FIRST := $(patsubst %,tests/%.t,tools/outside tools/examples whole/laws whole/solvers hostile/wrong_input whole/shapes tools/stat tools/types \
          tools/export tools/grains tools/view tools/pipeline tools/walls) $B/tests/unit/shapes_test
 # What make check leaves to make check-all: it builds again, needs what only a maintainer has, or takes minutes.
-REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/device \
+REST  := $(patsubst %,tests/%.t,project/lint whole/paper project/compilers whole/gallery project/thread_sanitizer whole/mpi whole/mpi_small whole/device \
          project/fresh_machine project/install whole/wall whole/paper_page whole/cookbook tools/web_in_browser hostile/failing_system_calls hostile/failing_allocations) \
          $(patsubst %,$B/tests/hostile/%_test,failing_library_calls failing_library_calls_draw failing_library_calls_api killed_writer)
 TESTS := $(FIRST) $(filter-out $(FIRST) $(REST),$(CTEST) $(wildcard tests/*/*.t))
 # What the sanitizers would not see more of: it looks at texts, or makes others' experiments.
-PLAIN := $(filter-out tests/whole/mpi.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/claims project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
+PLAIN := $(filter-out tests/whole/mpi.t tests/whole/mpi_small.t tests/whole/wall.t tests/tools/% tests/hostile/% $B/tests/%,$(REST)) $(patsubst %,tests/%.t,project/layers project/docs project/claims project/site project/english project/readme project/symbols tools/examples tools/campaign tools/fit whole/rest)
 # What looks into inner loops has, under the sanitizers, those of the width that is instrumented.
 NARROW := $(if $(SAN),$(patsubst %,$B/tests/unit/%_test,laws local shapes solver step))
 

@@ -529,14 +529,21 @@ static void warn_processes(const struct frame *f, const struct step_opt *o)
     const bool breaks = f->packing.breakage != NULL;
     const enum order order = o->order;
     // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
-    const double least = order == ORDER_BLOCK ? 2000 : 20000;
+    const bool small = o->small > 0 && !f->distributed && !small_lacks(&f->packing);
+    const double least = small || order == ORDER_BLOCK ? 2000 : 20000;
+    const char *whole = small ? small_undivided(&f->packing, o->bound) : NULL;
     const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
     const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));
-    if (size > 1 && steps && (breaks || o->small > 0)) {
-        warn("%d processes: the first makes all %s, and the others wait: use threads, "
-             "nsd-step -j %d%s",
-             size, breaks ? "steps of grains that break" : "small steps", size,
-             breaks ? "" : ", or --small-steps 0");
+    if (size > 1 && steps && breaks) {
+        warn("%d processes: the first makes all steps of grains that break, and the others wait: "
+             "use threads, nsd-step -j %d",
+             size, size);
+        return;
+    }
+    if (size > 1 && steps && whole) {
+        warn("%d processes: the first makes all small steps, and the others wait, because of %s: "
+             "use threads, nsd-step -j %d, or --small-steps 0",
+             size, whole, size);
         return;
     }
     if (size <= most || !steps) return;

@@ -191,8 +191,8 @@ static bool pair_first(const struct pair *x, const struct pair *y)
     return false;
 }
 
-/* Sorts by (a, b, shift): a counting sort by a, then the few pairs of each a. */
-static bool pairs_sort(struct pairs *s)
+/* By (a, b, shift): a counting sort by a, then the few pairs of each a. */
+bool pairs_sort(struct pairs *s)
 {
     int64_t *first = calloc((size_t)s->bodies + 2, sizeof *first);
     struct pair *sorted = calloc((size_t)(s->n + 1), sizeof *sorted);
@@ -226,6 +226,7 @@ struct search {
     pthread_mutex_t lock; /* of what follows */
     struct pairs *out;
     bool failed;
+    int64_t from; /* the first body of the part that looks */
 };
 
 /* The pairs of a part join the others: in any order, for they are sorted in the end. */
@@ -251,7 +252,7 @@ static void search_some(void *arg, int64_t first, int64_t end)
     const int l = o->level;
     struct pairs part = { .bodies = o->out->bodies };
     bool found = true;
-    for (int64_t m = first; found && m < end; m++) {
+    for (int64_t m = o->from + first; found && m < o->from + end; m++) {
         const struct grid_entry *e = &g[l].entry[m];
         const struct seeker k = {
             .p = o->p, .e = e, .x = e->x, .reach = o->out->reach, .out = &part
@@ -279,8 +280,12 @@ static bool make_list(struct pairs *s, const struct packing *p, const vec3 *x,
     };
     o.failed = !grids_build(g, p, x, s->reach);
     s->n = 0;
-    for (o.level = 0; !o.failed && o.level < LEVELS; o.level++)
-        team_share(team_size(), g[o.level].n, SEEKERS, search_some, &o);
+    const int64_t parts = s->parts > 1 ? s->parts : 1, part = s->parts > 1 ? s->part : 0;
+    for (o.level = 0; !o.failed && o.level < LEVELS; o.level++) {
+        const int64_t n = g[o.level].n;
+        o.from = n * part / parts;
+        team_share(team_size(), n * (part + 1) / parts - o.from, SEEKERS, search_some, &o);
+    }
     grids_free(g);
     return !o.failed && pairs_sort(s);
 }

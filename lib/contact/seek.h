@@ -40,6 +40,8 @@ struct pairs {
     int64_t bodies, n, room; /* bodies; pairs; how many pairs there is memory for */
     struct pair *pair;       /* [n] sorted by (a, b, shift), each once */
     double reach;            /* m: every pair whose gap was at most this when the list was made */
+    int part,
+        parts; /* parts > 1: only those that this part of the bodies finds, of so many parts; sorted among themselves */
 };
 
 /*
@@ -48,3 +50,5 @@ struct pairs {
  */
 int seek_pairs(struct pairs *s, const struct packing *p, const vec3 *x, const vec3 edge[3],
                struct failure *failure);
+/* Sorts all that parts have found. False when memory is short. */
+bool pairs_sort(struct pairs *s);

@@ -132,6 +132,36 @@ void settings_spread(struct comm *t, struct packing *p)
     parcel_free(&o);
 }
 
+/* Is an array one of numbers, which all ranks may have? */
+static bool is_copied(const struct part *a)
+{
+    return !(a->traits & PART_AGAIN) && a->how != PART_ONE_TEXT;
+}
+
+void settings_spread_all(struct comm *t, struct packing *p)
+{
+    struct parcel o = { 0 };
+    if (!t->me) {
+        parcel_put(t, &o, p, sizeof *p); // with pointers, of which no other rank makes use
+        put_shapes(t, &o, &p->shapes);
+        for (const struct part *a = packing_parts; a->name; a++)
+            if (is_copied(a)) put_part(t, &o, a, p);
+    }
+    comm_spread(t, &o);
+    if (t->me) {
+        packing_free(p);
+        parcel_take(t, &o, p, sizeof *p);
+        packing_disown(p);
+        settings_take_shapes(t, &o, &p->shapes, p->dim);
+        for (const struct part *a = packing_parts; a->name; a++) {
+            if (!is_copied(a)) continue;
+            take_part(t, &o, a, p);
+            if (a->room) memcpy((char *)p + a->room, (char *)p + a->count, sizeof(int64_t));
+        }
+    }
+    parcel_free(&o);
+}
+
 /* *x exists where it shall, for n bodies, all zero. */
 static void keep_forces(struct comm *t, vec3 **x, bool wanted, int64_t n)
 {

@@ -9,6 +9,8 @@
 
 /* Collective. Of the first rank's packing; in the others *p is made, with no bodies: freed before. */
 void settings_spread(struct comm *t, struct packing *p);
+/* The first rank's packing becomes that of all, with its bodies, but for its scene. */
+void settings_spread_all(struct comm *t, struct packing *p);
 /* Time, walls and edges of the first rank's packing become those of the others', which are otherwise
    the same. */
 void settings_follow(struct comm *t, struct packing *p);

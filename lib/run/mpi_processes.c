@@ -1,9 +1,11 @@
 /* run/mpi_processes.c: the ranks of a run [run/processes.h]. The leader tells the others what is next, and all do it. */
 #include "run/processes.h"
 
+#include "mpi/rank_small.h"
 #include "mpi/rank_step.h"
 #include "mpi/rows.h"
 #include "run/options.h"
+#include "step/small_step.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -11,12 +13,13 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, TAKE, FILL };
+enum mpi_processes_word { LEAVE, BEGIN, BEGIN_ROWS, OTHER_BODIES, ACT, STEP, SMALL, TAKE, FILL };
 
 static struct {
     struct comm comm;
     struct rank_step step;
-    bool moved; /* the first has made small steps since the others have heard of it */
+    struct rank_small small;
+    bool moved; /* the first has made small steps since the parts of others have heard of it */
     struct rows rows;
     struct distributed distributed;
     bool begun;
@@ -42,6 +45,7 @@ bool processes_join(void)
     MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &level);
     self.comm.mpi = MPI_COMM_WORLD;
     MPI_Comm_rank(MPI_COMM_WORLD, &self.comm.me), MPI_Comm_size(MPI_COMM_WORLD, &self.comm.n);
+    rank_small_begin(&self.small, &self.comm);
     if (!self.comm.me) signal(SIGTERM, stopped);
     return self.comm.me == 0;
 }
@@ -114,6 +118,15 @@ struct distributed *processes_take_bodies(bool contacts)
 
 /* ---- steps ---- */
 
+static void mpi_processes_follow_small(void)
+{
+    const struct step_opt o = options_step(1, false);
+    struct failure failure = { 0 };
+    bool made;
+    int64_t parts;
+    rank_small_make(&self.small, NULL, &o, &made, &parts, &failure);
+}
+
 int processes_follow(void)
 {
     struct packing none = { 0 };
@@ -127,6 +140,7 @@ int processes_follow(void)
             mpi_processes_fill(-1, NULL, NULL, 0, &failure); // the leader says what was wrong
         if (w == OTHER_BODIES) rank_step_begin_again(&self.step, &none);
         if (w == ACT) rank_step_act(&self.step, &none);
+        if (w == SMALL) mpi_processes_follow_small();
         if (w != STEP) continue;
         const struct step_opt o = options_step(self.step.part.p.dt, false);
         rank_step_make(&self.step, &none, &s, &o, &rep, &failure);
@@ -153,6 +167,23 @@ static int mpi_processes_step(struct frame *f, struct changes changes, int64_t p
     return rank_step_make(&self.step, &f->packing, &f->contacts, o, &f->report, failure);
 }
 
+/* As step_in_small(): by all processes, where they can divide it */
+static int mpi_processes_small(struct frame *f, struct step_memory *m, struct changes changes,
+                               const struct step_opt *o, bool *made, int64_t *parts,
+                               struct failure *failure)
+{
+    struct packing *p = &f->packing;
+    const bool divides = o->small > 0 && self.comm.n > 1 && !small_lacks(p);
+    if (changes.bodies || changes.acts) self.small.same = false;
+    if (!divides || small_undivided(p, o->bound)) {
+        self.small.same = false;
+        return step_in_small(p, &f->contacts, m, o, &f->report, made, parts, failure);
+    }
+    const struct rank_small_step first = { p, &f->contacts, m, &f->report };
+    mpi_processes_next(SMALL);
+    return rank_small_make(&self.small, &first, o, made, parts, failure);
+}
+
 int processes_step(struct frame *f, struct step_memory *m, struct changes changes,
                    const struct step_opt *o, struct failure *failure)
 {
@@ -160,8 +191,7 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
     int64_t parts = 0;
     if (f->packing.breakage)
         return step_advance(&f->packing, &f->contacts, m, o, &f->report, failure);
-    if (!f->distributed &&
-        step_in_small(&f->packing, &f->contacts, m, o, &f->report, &made, &parts, failure))
+    if (!f->distributed && mpi_processes_small(f, m, changes, o, &made, &parts, failure))
         return failure->status;
     self.moved = self.moved || made; // others have not heard of it
     if (made) return 0;
@@ -172,28 +202,39 @@ int processes_step(struct frame *f, struct step_memory *m, struct changes change
 
 const char *processes_leave(void)
 {
-    static char text[500];
+    static char text[700];
     const struct rank_step *y = &self.step;
     if (!self.comm.me) mpi_processes_next(LEAVE);
-    double mine[4] = { (double)y->solved[0], (double)y->solved[1], y->busy[0], y->busy[1] },
-           most[4] = { 0 };
-    MPI_Reduce(mine, most, 4, MPI_DOUBLE, MPI_MAX, 0, self.comm.mpi);
+    const struct rank_small *small = &self.small;
+    double mine[7] = { (double)y->solved[0], (double)y->solved[1],    y->busy[0], y->busy[1],
+                       (double)small->bytes, (double)small->messages, small->busy },
+           most[7] = { 0 };
+    MPI_Reduce(mine, most, 7, MPI_DOUBLE, MPI_MAX, 0, self.comm.mpi);
     double sweeps = y->sweeps > 0 ? (double)y->sweeps : 1;
     struct rusage used;
     getrusage(RUSAGE_SELF, &used);
     double kb = (double)used.ru_maxrss, memory[2] = { 0 };
     MPI_Reduce(&kb, &memory[0], 1, MPI_DOUBLE, MPI_MAX, 0, self.comm.mpi);
     MPI_Reduce(&kb, &memory[1], 1, MPI_DOUBLE, MPI_SUM, 0, self.comm.mpi);
+    int at = snprintf(text, sizeof text, "%d ranks: ", self.comm.n);
+    const double divided = small->steps > 0 ? (double)small->steps : 1;
+    if (small->steps)
+        at +=
+            snprintf(text + at, sizeof text - (size_t)at,
+                     "%lld small steps divided, with %.3g bytes in %.3g messages each, of the one "
+                     "that sends most, and %.3g s without waiting; ",
+                     (long long)small->steps, most[4] / divided, most[5] / divided, most[6]);
     snprintf(
-        text, sizeof text,
-        "%d ranks: %.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
+        text + at, sizeof text - (size_t)at,
+        "%.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
         "the fullest %.3g of the mean on average, %.3g at most, %lld cuts; %lld steps solved by "
         "the first alone; memory %.3g MB, of the largest %.3g MB; "
         "%.3g s without waiting, %.3g s of them in the solver",
-        self.comm.n, most[0] / sweeps, most[1] / sweeps,
-        y->steps ? y->uneven / (double)y->steps : 1, y->worst, (long long)y->part.cuts,
-        (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3], most[2]);
+        most[0] / sweeps, most[1] / sweeps, y->steps ? y->uneven / (double)y->steps : 1, y->worst,
+        (long long)y->part.cuts, (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3],
+        most[2]);
     if (self.begun) rank_step_free(&self.step);
+    rank_small_free(&self.small);
     rows_free(&self.rows);
     MPI_Finalize();
     return text;

@@ -2,6 +2,7 @@
 #include "step/small_converge.h"
 
 #include "base/array.h"
+#include "step/small_part.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -81,7 +82,8 @@ double small_copy_change(const struct small_run *r, struct body *was)
 {
     const struct small *s = &r->l->s;
     double most = 0;
-    for (int64_t i = 0; i < s->bodies; i++) {
+    for (int64_t k = 0; k < small_bodies_here(r); k++) {
+        const int64_t i = small_body_here(r, k);
         const struct body *b = &s->body[i];
         const vec3 dv = v3_sub(small_vec(b->v), small_vec(was[i].v));
         const vec3 dw = v3_sub(small_vec(b->w), small_vec(was[i].w));
@@ -107,12 +109,9 @@ double small_copy_distance(const struct small_copy *c, const struct small_run *r
 {
     const struct small_list *l = r->l;
     struct distance d = { 0, 0 };
-    for (int64_t i = 0; i < l->s.bundles; i++) {
-        const struct small_bundle *was = &c->bundle[i], *is = &l->s.bundle[i];
-        for (int k = 0; k < BUNDLE; k++)
-            add_distance(&d, v3(was->f[0][k], was->f[1][k], was->f[2][k]),
-                         v3(is->f[0][k], is->f[1][k], is->f[2][k]));
-    }
+    const int64_t lanes = r->part ? l->pairs.n : BUNDLE * l->s.bundles;
+    for (int64_t i = 0; i < lanes; i++)
+        add_distance(&d, small_along(r, c->bundle, i), small_along(r, l->s.bundle, i));
     for (int64_t i = 0; i < l->touches; i++)
         add_distance(&d, small_vec(c->touch[i].f), small_vec(l->touch[i].f));
     for (int64_t i = 0; i < l->meetings.n; i++)

@@ -3,6 +3,7 @@
 
 #include "base/team.h"
 #include "state/kinematics.h"
+#include "step/small_part.h"
 #include "step/small_point.h"
 #include "step/small_touch.h"
 #include "step/small_wall.h"
@@ -38,7 +39,7 @@ static void judge_touches(struct small_run *r, int64_t first, int64_t end)
         const struct small_touch *t = &r->l->touch[i];
         struct small_law l;
         double df[3];
-        if (!t->near) continue;
+        if (!t->near || !small_is_own(r, t->body)) continue;
         small_touch_law(r, t, &l);
         s->load[t->body] += norm3(l.f);
         small_touch_solve(t, &l, r->h, df);
@@ -50,6 +51,8 @@ void small_error_step(struct small_run *r, int me, int threads)
 {
     struct small *s = &r->l->s;
     const int64_t n = s->bodies;
+    if (r->part && !me) small_part_refresh(r);
+    if (r->part) team_meet();
     judge_touches(r, n * me / threads, n * (me + 1) / threads);
     team_meet();
     if (r->meets) small_points_judge(r, me, threads);
@@ -58,7 +61,7 @@ void small_error_step(struct small_run *r, int me, int threads)
         r->kernel->judge(s, at + some * me / threads, at + some * (me + 1) / threads);
         team_meet();
     }
-    if (!me) r->kernel->judge(s, s->group[s->serial], s->bundles);
+    if (!me) r->kernel->judge(s, s->group[s->serial], s->group[s->groups]);
     team_meet();
 }
 

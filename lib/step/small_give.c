@@ -73,6 +73,13 @@ static bool give_points(struct given *g)
     return room;
 }
 
+/* Are the bodies of a pair, of which none is an image, apart? */
+static bool is_apart(const struct small *s, const struct pair *q, double touching)
+{
+    const vec3 d = v3_sub(small_vec(s->place[q->b].x), small_vec(s->place[q->a].x));
+    return v3_dot(d, d) > touching * touching;
+}
+
 static bool give_pairs(struct given *g)
 {
     const struct small_run *r = g->r;
@@ -81,11 +88,13 @@ static bool give_pairs(struct given *g)
     for (int64_t i = 0; room && i < r->l->pairs.n; i++) {
         const struct pair *q = &r->l->pairs.pair[i];
         const int64_t slot = r->l->slot[i];
+        const double ra = s->place[q->a].r, touching = ra + s->place[q->b].r;
+        const bool image = q->shift[0] || q->shift[1] || q->shift[2];
+        if (!g->sum && !image && is_apart(s, q, touching)) continue; // without a look at the slot
+        const vec3 d = small_branch(s, slot);
+        if (!g->sum && v3_dot(d, d) > touching * touching) continue;
         const struct small_bundle *b = &s->bundle[slot / BUNDLE];
         const int k = (int)(slot % BUNDLE);
-        const vec3 d = small_branch(s, slot);
-        const double ra = s->place[q->a].r, touching = ra + s->place[q->b].r;
-        if (!g->sum && v3_dot(d, d) > touching * touching) continue;
         struct small_sum sum = { v3(b->sum[0][k] + b->f[0][k], b->sum[1][k] + b->f[1][k],
                                     b->sum[2][k] + b->f[2][k]),
                                  v3(0, 0, 0) };

@@ -3,6 +3,7 @@
 
 #include "contact/contact_law.h"
 #include "solve/lay.h"
+#include "step/small_part.h"
 #include "step/small_stiff.h"
 
 #include <stdlib.h>
@@ -41,54 +42,86 @@ static void colour_class(struct small_colours *c, const struct packing *p,
     }
 }
 
+/* in[pairs]: the group of each; those without a colour have one each, after the others. */
+static void small_number_groups(struct small_list *l, const struct small_colours *c,
+                                const bool *beside, int64_t *in)
+{
+    struct small *s = &l->s;
+    int64_t first[2][COLOURS + 1], groups = 0;
+    for (int class = 0; class < 2; class ++)
+        for (int k = 0; k < COLOURS; k++) {
+            first[class][k] = groups;
+            groups += c->count[class][k] > 0;
+        }
+    s->serial = groups;
+    for (int class = 0; class < 2; class ++) {
+        first[class][COLOURS] = groups;
+        groups += c->count[class][COLOURS];
+    }
+    s->groups = groups;
+    for (int64_t i = 0; i < l->pairs.n; i++) {
+        int64_t *at = &first[!beside[i]][c->of[i]];
+        in[i] = *at;
+        *at += c->of[i] == COLOURS;
+    }
+}
+
 static int64_t in_bundles(int64_t pairs)
 {
     return (pairs + BUNDLE - 1) / BUNDLE;
 }
 
-/* Groups and slots of all pairs; false when memory is short. */
-static bool small_lay(struct small_list *l, struct small_colours *c, const bool *beside)
+/* Of each group first the pairs that are told of early, then the others; after all groups the pairs of other processes.
+   False when memory is short. */
+static bool small_lay(struct small_list *l, const int64_t *in, const uint8_t *kind)
 {
     struct small *s = &l->s;
-    int64_t next[2][COLOURS + 1], groups = 0, alone = c->count[0][COLOURS] + c->count[1][COLOURS];
-    s->group = malloc((size_t)(2 * COLOURS + alone + 1) * sizeof *s->group);
-    if (!s->group) return false;
+    const int64_t n = s->groups;
+    int64_t *next = calloc((size_t)(2 * n + 1), sizeof *next);
+    s->group = malloc((size_t)(n + 1) * sizeof *s->group);
+    l->early = malloc((size_t)(n + 1) * sizeof *l->early);
+    if (!next || !s->group || !l->early) {
+        free(next);
+        return false;
+    }
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        next[kind[i] == PAIR_FOREIGN ? 2 * n : 2 * in[i] + (kind[i] == PAIR_LATER)]++;
     s->bundles = 0;
-    for (int class = 0; class < 2; class ++)
-        for (int k = 0; k < COLOURS; k++) {
-            next[class][k] = BUNDLE * s->bundles;
-            if (!c->count[class][k]) continue;
-            s->group[groups++] = s->bundles;
-            s->bundles += in_bundles(c->count[class][k]);
+    for (int64_t g = 0; g < n; g++)
+        for (int later = 0; later < 2; later++) {
+            const int64_t count = next[2 * g + later];
+            if (!later) s->group[g] = s->bundles;
+            next[2 * g + later] = BUNDLE * s->bundles, s->bundles += in_bundles(count);
+            if (!later) l->early[g] = s->bundles;
         }
-    s->serial = groups;
-    for (int class = 0; class < 2; class ++) {
-        next[class][COLOURS] = BUNDLE * s->bundles;
-        for (int64_t i = 0; i < c->count[class][COLOURS]; i++) s->group[groups++] = s->bundles++;
-    }
-    s->groups = groups, s->group[groups] = s->bundles;
-    for (int64_t i = 0; i < l->pairs.n; i++) {
-        int64_t *at = &next[!beside[i]][c->of[i]];
-        l->slot[i] = *at;
-        *at += c->of[i] == COLOURS ? BUNDLE : 1;
-    }
+    s->group[n] = s->bundles;
+    const int64_t foreign = next[2 * n];
+    next[2 * n] = BUNDLE * s->bundles, s->bundles += in_bundles(foreign);
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        l->slot[i] = next[kind[i] == PAIR_FOREIGN ? 2 * n : 2 * in[i] + (kind[i] == PAIR_LATER)]++;
+    free(next);
     return true;
 }
 
 static bool small_colour(struct small_list *l, const struct packing *p, const vec3 *x,
                          const vec3 *edge)
 {
+    const size_t n = (size_t)l->pairs.n + 1;
     struct small_colours c = { .used = malloc((size_t)(p->n + 1) * sizeof *c.used),
-                               .of = malloc((size_t)l->pairs.n + 1) };
-    bool *beside = malloc((size_t)l->pairs.n + 1);
-    l->slot = malloc((size_t)(l->pairs.n + 1) * sizeof *l->slot);
-    bool room = c.used && c.of && beside && l->slot;
+                               .of = malloc(n) };
+    bool *beside = malloc(n);
+    int64_t *in = malloc(n * sizeof *in);
+    uint8_t *kind = malloc(n);
+    l->slot = malloc(n * sizeof *l->slot);
+    bool room = c.used && c.of && beside && in && kind && l->slot;
     const double near = SMALL_BESIDE / SMALL_MARGIN * l->spare;
     for (int64_t i = 0; room && i < l->pairs.n; i++)
         beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
     for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
-    room = room && small_lay(l, &c, beside);
-    free(c.used), free(c.of), free(beside);
+    if (room) small_number_groups(l, &c, beside, in), memset(kind, PAIR_LATER, n);
+    if (room && l->part) room = small_part_divide(l->part, l, in, kind);
+    room = room && small_lay(l, in, kind) && (!l->part || small_part_laid(l->part, l));
+    free(c.used), free(c.of), free(beside), free(in), free(kind);
     return room;
 }
 

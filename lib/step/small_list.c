@@ -12,7 +12,7 @@ void small_list_empty(struct small_list *l)
     free(s->bundle), free(s->turn), free(s->shift), free(s->hold), free(s->stick), free(s->spring),
         free(s->live), free(s->late), free(s->until), free(s->group);
     small_marks_free(s);
-    free(l->slot), free(l->image), free(l->touch), free(l->pairs.pair);
+    free(l->slot), free(l->early), free(l->image), free(l->touch), free(l->pairs.pair);
     small_meetings_free(&l->meetings);
 }
 
@@ -23,7 +23,7 @@ void small_list_forget(struct small_list *l)
     s->spring = NULL, s->live = s->late = NULL, s->until = NULL, s->group = NULL;
     s->bundles = s->groups = s->serial = 0;
     s->mark = NULL, s->meets = s->first = NULL;
-    l->slot = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
+    l->slot = l->early = l->image = NULL, l->images = 0, l->touch = NULL, l->touches = l->room = 0;
     l->pairs = (struct pairs){ 0 }, l->meetings = (struct small_meetings){ 0 };
 }
 

@@ -43,7 +43,10 @@ struct small_list {
     struct small_meetings meetings;    /* of others */
     const struct surface *surface;     /* [walls] of meshes; borrowed */
     int64_t *slot;                     /* [pairs.n] of a pair: lane slot % 8 of bundle slot / 8 */
-    int64_t images, *image;            /* [images] pairs whose b is an image */
+    int64_t *early; /* [groups] bundles of a group from there on are swept later */
+    struct small_part
+        *part;              /* of these pairs and bodies [step/small_part.h]; NULL: all. Borrowed */
+    int64_t images, *image; /* [images] pairs whose b is an image */
     int64_t touches, room;
     struct small_touch *touch; /* [touches] by body, then by wall */
 };

@@ -8,6 +8,7 @@
 #include "step/small_gain.h"
 #include "step/small_load.h"
 #include "step/small_mark.h"
+#include "step/small_part.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
 #include "step/small_seam.h"
@@ -58,6 +59,12 @@ static double small_warm(const struct small_run *r, int64_t shaken)
     return 1 - FADES * (r->fall > 0 ? fmin(1, by * mean) : 1);
 }
 
+/* A sum over bodies is one over those of all processes. */
+static int64_t small_of_all(const struct small_run *r, int64_t x)
+{
+    return r->part ? r->part->ranks->sum(r->part->ranks, x) : x;
+}
+
 /* v^- and v, with the part `warm` of the reactions of the last step; in the first step of an interval v is free, and the
    reactions follow. Returns the largest v^2. */
 static double begin_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
@@ -68,14 +75,15 @@ static double begin_bodies(struct small_run *r, double warm, int64_t first, int6
     double most = 0;
     if (r->begins) warm = 0;
     if (r->pull) return small_pull_bodies(r, warm, first, end);
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         struct body *b = &s->body[i], *was = &s->before[i];
         double v2 = 0;
-        for (int k = 0; k < 3; k++) {
-            const double v = b->v[k], w = b->w[k], free = b->im > 0 ? fall[k] : 0;
-            b->v[k] = v + free + warm * (v - was->v[k] - free);
-            b->w[k] = w + warm * (w - was->w[k]);
-            was->v[k] = v, was->w[k] = w;
+        for (int j = 0; j < 3; j++) {
+            const double v = b->v[j], w = b->w[j], free = b->im > 0 ? fall[j] : 0;
+            b->v[j] = v + free + warm * (v - was->v[j] - free);
+            b->w[j] = w + warm * (w - was->w[j]);
+            was->v[j] = v, was->w[j] = w;
             v2 += v * v;
         }
         if (r->meets) v2 = small_point_speed(r, i) * small_point_speed(r, i);
@@ -90,10 +98,11 @@ static void move_bodies(struct small_run *r, int64_t first, int64_t end)
     const struct small *s = &l->s;
     int64_t shaken = 0;
     double most = 0;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         const struct body *b = &s->body[i];
         shaken += shaken_by(r, i);
-        for (int k = 0; k < 3; k++) s->place[i].x[k] += r->h * b->v[k];
+        for (int j = 0; j < 3; j++) s->place[i].x[j] += r->h * b->v[j];
         const vec3 way = v3_axpy(l->listed[i], l->since, l->drift[i]);
         const vec3 d = v3_sub(small_vec(s->place[i].x), way);
         most = dmax(most, v3_dot(d, d));
@@ -125,7 +134,7 @@ static void sweep_touches(struct small_run *r, int64_t first, int64_t end, bool 
     struct small_list *l = r->l;
     const int64_t last = small_list_touch(l, end, 0);
     for (int64_t i = small_list_touch(l, first, 0); i < last; i++)
-        if (!small_is_loaded(r, &l->touch[i]) &&
+        if (!small_is_loaded(r, &l->touch[i]) && small_is_own(r, l->touch[i].body) &&
             (!again || l->s.hot[l->touch[i].body] >= l->s.sweep - 1))
             solve_touch(r, &l->touch[i], again);
 }
@@ -136,15 +145,56 @@ static void end_touches(struct small_run *r, int64_t first, int64_t end)
     struct small_list *l = r->l;
     const int64_t last = small_list_touch(l, end, 0);
     for (int64_t i = small_list_touch(l, first, 0); i < last; i++)
-        if (!small_is_loaded(r, &l->touch[i])) small_touch_end(r, &l->touch[i]);
+        if (!small_is_loaded(r, &l->touch[i]) && small_is_own(r, l->touch[i].body))
+            small_touch_end(r, &l->touch[i]);
 }
 
 /* ---- pairs ---- */
+
+/* Bundles from .. to-1 of a group, by all threads */
+static bool sweep_share(struct small_run *r, int me, int threads, int64_t from, int64_t to,
+                        bool again)
+{
+    int64_t first, end;
+    small_share(to - from, me, threads, &first, &end);
+    return r->kernel->sweep(&r->l->s, from + first, from + end, again);
+}
+
+/* By several processes: while what is told of a group flies, the rest of it is swept. */
+static void sweep_part(struct small_run *r, int me, int threads, bool again)
+{
+    const struct small *s = &r->l->s;
+    bool far = false;
+    if (!me) small_part_send(r, 0);
+    for (int64_t g = 0; g < s->groups; g++) {
+        if (!me) small_part_receive(r, g);
+        team_meet();
+        far |= sweep_share(r, me, threads, s->group[g], r->l->early[g], again);
+        team_meet();
+        if (!me) small_part_send(r, g + 1);
+        far |= sweep_share(r, me, threads, r->l->early[g], s->group[g + 1], again);
+    }
+    if (far) r->far = true;
+}
+
+/* Has a sweep changed a body of anybody by too much? */
+static void agree_on_far(struct small_run *r)
+{
+    double far = r->far;
+    r->part->ranks->most(r->part->ranks, &far, 1);
+    r->far = far > 0;
+}
 
 static void sweep_pairs(struct small_run *r, int me, int threads, bool again)
 {
     struct small *s = &r->l->s;
     bool far = false;
+    if (r->part) {
+        sweep_part(r, me, threads, again);
+        team_meet();
+        if (!me) agree_on_far(r);
+        return;
+    }
     for (int64_t g = 0; g < s->serial; g++) {
         int64_t first, end;
         small_share(s->group[g + 1] - s->group[g], me, threads, &first, &end);
@@ -170,7 +220,7 @@ static void push_reactions(struct small_run *r, int me, int threads)
         team_meet();
     }
     if (me) return;
-    r->kernel->push(s, s->group[s->serial], s->bundles);
+    r->kernel->push(s, s->group[s->serial], s->group[s->groups]);
     for (int64_t i = 0; i < l->touches; i++) {
         struct small_touch *t = &l->touch[i];
         if (small_is_zero(t->f) && !(t->hold[HOLD_PULL] > 0)) continue;
@@ -187,12 +237,9 @@ static void push_reactions(struct small_run *r, int me, int threads)
 static double mean_load(const struct small_run *r)
 {
     const struct small_list *l = r->l;
+    const int64_t lanes = r->part ? l->pairs.n : BUNDLE * l->s.bundles;
     double sum = 0;
-    for (int64_t i = 0; i < l->s.bundles; i++)
-        for (int k = 0; k < BUNDLE; k++) {
-            const struct small_bundle *c = &l->s.bundle[i];
-            sum += 2 * v3_norm(v3(c->f[0][k], c->f[1][k], c->f[2][k]));
-        }
+    for (int64_t i = 0; i < lanes; i++) sum += 2 * v3_norm(small_along(r, l->s.bundle, i));
     for (int64_t i = 0; i < l->touches; i++) sum += v3_norm(small_vec(l->touch[i].f));
     return r->weight > 0 ? sum / r->weight : 0;
 }
@@ -205,7 +252,9 @@ static void fade_reactions(struct small_run *r, int me, int threads)
     int64_t shaken = 0;
     team_meet();
     if (!me) r->load = mean_load(r);
-    for (int64_t i = 0; !me && i < r->p->n; i++) shaken += shaken_by(r, i);
+    for (int64_t k = 0; !me && k < small_bodies_here(r); k++)
+        shaken += shaken_by(r, small_body_here(r, k));
+    if (!me) shaken = small_of_all(r, shaken);
     if (!me) *warm = small_warm(r, shaken) - 1;
     team_meet();
     if (*warm < 0) push_reactions(r, me, threads);
@@ -223,7 +272,7 @@ static void settle_pairs(struct small_run *r, int me, int threads)
         r->kernel->settle(s, s->group[g] + first, s->group[g] + end);
         team_meet();
     }
-    if (!me) r->kernel->settle(s, s->group[s->serial], s->bundles);
+    if (!me) r->kernel->settle(s, s->group[s->serial], s->group[s->groups]);
 }
 
 /* ---- a small step ---- */
@@ -236,10 +285,21 @@ static double fastest_wall(const struct small_run *r)
     return most;
 }
 
+/* How fast bodies are, and how far beside their ways, of all processes; and whether one of them has no memory */
+static void agree_on_bodies(struct small_run *r)
+{
+    double most[3] = { isfinite(r->fastest) ? r->fastest : INFINITY, r->strays, r->lost };
+    r->part->ranks->most(r->part->ranks, most, 3);
+    r->fastest = most[0], r->strays = most[1], r->lost = most[2] > 0;
+    r->stop = r->stop || r->lost;
+    small_part_begin(r);
+}
+
 /* By one thread: how far pairs may be that touch in the step, and whether the list will serve the next one */
 static void prepare_step(struct small_run *r)
 {
     struct small_list *l = r->l;
+    if (r->part) agree_on_bodies(r);
     const double wall = fastest_wall(r),
                  way = r->h * (fmax(sqrt(r->fastest), wall) + small_cell_stretch(r));
     if (!isfinite(way)) r->failed = r->stop = true;
@@ -312,20 +372,25 @@ static void small_converge(struct small_run *r, int me, int threads)
     team_meet();
     if (!me) {
         was = calloc((size_t)r->l->s.bodies + 1, sizeof *was);
-        r->compares = small_copy_init(&copy, r) && was;
+        r->lost = r->lost || !was || (r->part && !small_part_collect(r));
+        r->compares = small_copy_init(&copy, r) && !r->lost;
+        if (r->part) r->compares = small_of_all(r, r->compares) == r->part->ranks->n;
+        r->lost = !r->compares;
         if (was) small_copy_change(r, was);
-        r->lost = r->lost || !r->compares;
     }
     team_meet();
     for (r->compared = 0; r->compares && r->compared < SWEEPS_BOUNDED;) {
         if (!me) small_copy_wake(r);
         small_sweep_all(r, me, threads, true);
         if (!me) {
-            r->compares = small_copy_change(r, was) > CONVERGED * r->l->s.rate.allowed[0];
+            double change = small_copy_change(r, was);
+            if (r->part) r->part->ranks->most(r->part->ranks, &change, 1);
+            r->compares = change > CONVERGED * r->l->s.rate.allowed[0];
             r->compared++;
         }
         team_meet();
     }
+    if (!me && r->part && !r->lost) r->lost = !small_part_collect(r);
     if (!me && !r->lost) r->distance = small_copy_distance(&copy, r), small_copy_give(&copy, r);
     if (!me) small_copy_free(&copy, r), free(was);
     team_meet();
@@ -347,8 +412,9 @@ static void finish_step(struct small_run *r)
 void small_loop(void *arg, int me, int threads)
 {
     struct small_run *r = arg;
-    int64_t first, end;
-    small_share(r->l->s.bodies, me, threads, &first, &end);
+    int64_t first, end, from, to; // bodies of this process; of all, for touches
+    small_share(small_bodies_here(r), me, threads, &first, &end);
+    small_share(r->l->s.bodies, me, threads, &from, &to);
     while (r->made < r->n && !r->stop) {
         if (r->cell.moves) {
             if (!me) small_cell_begin(r);
@@ -385,7 +451,7 @@ void small_loop(void *arg, int me, int threads)
         if (r->judged) small_error_step(r, me, threads);
         if (r->compares && r->made + 1 == r->n) small_converge(r, me, threads);
         if (r->cell.moves && !me) small_cell_end(r);
-        end_touches(r, first, end);
+        end_touches(r, from, to);
         team_meet();
         if (r->meets) small_points_end(r, me, threads);
         if (r->loads.of && !me) small_loads_end(r);
@@ -395,5 +461,7 @@ void small_loop(void *arg, int me, int threads)
         team_meet();
         move_bodies(r, first, end);
         team_meet();
+        if (r->part && !me) r->shaken = small_of_all(r, r->shaken);
+        if (r->part) team_meet();
     }
 }

@@ -5,6 +5,7 @@
 #include "contact/contact_law.h"
 #include "solve/lay.h"
 #include "step/small_lay.h"
+#include "step/small_part.h"
 #include "step/small_past.h"
 #include "step/small_stiff.h"
 
@@ -194,6 +195,7 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
     double *radius = malloc((size_t)(p->n + 1) * sizeof *radius);
     int64_t n = 0;
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
+    if (l->part) l->pairs.part = l->part->ranks->me, l->pairs.parts = l->part->ranks->n;
     for (int64_t i = 0; x && radius && i < p->n; i++) {
         x[i] = v3_axpy(l->listed[i], half, l->drift[i]);
         radius[i] = p->radius[i] + half * v3_norm(v3_sub(l->drift[i], mean));
@@ -207,7 +209,7 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
         if (comes_near(l, p, o->edge, &l->pairs.pair[i])) l->pairs.pair[n++] = l->pairs.pair[i];
     l->pairs.n = n;
     free(x), free(radius);
-    return failure->status;
+    return l->part ? small_part_join(&l->pairs, l->part->ranks, failure) : failure->status;
 }
 
 /* ---- the list ---- */

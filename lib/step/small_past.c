@@ -4,30 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What a slot has of the past */
-struct small_past {
-    double f[3], couple[3], m[3], sum[3], turned[3];
-    double held[HOLD_COUNT];     /* from HOLD_WET on */
-    double spring[SPRING_COUNT]; /* from SPRING_REST to SPRING_GIVEN */
-};
-
-static struct small_past past_of(const struct small *s, int64_t slot)
+struct small_past small_slot_past(const struct small *s, int64_t slot)
 {
-    struct small_past x;
+    struct small_past x = { 0 };
     const int k = (int)(slot % BUNDLE);
-    const struct small_bundle *c = &s->bundle[slot / BUNDLE];
-    for (int j = 0; j < 3; j++) {
+    const int64_t i = slot / BUNDLE;
+    const struct small_bundle *c = &s->bundle[i];
+    for (int j = 0; j < 3; j++)
         x.f[j] = c->f[j][k], x.couple[j] = c->couple[j][k], x.sum[j] = c->sum[j][k];
-        x.m[j] = s->turn ? s->turn[slot / BUNDLE].m[j][k] : 0;
-        x.turned[j] = s->turn ? s->turn[slot / BUNDLE].sum[j][k] : 0;
-    }
-    for (int j = 0; j < HOLD_COUNT; j++) x.held[j] = s->hold ? s->hold[slot / BUNDLE].x[j][k] : 0;
-    for (int j = 0; j < SPRING_COUNT; j++)
-        x.spring[j] = s->spring ? s->spring[slot / BUNDLE].x[j][k] : 0;
+    for (int j = 0; j < 3 && s->turn; j++)
+        x.m[j] = s->turn[i].m[j][k], x.turned[j] = s->turn[i].sum[j][k];
+    for (int j = 0; j < HOLD_COUNT && s->hold; j++) x.held[j] = s->hold[i].x[j][k];
+    for (int j = 0; j < SPRING_COUNT && s->spring; j++) x.spring[j] = s->spring[i].x[j][k];
     return x;
 }
 
-static void set_past(struct small *s, int64_t slot, const struct small_past *x)
+void small_slot_set_past(struct small *s, int64_t slot, const struct small_past *x)
 {
     const int k = (int)(slot % BUNDLE);
     struct small_bundle *c = &s->bundle[slot / BUNDLE];
@@ -96,9 +88,9 @@ void small_carry_pairs(struct small_list *to, const struct small_list *from)
     bool found;
     for (int64_t i = 0; i < from->pairs.n; i++) {
         if (!pair_has_pushed(from, i) && !pair_holds(&from->s, from->slot[i])) continue;
-        const struct small_past x = past_of(&from->s, from->slot[i]);
+        const struct small_past x = small_slot_past(&from->s, from->slot[i]);
         k = small_list_pair(to, k, small_pair_key(&from->pairs.pair[i]), &found);
-        if (found) set_past(&to->s, to->slot[k], &x);
+        if (found) small_slot_set_past(&to->s, to->slot[k], &x);
     }
 }
 
@@ -127,7 +119,7 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
             continue;
         }
         at = small_list_pair(l, at, recall_key(r), &found);
-        if (found) set_past(&l->s, l->slot[at], &x);
+        if (found) small_slot_set_past(&l->s, l->slot[at], &x);
     }
     return room;
 }

@@ -3,6 +3,7 @@
 
 #include "state/rotation.h"
 #include "step/small_cell.h"
+#include "step/small_part.h"
 #include "step/small_stress.h"
 
 #include <math.h>
@@ -69,14 +70,15 @@ static void next_forces(struct small_run *r, int64_t i)
 double small_pull_bodies(struct small_run *r, double warm, int64_t first, int64_t end)
 {
     double most = 0;
-    for (int64_t i = first; i < end; i++) {
+    for (int64_t k = first; k < end; k++) {
+        const int64_t i = small_body_here(r, k);
         struct body *b = &r->l->s.body[i], *was = &r->l->s.before[i];
         const struct small_pull had = r->pull[i], *y = &r->pull[i];
         const vec3 v = small_vec(b->v), w = small_vec(b->w);
         next_forces(r, i);
-        for (int k = 0; k < 3; k++) {
-            b->v[k] += y->dv[k] + warm * (b->v[k] - was->v[k] - had.dv[k]);
-            b->w[k] += y->dw[k] + warm * (b->w[k] - was->w[k] - had.dw[k]);
+        for (int j = 0; j < 3; j++) {
+            b->v[j] += y->dv[j] + warm * (b->v[j] - was->v[j] - had.dv[j]);
+            b->w[j] += y->dw[j] + warm * (b->w[j] - was->w[j] - had.dw[j]);
         }
         small_array(was->v, v), small_array(was->w, w);
         const vec3 moves = small_cell_peculiar(r, small_vec(r->l->s.place[i].x), v);

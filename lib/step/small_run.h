@@ -95,6 +95,7 @@ struct small_pull {
 struct small_run {
     struct packing *p; /* its dt and t are those of the small step in hand */
     struct small_list *l;
+    struct small_part *part; /* of several processes, this one's [step/small_part.h]; NULL: alone */
     const struct small_kernels *kernel;
     struct small_wall *wall; /* [walls] */
     vec3 *x, *v, *turned;    /* [n] m, m/s; rad: by which bodies have turned */

@@ -18,6 +18,7 @@
 #include "step/small_load.h"
 #include "step/small_loop.h"
 #include "step/small_make.h"
+#include "step/small_part.h"
 #include "step/small_past.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"
@@ -81,6 +82,16 @@ static bool small_has_shapes(const struct packing *p)
     bool any = false;
     for (int64_t i = 0; p->shape && i < p->n && !any; i++) any = packing_shape(p, i) != NULL;
     return any;
+}
+
+const char *small_undivided(const struct packing *p, double bound)
+{
+    if (bound > 0) return "a bound on the missing impulse";
+    if (small_has_shapes(p) || p->mesh.elements) return "shapes other than balls, or meshes";
+    if (freedoms_in(p)) return "walls or cells that loads move";
+    if (small_cell_moves(p)) return "a cell that moves";
+    if (p->sums.n) return "sums of forces on faces";
+    return NULL;
 }
 
 struct small_sizes { /* m */
@@ -333,7 +344,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         r->v[i] = r->p->v[i];
     }
     small_list_free(r->l);
-    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves;
+    r->l->surface = o->near->surface, r->l->s.moves = r->cell.moves, r->l->part = r->part;
     r->l->interval = r->h * (double)r->n;
     rep->detection = 0, r->begins = true;
     while (!failure->status && !r->failed && r->made < r->n) {
@@ -368,6 +379,7 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
         }
         r->stop = false;
         team_do(o->threads, small_loop, r);
+        if (r->part && !r->lost) r->lost = !small_part_collect(r);
         if (r->lost) failure_set(failure, EX_SOFTWARE, "no memory for small steps");
         for (int64_t i = 0; i < r->p->n; i++) {
             r->x[i] = small_vec(r->l->s.place[i].x);
@@ -485,6 +497,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     if (touching_bond(p, failure)) return failure->status;
     const struct small_energy before = small_energy_of(p);
     struct small_run r = { .p = p, .l = l, .lock = PTHREAD_MUTEX_INITIALIZER };
+    if (o->part && o->part->ranks->n > 1) r.part = o->part;
     r.n = count, r.overlap = o->overlap, r.kernel = backend_widest()->small;
     r.bound = o->bound, r.compares = o->compare && !o->bare;
     r.h = p->dt / (double)r.n, r.ahead = (1 - p->theta) * r.h;
@@ -506,7 +519,8 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     *made = !failure->status && !r.failed && !servo_box_check_growth(p, failure);
     if (*made && r.meets) small_points_last(&r);
     // grains that break need the reactions of each step
-    if (*made && !small_give_contacts(&r, s, o->bare && !p->breakage, failure))
+    const bool reads = !r.part || !r.part->ranks->me || r.uneven; // others need no contacts
+    if (*made && reads && !small_give_contacts(&r, s, o->bare && !p->breakage, failure))
         *made = !r.uneven || !small_error_crushes(&r, s, o->overlap);
     if (*made && !failure->status && !small_bonds_keep(&r, failure) &&
         !small_bonds_laws(s, p, failure) &&
@@ -528,6 +542,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     rep->elapsed = report_seconds(CLOCK_WALL) - elapsed;
     small_loads_free(&r, !*made), small_stress_free(&r);
     small_points_free(&r), small_error_free(&r);
+    l->part = NULL;
     free(r.wall), free(r.x), free(r.v), free(r.turned), free(r.pull), free(r.sums);
     return failure->status;
 }

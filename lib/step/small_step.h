@@ -20,11 +20,14 @@ struct small_opt {
     bool bare;               /* nobody reads the errors and the contacts of this step */
     bool compare;            /* its last reactions are compared with converged ones */
     double bound;            /* of what is missing of reactions in each small step; 0: none */
+    struct small_part *part; /* this process's, of several with the same packing; NULL: alone */
     bool warm;               /* the first one starts from what the packing remembers */
 };
 
 /* What of a packing small steps do not have, in words; NULL: they have all */
 const char *small_lacks(const struct packing *p);
+/* What steps of a packing, whose errors may be bounded, are not divided between processes, in words; NULL: they are */
+const char *small_undivided(const struct packing *p, double bound);
 /* Is a step of a packing that they lack something for divided as finely as one that they give up? */
 bool small_divides(const struct packing *p);
 /* How many of them the step from where the packing is needs, that none moves a body by more than `overlap`

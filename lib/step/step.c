@@ -339,6 +339,7 @@ int step_in_small(struct packing *p, struct contacts *s, struct step_memory *kep
                                      .bare = o->bare,
                                      .compare = o->compare,
                                      .bound = o->bound,
+                                     .part = o->part,
                                      .warm = o->small_warm };
     rep->criterion = o->solve.criterion, rep->eps = o->solve.eps;
     small_advance(p, s, &kept->small, &small, rep, made, failure);

@@ -26,6 +26,8 @@ struct step_opt {
         small; /* radii: a step is made in small ones, of which each moves a body by so much at most
                       [step/small_step.h]; 0: at once */
     double bound; /* of what is missing of the reactions of small steps; 0: none */
+    struct small_part
+        *part; /* of small steps that several processes divide [step/small_part.h]; NULL: alone */
     bool compare; /* reactions of small steps are compared with converged ones, on a copy */
     struct solve_opt solve;
 };

@@ -79,34 +79,6 @@ ok "bonds with a stiffness" same "$tmp/bonded.h5" 2 -n 5 --stiffness 1e5 --conta
 
 unset alone
 
-# ---- small steps, which the first process makes ----
-
-same_small() # FILE ARGUMENT ...: the bytes of one process
-{
-    rm -f "$tmp"/one.h5 "$tmp"/many.h5
-    nsd-step --small-steps 0.01 "${@:2}" -o "$tmp/one.h5" "$1" 2>/dev/null
-    ranks 2 --small-steps 0.01 "${@:2}" -o "$tmp/many.h5" "$1" 2>"$tmp/said"
-    cmp "$tmp/one.h5" "$tmp/many.h5"
-}
-ok "small steps: the bytes of one process" same_small "$tmp/heap.h5" -n 20 --every 10 --contacts
-ok "and the processes that wait are said" grep -q "the first makes all small steps" "$tmp/said"
-jq -n '{ gravity: [0, 0, -9.81], dt: 1e-3, e_n: 0.5, materials: { heavy: { density: 2600000 } }, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
-    bodies: ([range(3) as $i | range(3) as $j | range(3) as $k | { x: [0.021 * $i, 0.021 * $j, 0.0101 + 0.0203 * $k], radius: 0.01 }] +
-        [{ x: [0.021, 0.021, 0.08], radius: 0.01, material: "heavy", v: [0, 0, -1] }]) }' | nsd-gen - >"$tmp/heavy.h5"
-ok "among steps that are made at once, too" same_small "$tmp/heavy.h5" -n 60
-
-# ---- grains that break, whose steps the first process makes ----
-
-jq -n '{ dt: 1e-3, gravity: [0, 0, -9.81], density: 2600, seed: 5, walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }],
-    kinds: { g: { breaks: { by: "energy", strength: 0.1, smallest: 3e-3, into: "balls" } } }, bodies: [{ count: 20, radius: 2e-3, kind: "g",
-        v: [0, 0, -1], box: { x: [0, 0.02], y: [0, 0.02], z: [0, null] } }] }' | nsd-gen - >"$tmp/breaks.h5"
-ok "grains that break: the bytes of one process" same_small "$tmp/breaks.h5" -n 15 --every 5 --contacts
-ok "they have broken" grep -q "[1-9][0-9]* grains have broken" "$tmp/said"
-ok "and the processes that wait are said" grep -q "the first makes all steps of grains that break" "$tmp/said"
-for order in colour block; do
-    ok "so with one solve per step and --order $order" same_small "$tmp/breaks.h5" -n 15 --every 5 --small-steps 0 --order $order
-done
-
 # ---- a program in the loop, which the first process talks to ----
 
 # shellcheck disable=SC2016 # for another shell
