@@ -155,7 +155,7 @@ def _bodies(columns: Mapping[str, ArrayLike | None], density: float | None) -> t
 
 
 class Run:
-    """A run: bodies and boundaries, stepped by this program. SI units throughout.
+    """A run: bodies and walls, stepped by this program. SI units throughout.
 
         with nsd.Run.from_scene("scene.json") as run:
             run.set(tolerance=1e-6)
@@ -165,7 +165,7 @@ class Run:
 
     Arrays of bodies (`position`, `force` ...) are views of the run's own memory: they show the state after each step,
     and keep that memory alive, also after close(). While any of them is in use bodies cannot be added or removed
-    (BufferError); `.copy()` makes an independent array. Arrays of contacts, boundaries and the cell are copies, of the last step.
+    (BufferError); `.copy()` makes an independent array. Arrays of contacts, walls and the cell are copies, of the last step.
 
     Threads may share a run: a call waits until that of another thread has ended, and what it returns is a copy, except the arrays of
     bodies, which change while another thread makes steps. After fork() a run belongs to the parent: in the child its calls
