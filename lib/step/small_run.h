@@ -78,7 +78,7 @@ struct small_shapes {
     int threads;
     struct small_scratch *scratch; /* [threads] */
     struct small_shares shares;
-    struct small_dues *dues; /* [step/small_anchor.c] */
+    struct small_dues *dues; /* [step/small_bond_point.c] */
     _Atomic bool failed;     /* memory was short */
 };
 

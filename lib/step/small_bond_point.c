@@ -1,4 +1,4 @@
-/* step/small_anchor.c: bonds at the points of meetings [step/small_anchor.h]. */
+/* step/small_bond_point.c: bonds at the points of meetings [step/small_anchor.h]. */
 #include "step/small_anchor.h"
 
 #include "base/array.h"
