@@ -1,6 +1,7 @@
 /* step/small_lay.c: the bundles of small steps [step/small_lay.h]. */
 #include "step/small_lay.h"
 
+#include "base/team.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
 #include "step/small_part.h"
@@ -9,7 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLOURS = 64 };
+enum {
+    COLOURS = 64,
+    PER_THREAD = 4096 /* pairs that are worth a thread: 100 us */
+};
+
+/* What parts of the pairs are laid from */
+struct small_layer {
+    struct small_list *l;
+    const struct packing *p;
+    const vec3 *x, *edge;
+    double near;  /* m */
+    bool *beside; /* [pairs] */
+};
 
 /* ---- groups ---- */
 
@@ -26,6 +39,13 @@ static double pair_gap(const struct packing *p, const vec3 *x, const vec3 *edge,
     vec3 d = v3_sub(x[pair->b], x[pair->a]);
     if (cell_repeats(&p->cell)) d = v3_add(d, cell_shift(edge, pair->shift));
     return v3_norm(d) - p->radius[pair->a] - p->radius[pair->b];
+}
+
+static void look_beside(void *arg, int64_t first, int64_t end)
+{
+    const struct small_layer *o = arg;
+    for (int64_t i = first; i < end; i++)
+        o->beside[i] = pair_gap(o->p, o->x, o->edge, &o->l->pairs.pair[i]) <= o->near;
 }
 
 static void colour_class(struct small_colours *c, const struct packing *p,
@@ -103,9 +123,10 @@ static bool small_lay(struct small_list *l, const int64_t *in, const uint8_t *ki
     return true;
 }
 
-static bool small_colour(struct small_list *l, const struct packing *p, const vec3 *x,
-                         const vec3 *edge)
+static bool small_colour(struct small_layer *o)
 {
+    struct small_list *l = o->l;
+    const struct packing *p = o->p;
     const size_t n = (size_t)l->pairs.n + 1;
     struct small_colours c = { .used = malloc((size_t)(p->n + 1) * sizeof *c.used),
                                .of = malloc(n) };
@@ -114,9 +135,8 @@ static bool small_colour(struct small_list *l, const struct packing *p, const ve
     uint8_t *kind = malloc(n);
     l->slot = malloc(n * sizeof *l->slot);
     bool room = c.used && c.of && beside && in && kind && l->slot;
-    const double near = SMALL_BESIDE / SMALL_MARGIN * l->spare;
-    for (int64_t i = 0; room && i < l->pairs.n; i++)
-        beside[i] = pair_gap(p, x, edge, &l->pairs.pair[i]) <= near;
+    o->near = SMALL_BESIDE / SMALL_MARGIN * l->spare, o->beside = beside;
+    if (room) team_share(team_size(), l->pairs.n, PER_THREAD, look_beside, o);
     for (int class = 0; room && class < 2; class ++) colour_class(&c, p, l, beside, class);
     if (room) small_number_groups(l, &c, beside, in), memset(kind, PAIR_LATER, n);
     if (room && l->part) room = small_part_divide(l->part, l, in, kind);
@@ -164,11 +184,18 @@ static void set_pair(struct small_list *l, const struct packing *p, const vec3 *
     contact_laws_rolling(p, pair->a, pair->b, &t->most[1][k], &t->most[0][k]);
 }
 
+static void set_pairs(void *arg, int64_t first, int64_t end)
+{
+    const struct small_layer *o = arg;
+    for (int64_t i = first; i < end; i++) set_pair(o->l, o->p, o->edge, i);
+}
+
 bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x,
                      const vec3 edge[3])
 {
     struct small *s = &l->s;
-    if (!small_colour(l, p, x, edge)) return false;
+    struct small_layer o = { .l = l, .p = p, .x = x, .edge = edge };
+    if (!small_colour(&o)) return false;
     s->bundle = lay_lines(s->bundles, sizeof *s->bundle);
     if (packing_rolls(p)) s->turn = lay_lines(s->bundles, sizeof *s->turn);
     if (cell_repeats(&p->cell)) s->shift = lay_lines(s->bundles, sizeof *s->shift);
@@ -185,6 +212,6 @@ bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *
     for (int64_t i = 0; i < s->bundles; i++)
         for (int k = 0; k < BUNDLE; k++)
             s->bundle[i].a[k] = body_place(p->n), s->bundle[i].b[k] = body_place(p->n + 1);
-    for (int64_t i = 0; i < l->pairs.n; i++) set_pair(l, p, edge, i);
+    team_share(team_size(), l->pairs.n, PER_THREAD, set_pairs, &o);
     return true;
 }

@@ -2,6 +2,7 @@
 #include "step/small_make.h"
 
 #include "base/array.h"
+#include "base/team.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
 #include "step/small_lay.h"
@@ -14,6 +15,8 @@
 
 /* Of the margin: by how much sooner pairs are looked at again than bounds of ways say */
 #define CLOSE 1e-3
+
+enum { PER_THREAD = 4096 }; /* pairs that are worth a thread: 50 us */
 
 /* ---- bodies ---- */
 
@@ -185,6 +188,35 @@ static bool comes_near(const struct small_list *l, const struct packing *p, cons
     return v3_dot(least, least) <= most * most;
 }
 
+/* Which pairs do */
+struct small_ways {
+    const struct small_list *l;
+    const struct packing *p;
+    const vec3 *edge;
+    bool *near; /* [pairs] */
+};
+
+static void look_along_ways(void *arg, int64_t first, int64_t end)
+{
+    const struct small_ways *o = arg;
+    for (int64_t i = first; i < end; i++)
+        o->near[i] = comes_near(o->l, o->p, o->edge, &o->l->pairs.pair[i]);
+}
+
+/* Leaves those that come near; false when memory is short. */
+static bool keep_near(struct small_list *l, const struct packing *p, const vec3 edge[3])
+{
+    int64_t n = 0;
+    struct small_ways o = { l, p, edge, malloc((size_t)l->pairs.n + 1) };
+    if (!o.near) return false;
+    team_share(team_size(), l->pairs.n, PER_THREAD, look_along_ways, &o);
+    for (int64_t i = 0; i < l->pairs.n; i++)
+        if (o.near[i]) l->pairs.pair[n++] = l->pairs.pair[i];
+    l->pairs.n = n;
+    free(o.near);
+    return true;
+}
+
 /* Pairs that come near: sought among those whose bodies, in the middle of their ways, are as large as half of these */
 static int seek_along(struct small_list *l, const struct packing *p, const struct small_start *o,
                       vec3 mean, struct failure *failure)
@@ -193,7 +225,6 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
     struct packing wide = *p;
     vec3 *x = malloc((size_t)(p->n + 1) * sizeof *x);
     double *radius = malloc((size_t)(p->n + 1) * sizeof *radius);
-    int64_t n = 0;
     l->pairs = (struct pairs){ .bodies = p->n, .reach = l->margin };
     if (l->part) l->pairs.part = l->part->ranks->me, l->pairs.parts = l->part->ranks->n;
     for (int64_t i = 0; x && radius && i < p->n; i++) {
@@ -201,13 +232,9 @@ static int seek_along(struct small_list *l, const struct packing *p, const struc
         radius[i] = p->radius[i] + half * v3_norm(v3_sub(l->drift[i], mean));
     }
     wide.radius = radius;
-    if (!x || !radius)
+    if (!x || !radius ||
+        (!seek_pairs(&l->pairs, &wide, x, o->edge, failure) && !keep_near(l, p, o->edge)))
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");
-    else
-        seek_pairs(&l->pairs, &wide, x, o->edge, failure);
-    for (int64_t i = 0; i < l->pairs.n; i++)
-        if (comes_near(l, p, o->edge, &l->pairs.pair[i])) l->pairs.pair[n++] = l->pairs.pair[i];
-    l->pairs.n = n;
     free(x), free(radius);
     return l->part ? small_part_join(&l->pairs, l->part->ranks, failure) : failure->status;
 }
