@@ -1,4 +1,4 @@
-/* base/array.h: arrays that grow. */
+/* base/array.h: arrays that grow, and are sorted. */
 #pragma once
 
 #include <stdbool.h>
@@ -22,3 +22,6 @@ static inline bool array_grow(void *array, int64_t *room, int64_t least, size_t 
     *room = wanted;
     return true; // cppcheck-suppress memleak ; the caller's pointer has it
 }
+
+/* As qsort(), but rows of the same rank keep their order; fast where two runs, one after the other, are sorted */
+void array_sort(void *array, int64_t n, size_t size, int (*order)(const void *, const void *));

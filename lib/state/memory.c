@@ -1,6 +1,7 @@
 /* state/memory.c: the reactions that last from step to step [state/memory.h]. */
 #include "state/memory.h"
 
+#include "base/array.h"
 #include "state/fields.h"
 
 #include <stdlib.h>
@@ -98,9 +99,7 @@ void memory_scale(struct memory *m, double factor)
 
 void memory_sort(struct memory *m)
 {
-    int64_t i = 1; // mostly they are sorted
-    while (i < m->n && memory_compare(&m->recall[i - 1], &m->recall[i]) <= 0) i++;
-    if (i < m->n) qsort(m->recall, (size_t)m->n, sizeof *m->recall, memory_compare);
+    array_sort(m->recall, m->n, sizeof *m->recall, memory_compare);
 }
 
 void memory_follow(struct memory *m, const int32_t *row)

@@ -1,6 +1,7 @@
 /* step/small_give.c: the contacts at the end of small steps [step/small_give.h]. */
 #include "step/small_give.h"
 
+#include "base/array.h"
 #include "step/small_wall.h"
 
 #include <stdlib.h>
@@ -127,7 +128,7 @@ static bool sort_given(struct contacts *out, struct small_sum *sum)
 {
     struct small_given *all = malloc((size_t)(out->n + 1) * sizeof *all);
     for (int64_t i = 0; all && i < out->n; i++) all[i] = (struct small_given){ out->c[i], sum[i] };
-    if (all) qsort(all, (size_t)out->n, sizeof *all, by_key);
+    if (all) array_sort(all, out->n, sizeof *all, by_key);
     for (int64_t i = 0; all && i < out->n; i++) out->c[i] = all[i].c, sum[i] = all[i].sum;
     free(all);
     return all != NULL;

@@ -355,8 +355,9 @@ static void small_sweeps(struct small_run *r, int me, int threads)
         far = small_sweep_all(r, me, threads, k > 0);
         if (far) continue;
         far = r->bound > 0 && small_error_exceeds(r, me, threads);
-        far = far || (r->gains && small_gains(r, me, &gain));
         if (far && !me) small_copy_wake(r), r->far = true;
+        if (!far && r->gains && (far = small_gains(r, me, &gain)) && !me)
+            small_points_wake(r), r->far = true;
         team_meet();
     }
 }

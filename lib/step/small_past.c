@@ -106,7 +106,8 @@ bool small_list_recall(struct small_list *l, const struct packing *p, double par
         small_array(x.f, v3_scale(part, r->r)), small_array(x.m, v3_scale(part, r->m));
         for (int k = 0; k < 3; k++)
             x.sum[k] = -x.f[k], x.turned[k] = -x.m[k]; // the interval before has counted it
-        struct small_meeting *m = small_meetings_find(&l->meetings, recall_key(r));
+        struct small_meeting *m =
+            small_meets(p, r->a, r->b) ? small_meetings_find(&l->meetings, recall_key(r)) : NULL;
         if (m) {
             room = room && small_meeting_recall(m, r, part);
             continue;

@@ -29,6 +29,8 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end);
 void small_points_look(struct small_run *r, int me, int threads);
 void small_points_start(struct small_run *r, int me, int threads);
 void small_points_sweep(struct small_run *r, int me, int threads, bool again);
+/* By one thread: bodies that meet others at points are to be swept again. */
+void small_points_wake(struct small_run *r);
 /* What is missing of their reactions [step/small_error.h] */
 void small_points_judge(struct small_run *r, int me, int threads);
 void small_points_end(struct small_run *r, int me, int threads);

@@ -257,6 +257,17 @@ void small_meeting_mark(struct small_run *r, const struct small_meeting *m, doub
     if (mark_body(s, b, change, allowed) || far) r->far = true;
 }
 
+void small_points_wake(struct small_run *r)
+{
+    struct small *s = &r->l->s;
+    for (int64_t i = 0; i < r->l->meetings.n; i++) {
+        const struct small_meeting *m = &r->l->meetings.of[i];
+        if (!m->points || !m->rounds) continue;
+        s->hot[m->key.b] = s->sweep;
+        if (m->key.a >= 0) s->hot[m->key.a] = s->sweep;
+    }
+}
+
 static bool is_hot(const struct small *s, const struct small_meeting *m)
 {
     const int32_t a = m->key.a, b = m->key.b, last = s->sweep - 1;

@@ -109,8 +109,8 @@ static struct small_sizes small_sizes(const struct packing *p)
     return s;
 }
 
-/* m: in a small step a body goes R of its own size and of this one at most. Where grains break, few small bodies
-   that are slow do not set the number of small steps; what a large one leaves of an overlap with a small one is bounded. */
+/* m: in a small step a body goes R of this size at most. Where grains break, few small fragments do not set the number of
+   small steps; what a large body leaves of an overlap with a small one is bounded. */
 #define COARSE 4
 static double small_coarse(const struct packing *p)
 {
@@ -124,19 +124,6 @@ static double small_fastest(const struct packing *p)
     double most = small_wall_speed(p);
     const struct small_flow flow = small_cell_flow(p);
     for (int64_t i = 0; i < p->n; i++) most = dmax(most, small_body_speed(p, &flow, i));
-    return most;
-}
-
-/* 1/s: the largest speed of a body or wall, which gains `more` (m/s), over its size */
-static double small_hurry(const struct packing *p, double more)
-{
-    const struct small_flow flow = small_cell_flow(p);
-    const double coarse = small_coarse(p);
-    double most = (small_wall_speed(p) + more) / coarse;
-    for (int64_t i = 0; i < p->n; i++) {
-        const double size = fmin(small_size(p, i), coarse);
-        most = dmax(most, (small_body_speed(p, &flow, i) + more) / size);
-    }
     return most;
 }
 
@@ -197,13 +184,14 @@ static const double SPARED[2] = { 2, 1.5 };
 /* Times the small steps of the other limits: where walls crush bodies reactions grow without end */
 enum { CARRIED_MOST = 4 };
 
-/* Of a packing that is in such a hurry (1/s) [small_hurry()]; 0: too many */
-static int64_t small_count_at(const struct packing *p, double overlap, double hurry)
+/* Of a packing whose fastest body has this speed (m/s); 0: too many */
+static int64_t small_count_at(const struct packing *p, double overlap, double fastest)
 {
     const bool points = small_has_shapes(p);
     const double size = freedoms_in(p) ? small_sizes(p).least : small_coarse(p);
     const double permits = CARRIED[points] * overlap * size;
-    double n = fmax(1, p->dt * fmax(hurry / overlap, 1 / small_steady(p)));
+    const double way = overlap * small_coarse(p);
+    double n = fmax(1, p->dt * fmax(fastest / way, 1 / small_steady(p)));
     const double spared = freedoms_in(p) ? 1 : SPARED[points];
     n = fmax(n, fmin(p->dt * sqrt(small_carries(p) / permits) / spared, CARRIED_MOST * n));
     n = fmax(n, small_stiff_count(p));
@@ -212,7 +200,7 @@ static int64_t small_count_at(const struct packing *p, double overlap, double hu
 
 int64_t small_count(const struct packing *p, double overlap)
 {
-    return small_count_at(p, overlap, small_hurry(p, packing_most_fall(p) + small_tie_speed(p)));
+    return small_count_at(p, overlap, small_fastest(p) + packing_most_fall(p) + small_tie_speed(p));
 }
 
 /* m/s: the largest speed of the bodies of a pair of the list against each other where the interval begins, or of a body against a wall
@@ -243,7 +231,7 @@ static void small_count_near(struct small_run *r)
     if (r->l->serves < dt) return; // it does not have what fast bodies meet later
     p->dt = dt;
     const double fastest = small_near_speed(r) + packing_most_fall(p) + small_tie_speed(p);
-    const int64_t n = small_count_at(p, r->overlap, fastest / r->thin);
+    const int64_t n = small_count_at(p, r->overlap, fastest);
     p->dt = r->h;
     if (!n || n >= r->n) return;
     r->n = n, r->h = p->dt = dt / (double)n, r->ahead = (1 - p->theta) * r->h;

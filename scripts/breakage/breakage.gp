@@ -29,21 +29,14 @@ unset y2label
 unset y2tics
 set border 3
 
-set terminal pngcairo size 1080,440 font "DejaVu Sans,12"
-set output folder . "/oedometer.png"
-set multiplot layout 1,2
-set logscale x
-set autoscale y
-set key left bottom
-set xlabel "stress, Pa"
-set ylabel "voids ratio"
-plot for [s = 1:2] folder . "/oedometer.tsv" using ($1 == s ? $2 : 1 / 0):3 with linespoints pt 7 ps 0.7 lw 1.5 \
-    lc rgb (s == 1 ? "#c1440e" : "#56309b") title sprintf("packing %d", s)
-set logscale y
-set xrange [0.04:3]
-set yrange [100:4000]
-set xlabel "size d, mm"
-set ylabel "grains of at least d"
-plot for [s = 1:2] folder . "/oedometer-grading.tsv" using ($1 == s && $3 > 0 ? $2 : 1 / 0):3 with points pt 7 ps 0.7 \
-    lc rgb (s == 1 ? "#c1440e" : "#56309b") title sprintf("packing %d", s)
+set terminal pngcairo size 1080,300 font "DejaVu Sans,12"
+set output folder . "/grain.png"
+set multiplot layout 1,3 margins 0.01,0.99,0.02,0.88 spacing 0.01
+set size ratio -1
+unset border; unset tics; unset key; unset grid; unset xlabel; unset ylabel
+set autoscale
+do for [k = 1 : 3] {
+    set title sprintf("%s ms", word("50 51 80", k))
+    plot folder . sprintf("/grain-%s.png", word("500 510 800", k)) binary filetype=png with rgbimage
+}
 unset multiplot

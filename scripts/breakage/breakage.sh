@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The experiments of docs/breakage: breakage.sh FOLDER puts their tables there, NAME.tsv, and pictures of them. FULL=1: the mill
-# turns for 20 s, not 2. EXPERIMENTS='plates weibull mill oedometer': some of them; pictures are drawn of all.
+# turns for 20 s, not 2. EXPERIMENTS='plates grain weibull mill': some of them; pictures are drawn of all.
 set -euo pipefail
 folder=$1 full=${FULL-}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -22,6 +22,22 @@ plates() {
         done | tr '\n' '\t' || true
         echo
     done
+}
+
+# Pictures of such a grain before, 1 ms and 30 ms after it breaks: a plate of 20 g, of which the force ends then
+grain() {
+    local document step
+    document=$(mktemp)
+    jq -n '{ dt: 1e-4, gravity: [0, 0, -9.81], density: 2600, seed: 1, mu: 0.4,
+        materials: { grain: { breaks: { by: "force", strength: 1e6, smallest: 3.5e-3 } } },
+        bodies: [{ x: [0, 0, 2e-3], radius: 2e-3, material: "grain" }],
+        walls: [{ point: [0, 0, 0], normal: [0, 0, 1] }, { point: [0, 0, 4e-3], normal: [0, 0, -1],
+            load: { along: [0, 0, -1], mass: 0.02, force: { table: [[0, 0], [0.05, 16.02], [0.0502, 0.2], [1, 0.2]] } } }] }' |
+        nsd-gen - | step -n 800 --every 10 >"$document"
+    for step in 500 510 800; do
+        nsd-view -s $step -c generation --bare --camera 30,10 --size 480x360 -o "$folder/grain-$step.png" "$document" 2>/dev/null
+    done
+    rm "$document"
 }
 
 # 1000 grains of 2 mm, each pressed to the floor by a force that rises: the fraction that has broken over the force, N, and the
@@ -47,32 +63,8 @@ mill() {
             1e3 * $b.dust] | map(. * 1e3 | round / 1e3) | @tsv'
 }
 
-# 1000 discs between frictionless plates, of which the upper one is pressed by a stress that rises from 100 Pa by a decade in
-# 0.53 s: their strength is 1 kPa by shear, Weibull modulus 3, and falls with size. Two packings; a row has the seed, the stress (Pa), the voids
-# ratio, the fraction of the discs that have broken, grains, d10, d50 (mm), the fractal dimension. The grading at the end:
-# oedometer-grading.tsv, the seed, size (mm), grains that are not smaller.
-oedometer() {
-    local seed mass start document
-    start=$(mktemp) document=$(mktemp)
-    : >"$folder/oedometer-grading.tsv"
-    for seed in 1 2; do
-        jq --argjson seed $seed '.seed = $seed' "$here/oedometer.json" | nsd-gen - >"$start"
-        mass=$(nsd-info -b "$start" | jq -s 'map(.mass // 0) | add')
-        step --small-steps 0.02 --until 0.45 --every 0.05s "$start" >"$document"
-        { nsd-info -w --only lid "$document" && nsd-stat -m breakage "$document"; } |
-            jq -rs --argjson seed $seed --argjson mass "$mass" 'map(select(.wall)) as $lid | map(select(.breakage)) as $grains |
-                range($lid | length) | $lid[.] as $l | $grains[.] as $g | $g.breakage as $b |
-                [$seed, $l.load.force / 0.06, 0.06 * $l.point[1] / (($mass - $b.dust) / 2600) - 1, $b.broken, $b.bodies,
-                    1e3 * $b.d10, 1e3 * $b.d50, $b.dimension] | map(. * 1e3 | round / 1e3) | @tsv'
-        [ $seed != 1 ] || nsd-view -c generation --bare --size 480x500 -o "$folder/oedometer-packing.png" "$document" 2>/dev/null
-        nsd-stat -m grading "$document" | tail -n 1 |
-            jq -r --argjson seed $seed '.grading | range(.size | length) as $i | [$seed, 1e3 * .size[$i], .larger[$i]] | @tsv' \
-                >>"$folder/oedometer-grading.tsv"
-    done
-    rm "$start" "$document"
-}
-
-for experiment in ${EXPERIMENTS-plates weibull mill oedometer}; do
+for experiment in ${EXPERIMENTS-plates grain weibull mill}; do
     $experiment >"$folder/$experiment.tsv"
 done
 gnuplot -e "folder = '$folder'" "$here/breakage.gp"
+rm -f "$folder"/grain{.tsv,-500.png,-510.png,-800.png}

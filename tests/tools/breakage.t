@@ -26,19 +26,19 @@ damage() { nsd-info --last -p "$1" | jq -c 'select(.damage != null).damage'; }
 
 # ---- what a break costs ----
 
-# small STRENGTH: small steps of ten steps of 1 ms, 8 layers of balls, of which one has this strength
+# small STRENGTH: small steps of 11 steps of 1 ms, 21 layers of balls, of which one has this strength
 small() {
     jq -n "{ dt: 1e-3, density: 2600, seed: 5, mu: 0.4,
-        materials: { other: {}, weak: { breaks: { by: \"force\", strength: $1, smallest: 1e-3 } } },
-        walls: [{ box: { x: [0, 16e-3], y: [0, 16e-3], z: [0, null] } }],
-        bodies: [range(512) as \$i | { radius: 1e-3, material: (if \$i == 37 then \"weak\" else \"other\" end),
-            x: [(\$i % 8 * 2 + 1) * 1e-3, ((\$i / 8 | floor) % 8 * 2 + 1) * 1e-3, ((\$i / 64 | floor) * 2 + 1) * 1e-3] }] }" |
-        nsd-gen - | nsd-step -n 3 --every 3 2>&1 >"$tmp/small-$1.h5" | sed -n 's/.* were made in \([0-9]*\) small ones/\1/p'
+        materials: { other: {}, weak: { breaks: { by: \"force\", strength: $1, smallest: 1.5e-3 } } },
+        walls: [{ box: { x: [0, 44e-3], y: [0, 44e-3], z: [0, null] } }],
+        bodies: [range(10164) as \$i | { radius: 1e-3, material: (if \$i == 2000 then \"weak\" else \"other\" end),
+            x: [(\$i % 22 * 2 + 1) * 1e-3, ((\$i / 22 | floor) % 22 * 2 + 1) * 1e-3, ((\$i / 484 | floor) * 2 + 1) * 1e-3] }] }" |
+        nsd-gen - | nsd-step -n 11 --every 11 2>&1 >"$tmp/small-$1.h5" | sed -n 's/.* were made in \([0-9]*\) small ones/\1/p'
 }
 whole=$(small 1e12)
 broken=$(small 1)
-ok "a grain of 512 that breaks into pieces adds less than a fifth to the small steps: $whole, $broken" test $((5 * broken)) -lt $((6 * whole))
-ok "and it has broken" holds -n "$(nsd-info --last "$tmp/small-1.h5" | jq -s '[.[] | select(.step != null)][0].bodies') > 512"
+ok "a grain of 10 164 that breaks into pieces adds less than a fifth to the small steps: $whole, $broken" test $((5 * broken)) -lt $((6 * whole))
+ok "and it has broken" holds -n "$(nsd-info --last "$tmp/small-1.h5" | jq -s '[.[] | select(.step != null)][0].bodies') > 10164"
 
 # ---- loads, by closed forms ----
 
@@ -317,6 +317,28 @@ like "1100 grains are due: 1000 break in a step, which is said" "$(cat "$tmp/sai
 is "the others are there" "$(nsd-info --last "$tmp/some.h5" | jq 'select(.step != null).bodies')" 100
 is "and break in the next" "$(step -n 1 "$tmp/some.h5" | nsd-info | jq 'select(.step != null).bodies')" 0
 
+# ---- together with other things ----
+
+weak='{ "by": "force", "strength": 20, "smallest": 1.5e-3, "into": "balls" }'
+tower='[{ "x": [0, 0, 1e-3], "radius": 1e-3, "material": "g", "fixed": true }, { "x": [0, 0, 3e-3], "radius": 1e-3, "material": "g" },
+    { "x": [0, 0, 5e-3], "radius": 1e-3, "material": "g" }]'
+ground='"walls": [{ "point": [0, 0, 0], "normal": [0, 0, 1], "material": "g" }], "gravity": [0, 0, -9.81]'
+for small in 0 0.01; do
+    scene "$weak" "$tower" "$ground" | nsd-gen - | step --small-steps $small -n 20 >"$tmp/tower.h5"
+    is "a held ball and a wall of a material that breaks stay, R = $small" \
+        "$(nsd-info --last -p "$tmp/tower.h5" | jq -s -c '[.[] | select(.id != null)] | [length > 3, (.[] | select(.id == 0) | .generation)]')" '[true,0]'
+    scene "$weak" "${tower/\"fixed\": true/\"v\": [0, 0, 0]}" "$ground, "'"pairs": [{ "pair": ["g", "g"], "adhesion": { "c_n": 2e9, "c_t": 1e9, "w": 0.2, "eta": 1e-4 } }]' |
+        nsd-gen - | step --small-steps $small -n 20 >"$tmp/glued.h5"
+    is "bonded grains break, R = $small" "$(nsd-info --last "$tmp/glued.h5" | jq 'select(.step != null).bodies')" 39
+    scene '{ "by": "force", "strength": 100, "smallest": 1.5e-3 }' \
+        '[{ "count": 20, "radius": 1e-3, "material": "g", "box": { "x": [0, 0.01], "y": [0, 0.01], "z": [0, 0.01] } }]' \
+        '"cell": { "lengths": [0.01, 0.01, 0.01], "stress": { "pressure": 1000, "mass": 1e-3 } }' | nsd-gen - >"$tmp/cell.h5"
+    step --small-steps $small -n 60 "$tmp/cell.h5" >"$tmp/pressed.h5"
+    ok "in a cell under a pressure grains break, and mass is that of the start, R = $small" holds -n \
+        "$(nsd-stat -m breakage "$tmp/pressed.h5" | tail -n 1 | jq .breakage) as \$b | \$b.broken > 0.2 and
+        (($(nsd-info --last -p "$tmp/pressed.h5" | jq -s 'map(.mass // 0) | add') + \$b.dust) / $(nsd-info -p "$tmp/cell.h5" | jq -s 'map(.mass // 0) | add') - 1 | fabs) < 1e-13"
+done
+
 # ---- what is refused ----
 
 breaks() { # NAME PATTERN BREAKS [BODIES [MORE]]
@@ -342,6 +364,9 @@ breaks "damage by force" 'materials.g.breaks.damage: goes with "by": "energy"' \
 breaks "a rounded brick" 'materials.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "brick"' \
     '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' \
     '"shapes": { "brick": { "box": [3e-3, 2e-3, 1e-3], "round": 1e-4 } }'
+breaks "a clump" 'materials.g.breaks: only balls and polyhedra without a round break, and body 0 has the shape "pair"' \
+    '{ "by": "force", "strength": 1, "smallest": 1e-3 }' '[{ "x": [0, 0, 0.1], "radius": 1e-3, "material": "g", "shape": "pair" }]' \
+    '"shapes": { "pair": { "balls": [[-0.5, 0, 0, 0.5], [0.5, 0, 0, 0.5]] } }'
 breaks "a brick into balls" 'materials.g.breaks: only balls break into balls' \
     '{ "by": "force", "strength": 1, "smallest": 1e-3, "into": "balls" }' '[{ "x": [0, 0, 0.1], "material": "g", "shape": "brick" }]' "$solids"
 
