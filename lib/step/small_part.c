@@ -244,7 +244,7 @@ static bool lay_wires(struct division *d)
         if (w->borrows > (int64_t)most) most = (size_t)w->borrows;
     }
     free(y->message);
-    y->message = malloc((most + 1) * 16 * sizeof(double));
+    y->message = malloc((most + 1) * MESSAGE * sizeof *y->message);
     return room && y->wire && y->message;
 }
 
@@ -254,7 +254,7 @@ static void mark_early(const struct division *d, uint8_t *kind)
     const struct small_part *y = d->y;
     for (int k = 0; k < y->wires; k++) {
         const struct small_wire *w = &y->wire[k];
-        for (int64_t g = 0, at = 0; g + 1 < y->phases; g++) {
+        for (int64_t g = 0, at = 0; w->go && g + 1 < y->phases; g++) {
             if (w->go[g + 1] == w->go[g + 2]) continue;
             for (int64_t j = w->go[g + 1]; j < w->go[g + 2]; j++) d->since[w->go_body[j]] = -3 - g;
             while (at < d->pairs && d->in[d->pair[at]] < g) at++;

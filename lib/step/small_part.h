@@ -31,6 +31,9 @@ struct small_ranks {
     char *(*gather)(struct small_ranks *y, const void *bytes, size_t size, struct gathered *at);
 };
 
+/* Doubles of a message, of each body at most */
+enum { MESSAGE = 16 };
+
 /* In a group: pairs after which something is told, others, and those of other processes alone */
 enum pair_kind { PAIR_EARLY, PAIR_LATER, PAIR_FOREIGN };
 
@@ -55,7 +58,7 @@ struct small_part {
     struct small_wire *wire; /* [wires] */
     int64_t *along;          /* [pairs] pairs in the order of one process's slots */
     int64_t *pair;           /* [lanes] the pair in a slot; -1: none */
-    char *message;           /* [the longest] */
+    double *message;         /* [MESSAGE (1 + the bodies of the longest)] */
 };
 
 /* Bodies of this process, and the k-th of them */

@@ -18,6 +18,10 @@ struct told_place {
     double x[3], v[3], w[3]; /* m; m/s, rad/s: before the step */
 };
 
+_Static_assert(sizeof(struct told_motion) <= MESSAGE * sizeof(double) &&
+                   sizeof(struct told_place) <= MESSAGE * sizeof(double),
+               "bodies have room in a message");
+
 static void put_motion(struct told_motion *to, const struct small *s, int64_t i)
 {
     memcpy(to->v, s->body[i].v, sizeof to->v), memcpy(to->w, s->body[i].w, sizeof to->w);
