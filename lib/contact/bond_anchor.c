@@ -22,29 +22,44 @@ static vec3 nearest_image(const struct cell *cell, const vec3 edge[3], vec3 at, 
     return at;
 }
 
-/* The contact of bond b; at->q has no half step of balls, whose turning is constant. */
-static struct contact bond_anchor_place(const struct packing *p, const struct bond *b,
-                                        const struct positions *at)
+struct contact bond_anchor_contact(const struct packing *p, const struct bond *b,
+                                   const struct pose of[2], const vec3 edge[3])
 {
-    const vec3 *x = at->x;
-    const quat *q = at->q;
     struct contact c = { .a = b->a, .b = b->b, .feature = b->feature };
-    quat qb = packing_shape(p, b->b) ? q[b->b] : rotation_predict(p, b->b);
-    vec3 xb = v3_add(v3_add(x[b->b], cell_shift(at->edge, b->shift)), quat_turn(qb, b->at_b)), xa;
-    if (b->a < 0) {
-        const struct pose pose = wall_pose(p, &p->wall[-1 - b->a], at->t);
-        xa = nearest_image(&p->cell, at->edge, pose_of(&pose, b->at_a), xb);
-    } else {
-        quat qa = packing_shape(p, b->a) ? q[b->a] : rotation_predict(p, b->a);
-        xa = v3_add(x[b->a], quat_turn(qa, b->at_a));
-    }
+    const vec3 xb = pose_of(&of[1], b->at_b);
+    vec3 xa = pose_of(&of[0], b->at_a);
+    if (b->a < 0) xa = nearest_image(&p->cell, edge, xa, xb);
     for (int k = 0; k < 3; k++) c.shift[k] = b->shift[k];
-    vec3 n = quat_turn(qb, b->axis);
+    vec3 n = quat_turn(of[1].q, b->axis);
     if (p->dim == 2) n.z = 0;
     contact_basis(&c, p->dim, v3_scale(1 / v3_norm(n), n));
     c.x = v3_scale(0.5, v3_add(xa, xb)), c.gap = v3_dot(c.n, v3_sub(xb, xa));
     packing_set_law(p, &c);
     return c;
+}
+
+/* The same; at->q has no half step of balls, whose turning is constant. */
+static struct contact bond_anchor_place(const struct packing *p, const struct bond *b,
+                                        const struct positions *at)
+{
+    struct pose of[2];
+    for (int side = 0; side < 2; side++) {
+        const int32_t i = side ? b->b : b->a;
+        if (i < 0)
+            of[side] = wall_pose(p, &p->wall[-1 - i], at->t);
+        else
+            of[side].q = packing_shape(p, i) ? at->q[i] : rotation_predict(p, i),
+            of[side].shift = at->x[i];
+    }
+    of[1].shift = v3_add(of[1].shift, cell_shift(at->edge, b->shift));
+    return bond_anchor_contact(p, b, of, at->edge);
+}
+
+bool bond_anchor_near(const struct packing *p, const struct contact *c, vec3 x)
+{
+    const double near = NEAR * packing_smaller_radius(p, c);
+    const vec3 d = v3_sub(x, c->x);
+    return v3_dot(d, d) <= near * near;
 }
 
 /* Is the contact where one of these is, which are sorted? *from: where its pair's begin */
@@ -53,12 +68,10 @@ static bool is_taken(const struct packing *p, const struct contact *c, const str
 {
     while (*from < n && (of[*from].a < c->a || (of[*from].a == c->a && of[*from].b < c->b)))
         ++*from;
-    double near = NEAR * packing_smaller_radius(p, c);
     for (int64_t i = *from; i < n && of[i].a == c->a && of[i].b == c->b; i++) {
-        vec3 d = v3_sub(of[i].x, c->x);
         bool same = true;
         for (int k = 0; k < 3; k++) same = same && of[i].shift[k] == c->shift[k];
-        if (same && v3_dot(d, d) <= near * near) return true;
+        if (same && bond_anchor_near(p, c, of[i].x)) return true;
     }
     return false;
 }
@@ -113,17 +126,22 @@ static struct pose ahead_of(const struct packing *p, int64_t i, double ahead)
     return (struct pose){ rotation_predict(p, i), packing_predict(p, i) };
 }
 
+void bond_anchor_at(struct bond *b, const struct contact *c, double area, const struct pose of[2])
+{
+    const vec3 half = v3_scale(0.5 * c->gap, c->n);
+    b->at_b = quat_turn_back(of[1].q, v3_sub(v3_add(c->x, half), of[1].shift));
+    b->axis = quat_turn_back(of[1].q, c->n), b->area = area;
+    b->at_a = quat_turn_back(of[0].q, v3_sub(v3_sub(c->x, half), of[0].shift));
+}
+
 void bond_anchor(struct bond *b, const struct packing *p, const struct contact *c, double area,
                  double ahead)
 {
-    vec3 edge[3], half = v3_scale(0.5 * c->gap, c->n);
+    vec3 edge[3];
     cell_predict(&p->cell, ahead, edge);
-    vec3 on_a = v3_sub(c->x, half), on_b = v3_add(c->x, half);
-    const struct pose of_b = ahead_of(p, c->b, ahead);
-    vec3 xb = v3_add(of_b.shift, cell_shift(edge, c->shift));
-    b->at_b = quat_turn_back(of_b.q, v3_sub(on_b, xb)), b->axis = quat_turn_back(of_b.q, c->n);
-    b->area = area;
-    const struct pose of_a =
-        c->a < 0 ? wall_pose(p, &p->wall[-1 - c->a], p->t + ahead) : ahead_of(p, c->a, ahead);
-    b->at_a = quat_turn_back(of_a.q, v3_sub(on_a, of_a.shift));
+    struct pose of[2] = { c->a < 0 ? wall_pose(p, &p->wall[-1 - c->a], p->t + ahead)
+                                   : ahead_of(p, c->a, ahead),
+                          ahead_of(p, c->b, ahead) };
+    of[1].shift = v3_add(of[1].shift, cell_shift(edge, c->shift));
+    bond_anchor_at(b, c, area, of);
 }

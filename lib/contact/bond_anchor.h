@@ -28,6 +28,14 @@ static inline bool contact_anchored(const struct contact *c)
     return c->feature < 0;
 }
 
+/* The contact of an anchored bond, where a, a body or a wall, and the image of b are at of[]; edge: of the cell (m) */
+struct contact bond_anchor_contact(const struct packing *p, const struct bond *b,
+                                   const struct pose of[2], const vec3 edge[3]);
+/* Is c where a bond of its pair at x (m) is? */
+bool bond_anchor_near(const struct packing *p, const struct contact *c, vec3 x);
+
+/* Gives b, made at c, its anchors and an area (m^2), where bodies are at of[]. */
+void bond_anchor_at(struct bond *b, const struct contact *c, double area, const struct pose of[2]);
 /* Gives b, made at c of this step, its anchors and an area (m^2). The contact has been detected `ahead` (s) of the bodies. */
 void bond_anchor(struct bond *b, const struct packing *p, const struct contact *c, double area,
                  double ahead);

@@ -3,6 +3,7 @@
 
 #include "base/array.h"
 #include "state/attraction.h"
+#include "step/small_point.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,9 +81,7 @@ void small_attract(struct small_run *r)
 {
     struct small_shares *y = &r->shapes.shares;
     struct failure failure = { 0 };
-    struct packing here = *r->p; // where bodies are in the small step
-    here.x = r->x, here.q = r->shapes.q, here.theta = 1;
-    memcpy(here.cell.edge, r->cell.edge, sizeof here.cell.edge);
+    const struct packing here = small_points_packing(r);
     if (!gather_places(r) || (y->places.n && attraction_share(y->of, &y->places, &here, &failure)))
         r->lost = r->stop = true;
     for (int64_t i = 0; i < y->places.n; i++) y->point[i]->pulls /= y->of[i].among;

@@ -2,6 +2,7 @@
 #include "step/small_bonds.h"
 
 #include "contact/contact_law.h"
+#include "step/small_anchor.h"
 #include "step/small_springs.h"
 #include "step/small_wall.h"
 
@@ -198,10 +199,13 @@ static bool keep_points(const struct small_run *r, struct bonds *kept,
     for (int64_t k = 0; room && k < m->points; k++) {
         const struct small_point *t = &m->point[k];
         struct contact_key key = m->key;
-        key.feature = t->feature;
+        key.feature = t->from ? t->from - 1 : t->feature;
         struct bond b = bond_of(key);
-        if (!t->there || t->seam) continue;
-        const bool lasts = small_springs_keep_point(r, m, t, &b);
+        const bool bonded = r->bonds && small_point_bonded(t);
+        if (!bonded && (!t->there || t->seam)) continue;
+        const bool lasts =
+            bonded ? small_anchor_keep(r, m, t, &b) : small_springs_keep_point(r, m, t, &b);
+        if (bonded && !lasts) continue;
         room = keep_bond(kept, &b, lasts, m->hold, t->gap, t->n);
     }
     return room;

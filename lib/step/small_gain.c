@@ -10,7 +10,8 @@
 
 bool small_gain_is_bounded(const struct small_run *r)
 {
-    if (!r->meets || r->l->s.hold || r->l->s.spring || r->loads.of || r->cell.moves) return false;
+    if (!r->meets || r->l->s.hold || packing_has_springs(r->p) || r->loads.of || r->cell.moves)
+        return false;
     for (int64_t i = 0; i < r->p->n; i++) {
         const vec3 v = r->p->v[i], w = r->p->w[i];
         if (!(r->p->mass[i] > 0) && v3_dot(v, v) + v3_dot(w, w) > 0) return false;

@@ -67,7 +67,7 @@ static bool give_points(struct given *g)
             const struct small_point *t = &m->point[k];
             const struct small_sum sum = { v3_add(small_vec(t->sum), small_vec(t->f)),
                                            v3_add(small_vec(t->turned), small_vec(t->m)) };
-            c.feature = t->feature, c.n = t->n, c.gap = t->gap, c.x = t->x;
+            c.feature = t->from ? t->from - 1 : t->feature, c.n = t->n, c.gap = t->gap, c.x = t->x;
             room = give_contact(g, &c, t->near, sum);
         }
     }

@@ -434,9 +434,12 @@ void small_loop(void *arg, int me, int threads)
         if (r->begins) push_reactions(r, me, threads);
         if (!me) prepare_step(r);
         if (r->meets) small_points_look(r, me, threads);
-        if (r->meets && r->begins && r->l->s.spring && !me) {
-            small_springs_recall_points(r);
-            r->stored += small_springs_points(r, r->l->s.before).stored;
+        if (r->meets && r->begins && r->l->s.spring) {
+            if (!me) {
+                small_springs_recall_points(r);
+                r->stored += small_springs_points(r, r->l->s.before).stored;
+            }
+            team_meet();
         }
         if (r->meets && r->l->s.hold && !me) small_attract(r);
         if (r->meets && r->l->s.hold) team_meet();

@@ -131,8 +131,26 @@ static bool meeting_has_pushed(const struct small_meeting *m)
 {
     for (int64_t i = 0; i < m->points; i++)
         for (int k = 0; k < 3; k++)
-            if (m->point[i].f[k] != 0 || m->point[i].sum[k] != 0) return true;
+            if (m->point[i].f[k] != 0 || m->point[i].sum[k] != 0 || m->point[i].feature < 0)
+                return true;
     return false;
+}
+
+/* Meetings whose bodies a bond holds, however far they are; in the order of keys */
+static bool add_bonded(struct small_meetings *more, const struct packing *p,
+                       const struct small_meetings *m)
+{
+    bool room = true;
+    for (int64_t i = 0; room && i < p->bonds.n; i++) {
+        const struct bond *b = &p->bonds.bond[i];
+        struct contact_key key = bond_key(b);
+        key.feature = 0;
+        if (!bond_anchored(b) || !(b->beta > 0) || !packing_may_meet(p, b->a, b->b)) continue;
+        if (small_meetings_find(m, key)) continue;
+        if (more->n && !contact_key_order(more->of[more->n - 1].key, key)) continue;
+        room = small_meetings_add(more, p, key);
+    }
+    return room;
 }
 
 /* In the order of keys; those that have pushed in this interval stay. */
@@ -142,6 +160,10 @@ static bool sort_meetings(struct small_meetings *m, const struct packing *p,
     struct small_meetings more = { 0 };
     bool room = true;
     if (m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    room = add_bonded(&more, p, m);
+    for (int64_t i = 0; room && i < more.n; i++) room = small_meetings_add(m, p, more.of[i].key);
+    if (more.n && m->n) qsort(m->of, (size_t)m->n, sizeof *m->of, by_key);
+    more.n = 0;
     for (int64_t i = 0; room && i < from->n; i++)
         if (meeting_has_pushed(&from->of[i]) && !small_meetings_find(m, from->of[i].key))
             room = small_meetings_add(&more, p, from->of[i].key);

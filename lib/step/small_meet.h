@@ -14,11 +14,13 @@
 
 /* f, kept, q, sum and m: as in struct small_bundle [solve/small.h] */
 struct small_point {
-    int32_t feature;
-    bool there;  /* the narrow phase has found it when it last looked */
-    bool near;   /* its gap is in reach in the step in hand */
-    bool starts; /* its bodies do not have its f yet */
-    bool seam;   /* it is none: at a seam of surfaces */
+    int32_t feature; /* below 0: a bond */
+    bool there;      /* the narrow phase has found it when it last looked */
+    bool near;       /* its gap is in reach in the step in hand */
+    bool beside;     /* a bond holds where it is */
+    bool left;       /* it has left its reaction to another in the step in hand */
+    bool starts;     /* its bodies do not have its f yet */
+    bool seam;       /* it is none: at a seam of surfaces, or where a bond is */
     double f[3], kept, q[3], sum[3], m[3], turned[3]; /* turned: the sum of m */
     double mu, e[2];
     double soft;                 /* C over W in the step in hand; 0: an impact */
@@ -34,6 +36,11 @@ struct small_point {
     vec3 v;        /* m/s: of the wall's material there, without its load; */
     vec3 D, had_D; /* and per unit of the load's speed; that at which f was made */
     double W[9];   /* 1/kg, in the basis */
+    /* Of a bond [step/small_anchor.h] */
+    double area;      /* m^2; 0: it has no place yet */
+    vec3 at[2], axis; /* its place, as in struct bond */
+    bool fresh;       /* made in this interval */
+    int32_t from;     /* 1 + the feature that it has in documents; 0: its own */
 };
 
 struct small_meeting {

@@ -167,7 +167,7 @@ int small_list_remember(const struct small_list *l, struct packing *p, double pa
         const struct small_meeting *y = &l->meetings.of[i];
         struct contact_key k = y->key;
         for (int64_t j = 0; j < y->points; j++) {
-            k.feature = y->point[j].feature;
+            k.feature = y->point[j].from ? y->point[j].from - 1 : y->point[j].feature;
             remember_one(&m, k, y->point[j].f, y->point[j].m, 1 / part);
         }
     }

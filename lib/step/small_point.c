@@ -6,6 +6,7 @@
 #include "contact/detect.h"
 #include "contact/internal_edge.h"
 #include "state/rotation.h"
+#include "step/small_anchor.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -52,7 +53,7 @@ void small_points_free(struct small_run *r)
     for (int k = 0; s->scratch && k < s->threads; k++)
         contacts_free(&s->scratch[k].found), free(s->scratch[k].point);
     free(s->scratch), free(s->q), free(s->inverse), free(s->spread), free(s->way);
-    placed_free(&s->placed), small_attract_free(r);
+    placed_free(&s->placed), small_attract_free(r), small_anchors_free(r);
     *s = (struct small_shapes){ 0 };
 }
 
@@ -115,7 +116,7 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
         vec3 w = small_vec(b->w);
         r->x[i] = small_vec(r->l->s.place[i].x);
         s->way[i] += r->h * small_point_speed(r, i);
-        if (!packing_shape(r->p, i)) continue; // a ball: r->turned is enough
+        if (!packing_shape(r->p, i) && !r->bonds) continue; // a ball: r->turned is enough
         const quat q = turn_freely(r, i, r->h, &w);
         if (rotation_is(r->p, i)) {
             keep_moment(r, i, q, r->l->s.before[i].w);
@@ -124,8 +125,16 @@ void small_points_place(struct small_run *r, int64_t first, int64_t end)
         }
         s->q[i] = q;
         if (rotation_is(r->p, i)) set_inverse(r, i);
-        placed_turn(&s->placed, i, q);
+        if (packing_shape(r->p, i)) placed_turn(&s->placed, i, q);
     }
+}
+
+struct packing small_points_packing(const struct small_run *r)
+{
+    struct packing here = *r->p;
+    here.x = r->x, here.q = r->shapes.q, here.theta = 1;
+    memcpy(here.cell.edge, r->cell.edge, sizeof here.cell.edge);
+    return here;
 }
 
 /* ---- where points are ---- */
@@ -189,20 +198,29 @@ static struct small_point *point_beside(const struct small_run *r, struct small_
     return next;
 }
 
+/* Does its reaction go over to another? Not what a bond that has broken has pulled. */
+static bool leaves_reaction(const struct small_point *gone)
+{
+    if (small_is_zero(gone->f)) return false;
+    return !small_point_bonded(gone) || v3_dot(small_vec(gone->f), gone->n) > 0;
+}
+
 /* Points that are in reach no more leave their reactions, and what they have pushed, to others beside them. */
 static void hand_over(const struct small_run *r, struct small_meeting *m)
 {
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *gone = &m->point[i], *next;
-        if (gone->near || gone->starts) continue;
+        if (gone->near || gone->starts || gone->left) continue;
         if (!small_is_zero(gone->sum) && (next = point_beside(r, m, gone, false)))
             for (int k = 0; k < 3; k++) {
                 next->sum[k] += gone->sum[k], next->turned[k] += gone->turned[k];
                 gone->sum[k] = gone->turned[k] = 0;
             }
-        if (!small_is_zero(gone->f) && (next = point_beside(r, m, gone, true)))
+        if (!leaves_reaction(gone) || !(next = point_beside(r, m, gone, true))) continue;
+        for (int k = 0; k < 3; k++) next->f[k] += gone->f[k], next->m[k] += gone->m[k];
+        gone->left = true;
+        if (!small_point_bonded(gone) && !small_point_bonded(next))
             for (int k = 0; k < 3; k++) {
-                next->f[k] += gone->f[k], next->m[k] += gone->m[k];
                 next->spring[SPRING_X + k] += gone->spring[SPRING_X + k];
                 next->spring[SPRING_DUE] = gone->spring[SPRING_DUE];
             }
@@ -241,9 +259,9 @@ static void choose_points(const struct small_run *r, struct small_meeting *m)
 {
     for (int64_t i = 0; i < m->points; i++) {
         struct small_point *t = &m->point[i];
-        t->near = t->there && t->gap <= r->l->s.rate.reach;
+        t->near = t->there && (small_point_bonded(t) || t->gap <= r->l->s.rate.reach);
         if (t->near && small_is_zero(t->f)) t->starts = true;
-        t->seam = false;
+        t->seam = t->left = t->beside = false;
     }
 }
 
@@ -262,11 +280,26 @@ static bool find_points(const struct small_run *r, struct small_meeting *m, doub
     return room && take_points(r, m, c);
 }
 
+/* Bonds are where their bodies have carried them. */
+static void place_bonds(const struct small_run *r, struct small_meeting *m)
+{
+    for (int64_t i = 0; i < m->points && small_point_bonded(&m->point[i]); i++) {
+        struct small_point *t = &m->point[i];
+        struct contact c;
+        t->there = false;
+        if (!small_point_holds(t) || !small_anchor_place(r, m, t, &c)) continue;
+        set_point(r, m, t, &c);
+        t->e[0] = t->e[1] = 0;
+    }
+}
+
 static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
                             struct small_scratch *c)
 {
     const int32_t a = m->key.a, b = m->key.b;
-    const double *way = r->shapes.way, reach = fmax(r->l->s.rate.reach, small_attract_reach(m));
+    const double *way = r->shapes.way;
+    double reach = fmax(r->l->s.rate.reach, small_attract_reach(m));
+    if (r->bonds) reach = fmax(reach, small_anchor_reach(r, m));
     const double gone = (a < 0 ? r->wall[-1 - a].way : way[a]) + way[b];
     bool there = false;
     for (int64_t i = 0; i < m->points; i++) there |= m->point[i].there;
@@ -274,6 +307,7 @@ static bool look_at_meeting(const struct small_run *r, struct small_meeting *m,
         m->looked = true, m->way = gone, m->wide = reach + WIDE * r->thin;
         if (!find_points(r, m, m->wide, c)) return false;
     }
+    if (r->bonds) place_bonds(r, m);
     choose_points(r, m);
     hand_over(r, m);
     return true;
@@ -288,7 +322,7 @@ static bool gather_held(const struct small_run *r, int64_t i, struct small_scrat
         const struct small_meeting *m = &all->of[all->held[k]];
         for (int64_t l = 0; l < m->points; l++) {
             const struct small_point *t = &m->point[l];
-            if (!t->near) continue;
+            if (!t->near || small_point_bonded(t)) continue;
             struct contact *to = contacts_add(&c->found, m->key.a, m->key.b);
             if (!to) return false;
             to->feature = t->feature, to->x = t->x, to->n = t->n, to->t1 = t->t1, to->gap = t->gap;
@@ -310,7 +344,7 @@ static bool drop_seams(const struct small_run *r, int64_t i, struct small_scratc
         struct small_meeting *m = &all->of[all->held[k]];
         for (int64_t l = 0; l < m->points; l++) {
             struct small_point *t = &m->point[l];
-            if (!t->near) continue;
+            if (!t->near || small_point_bonded(t)) continue;
             const struct contact *at = &c->found.c[n++];
             if (seams_may(&r->shapes.at, at) &&
                 seams_has(&c->found, &r->shapes.at, (int32_t)i, at - c->found.c))
@@ -331,6 +365,14 @@ static void look_some(struct small_run *r, int me, int threads, bool seams)
     }
 }
 
+/* `last`: at the end of the interval */
+static void begin_bonds(struct small_run *r, int me, int threads, bool last)
+{
+    struct small_meetings *all = &r->l->meetings;
+    for (int64_t i = all->n * me / threads; i < all->n * (me + 1) / threads; i++)
+        if (small_anchors_begin(r, &all->of[i], last)) hand_over(r, &all->of[i]);
+}
+
 void small_points_look(struct small_run *r, int me, int threads)
 {
     if (!me) r->shapes.at.t = r->p->t + r->ahead;
@@ -339,13 +381,18 @@ void small_points_look(struct small_run *r, int me, int threads)
     team_meet();
     look_some(r, me, threads, true);
     team_meet();
+    if (r->bonds) begin_bonds(r, me, threads, false);
+    if (r->bonds) team_meet();
+    if (!me && r->bonds) small_anchors_make(r);
     if (!me && r->shapes.failed) r->lost = r->stop = true;
+    if (r->bonds) team_meet();
 }
 
 void small_points_last(struct small_run *r)
 {
     r->shapes.at.t = r->p->t + r->ahead;
     look_some(r, 0, 1, false), look_some(r, 0, 1, true);
+    if (r->bonds) begin_bonds(r, 0, 1, true);
     for (int64_t i = 0; i < r->l->meetings.n; i++) {
         struct small_meeting *m = &r->l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++) {

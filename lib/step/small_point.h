@@ -51,9 +51,14 @@ void small_meeting_mark(struct small_run *r, const struct small_meeting *m, doub
                         bool again);
 void small_meeting_end(struct small_run *r, struct small_meeting *m);
 
+/* f[3], in: the reaction of a point that has it, out: that by its law, of which u would be b without it: exact, or as of balls where
+   there is no solution. d: 2 or 3 */
+void small_point_solve(int d, const double W[9], const double b[3], double mu, double f[3]);
 /* m/s: of the image of b that a meets against a, at a point, where bodies are of[] */
 vec3 small_point_velocity(const struct small_run *r, const struct small_meeting *m,
                           const struct small_point *t, const struct body *of);
+/* The packing where bodies are in the small step in hand; its arrays are borrowed */
+struct packing small_points_packing(const struct small_run *r);
 /* By one thread: the points where the bodies are now */
 void small_points_last(struct small_run *r);
 
@@ -65,9 +70,10 @@ static inline vec3 small_turned_by(const struct small_run *r, int32_t i, vec3 m)
               s[4] * m.x + s[3] * m.y + s[2] * m.z);
 }
 
-/* Has it pushed in this interval, or a reaction that its bodies have? */
+/* Has it pushed in this interval, a reaction that its bodies have, or a bond? */
 static inline bool small_point_lasts(const struct small_point *t)
 {
+    if (t->feature < 0 && (t->spring[SPRING_HELD] > 0 || t->spring[SPRING_GIVEN] != 0)) return true;
     return !small_is_zero(t->f) || !small_is_zero(t->sum) || v3_dot(t->pull, t->pull) > 0;
 }
 

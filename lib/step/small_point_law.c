@@ -1,6 +1,7 @@
 /* step/small_point_law.c: the law of points, their rounds, and what persists [step/small_point.h]. */
 #include "base/team.h"
 #include "solve/local_exact.h"
+#include "step/small_anchor.h"
 #include "step/small_point.h"
 #include "step/small_stiff.h"
 #include "step/small_tie.h"
@@ -120,6 +121,11 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     for (int k = 0; k < 3; k++) t->sum[k] += t->f[k], t->turned[k] += t->m[k];
     small_array(l.n, t->n), memcpy(l.f, t->f, sizeof l.f);
     l.cn = o->soft * l.wn, l.ct = o->soft * l.wt, t->soft = o->soft;
+    if (small_point_holds(t)) {
+        double pull[3];
+        small_bond_pull(t->spring, l.n, l.gap, pull);
+        for (int k = 0; k < 3; k++) l.f[k] -= pull[k];
+    }
     t->kept = dot3(l.n, l.f), t->starts = false, l.calm += 2 * l.wn * t->pulls;
     const vec3 w = v3_add(spin_of(r, s->body, m->key.a), spin_of(r, s->body, m->key.b));
     l.spin = 0.5 * o->h * v3_dot(w, t->n);
@@ -135,14 +141,13 @@ static void begin_point(const struct small_run *r, const struct small_meeting *m
     l.cn = l.ct = 0;
     if (small_meet(&l, o, before, &t->kept, t->e[0], t->e[1])) t->soft = 0;
     if (r->l->stiffness) {
-        small_stiff_set(t->spring, r->l->stiffness, r->p, m->key.a, m->key.b, l.wn, l.wt);
+        small_anchor_stiff(r, m, t, l.wn, l.wt);
         if (t->spring[SPRING_KN] > 0) spring_point(t, &l, before, o);
     }
     memcpy(t->q, l.q, sizeof t->q);
 }
 
-/* The reaction of one point of which u would be b without it: exact, or as of balls where there is no solution */
-static void solve_local(int d, const double W[9], const double b[3], double mu, double f[3])
+void small_point_solve(int d, const double W[9], const double b[3], double mu, double f[3])
 {
     struct local y = { .d = d, .W = W, .mu = mu };
     double found[3], u[3];
@@ -181,22 +186,24 @@ static void spring_law(const struct small_run *r, const struct small_meeting *m,
     for (int k = 0; k < 3; k++) is[k] = v3_dot(e[k], small_vec(l.f));
 }
 
-/* The reaction that a point has, f, and the one by its law, in its basis e */
-static void point_law(const struct small_run *r, const struct small_meeting *m,
-                      const struct small_point *t, const vec3 e[3], double f[3], double is[3])
+/* The reaction that a point has, f, and the one by its law, in its basis e. Returns what of it pushes (N s). */
+static double point_law(const struct small_run *r, const struct small_meeting *m,
+                        const struct small_point *t, const vec3 e[3], double f[3], double is[3])
 {
     const vec3 u = v3_add(small_point_velocity(r, m, t, r->l->s.body), small_vec(t->q));
     const double soft = t->soft * fmax(t->W[4], t->W[8]);
     double W[9], b[3];
     for (int k = 0; k < 3; k++) f[k] = is[k] = v3_dot(e[k], small_vec(t->f));
+    if (small_point_holds(t)) return small_bond_law(r, m, t, e, f, is);
     if (t->spring[SPRING_KN] > 0) {
         spring_law(r, m, t, e, is);
-        return;
+        return is[0];
     }
     for (int k = 0; k < 3; k++) b[k] = v3_dot(e[k], u) - dot3(t->W + 3 * k, f);
     memcpy(W, t->W, sizeof W);
     W[0] += t->soft * t->W[0], W[4] += soft, W[8] += soft;
-    solve_local(r->p->dim, W, b, t->mu, is);
+    small_point_solve(r->p->dim, W, b, t->mu, is);
+    return is[0];
 }
 
 /* Of the reactions of a meeting in a sweep: what they do to the bodies, and against what */
@@ -212,11 +219,11 @@ static double solve_point(struct small_run *r, const struct small_meeting *m, st
     const vec3 e[3] = { t->n, t->t1, v3_cross(t->n, t->t1) }, had = small_vec(t->f);
     const vec3 u = small_point_velocity(r, m, t, s->body);
     double f[3], is[3], change2 = 0;
-    point_law(r, m, t, e, f, is);
+    const double push = point_law(r, m, t, e, f, is);
     const vec3 new = v3_axpy(v3_axpy(v3_scale(is[0], e[0]), is[1], e[1]), is[2], e[2]);
     small_array(t->f, new);
     push_point(r, s->body, m, t, v3_sub(new, had), v3(0, 0, 0));
-    if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, is[0]);
+    if (s->turn || m->most[0] > 0 || m->most[1] > 0) roll_point(r, m, t, push);
     for (int k = 0; k < 3; k++) f[k] = is[k] - f[k];
     for (int k = 0; k < 3; k++) {
         const double du = dot3(t->W + 3 * k, f);

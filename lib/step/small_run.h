@@ -78,7 +78,8 @@ struct small_shapes {
     int threads;
     struct small_scratch *scratch; /* [threads] */
     struct small_shares shares;
-    _Atomic bool failed; /* memory was short */
+    struct small_dues *dues; /* [step/small_bond_point.c] */
+    _Atomic bool failed;     /* memory was short */
 };
 
 /* Forces on a body in the small step in hand [step/small_pull.h] */
@@ -103,7 +104,8 @@ struct small_run {
     struct small_loads loads;
     double stored;          /* J: by attraction, where the interval begins */
     struct face_sums *sums; /* [p->sums.n] NULL: none are kept */
-    bool meets;             /* there may be meetings: a body with a shape, or a mesh */
+    bool meets;             /* there may be meetings: a body with a shape, or a mesh; */
+    bool bonds;             /* and bonds at their points */
     struct small_shapes shapes;
     double thin;             /* m: the smallest size of a body */
     double h, ahead;         /* s */

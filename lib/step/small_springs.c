@@ -3,6 +3,7 @@
 
 #include "contact/contact_law.h"
 #include "contact/spring.h"
+#include "step/small_anchor.h"
 #include "step/small_point.h"
 #include "step/small_stiff.h"
 #include "step/small_touch.h"
@@ -151,37 +152,40 @@ static void set_slot(struct small *s, int64_t slot, const double x[SPRING_COUNT]
     if (x[SPRING_BETA] > 0) small_list_wake(s, slot);
 }
 
-static void recall_bond(struct small_run *r, const struct bond *b, int64_t *at)
+static bool recall_bond(struct small_run *r, const struct bond *b, int64_t *at)
 {
     struct small_list *l = r->l;
     struct small_meeting *m = small_meetings_find(&l->meetings, bond_key(b));
     double x[SPRING_COUNT];
     bool found;
+    if (m && !b->pressed) return small_anchor_recall(r, m, b);
     if (m) {
         m->pressed = true, m->rest = fmin(m->rest, b->rest);
         for (int64_t k = 0; k < m->points; k++)
             if (m->point[k].feature == b->feature) {
-                small_stiff_set(m->point[k].spring, l->stiffness, r->p, b->a, b->b, 1, 1);
+                small_anchor_stiff(r, m, &m->point[k], 1, 1);
                 spring_recall(m->point[k].spring, b, r->h);
             }
-        return;
+        return true;
     }
     if (b->a < 0) {
         struct small_touch *t = small_list_find_touch(l, b->b, -1 - b->a);
         if (t) spring_recall(t->spring, b, r->h), t->near = true;
-        return;
+        return true;
     }
     *at = small_list_pair(l, *at, bond_key(b), &found);
-    if (!found) return;
+    if (!found) return true;
     const int64_t slot = l->slot[*at];
     get_slot(&l->s, slot, x), spring_recall(x, b, r->h), set_slot(&l->s, slot, x);
+    return true;
 }
 
-void small_springs_recall(struct small_run *r)
+bool small_springs_recall(struct small_run *r)
 {
     struct small_list *l = r->l;
     int64_t at = 0;
-    if (!l->s.spring) return;
+    bool room = true;
+    if (!l->s.spring) return true;
     for (int64_t i = 0; i < l->pairs.n; i++) {
         const struct pair *q = &l->pairs.pair[i];
         double x[SPRING_COUNT];
@@ -196,12 +200,13 @@ void small_springs_recall(struct small_run *r)
                      bonds_at_once(r, -1 - t->wall, t->body));
         t->near = t->spring[SPRING_BETA] > 0;
     }
-    for (int64_t i = 0; i < r->p->bonds.n; i++) {
+    for (int64_t i = 0; room && i < r->p->bonds.n; i++) {
         const struct bond *b = &r->p->bonds.bond[i];
         const struct pair_law *law = &r->p->law[packing_pair(r->p, b->a, b->b)];
         if (b->pressed || (pair_law_adheres(law) && (b->beta > 0 || !b->wet)))
-            recall_bond(r, b, &at);
+            room = recall_bond(r, b, &at);
     }
+    return room;
 }
 
 void small_springs_recall_points(struct small_run *r)
@@ -212,7 +217,7 @@ void small_springs_recall_points(struct small_run *r)
         if (!m->pressed && gap < 0) m->rest = gap;
         for (int64_t k = 0; k < m->points; k++) {
             struct small_point *t = &m->point[k];
-            small_stiff_set(t->spring, r->l->stiffness, r->p, m->key.a, m->key.b, 1, 1);
+            small_anchor_stiff(r, m, t, 1, 1);
             if (!m->pressed) t->spring[SPRING_REST] = m->rest;
         }
     }
@@ -241,7 +246,10 @@ struct small_spring_sums small_springs_points(const struct small_run *r, const s
     for (int64_t i = 0; l->stiffness && i < l->meetings.n; i++) {
         const struct small_meeting *m = &l->meetings.of[i];
         for (int64_t k = 0; k < m->points; k++)
-            if (place_point(r, m, &m->point[k], of, &y)) add_place(r, &y, &sum);
+            if (place_point(r, m, &m->point[k], of, &y))
+                add_place(r, &y, &sum);
+            else
+                sum.broken += m->point[k].spring[SPRING_GIVEN];
     }
     return sum;
 }
@@ -304,7 +312,8 @@ void small_springs_law(struct contact_law *law, const struct packing *p, const s
     if (b && pair_law_adheres(l) && (b->beta > 0 || !(b->wet || b->pressed)))
         law->state |= CONTACT_LAW_BONDED;
     if (b && b->beta > 0) {
-        const double S = contact_laws_area(p, c) * b->beta * b->beta;
+        const double area = bond_anchored(b) ? b->area : contact_laws_area(p, c);
+        const double S = area * b->beta * b->beta;
         law->beta = b->beta, law->stiff[0] = S * l->cn, law->stiff[1] = S * l->ct;
         law->jump[0] = fmax(0, c->gap);
     } else if (pair_law_springs(l)) {

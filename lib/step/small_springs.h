@@ -6,8 +6,8 @@
 
 #include "step/small_run.h"
 
-/* The list, just made, gets the springs of the packing; those of points where they have been found */
-void small_springs_recall(struct small_run *r);
+/* The list, just made, gets the springs of the packing, false when memory is short; those of points where they have been found */
+bool small_springs_recall(struct small_run *r);
 void small_springs_recall_points(struct small_run *r);
 /* J: what is stored where the bodies are, and what breaking has given up in the interval so far; of points, where bodies move as
    of[] */

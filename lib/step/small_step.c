@@ -62,8 +62,6 @@ const char *small_lacks(const struct packing *p)
 {
     if (small_stress_light(p)) return "edges of a cell that are lighter than a row of grains";
     if (small_loads_heavy(p)) return "a load of more mass than two layers of grains";
-    if (packing_adheres(p) && (p->shape || p->mesh.elements))
-        return "adhesion of other shapes than balls";
     if (small_stiff_exceeds(p))
         return "contacts or bonds so stiff that a step has more than 1000 small ones";
     return NULL;
@@ -320,7 +318,7 @@ static void give_bodies(const struct small_run *r)
     for (int64_t i = 0; i < p->n; i++) {
         p->v[i] = small_settled(s->body[i].v), p->w[i] = small_settled(s->body[i].w);
         p->x[i] = v3_axpy(small_vec(s->place[i].x), -r->ahead, p->v[i]);
-        if (packing_shape(p, i))
+        if (packing_shape(p, i) || r->bonds)
             p->q[i] = small_points_q(r, i, &p->w[i]);
         else
             p->q[i] = quat_mul(quat_rotation(r->turned[i]), p->q[i]);
@@ -359,7 +357,11 @@ static int small_steps(struct small_run *r, const struct small_opt *o, struct re
                 failure_set(failure, EX_SOFTWARE, "no memory for small steps");
                 break;
             }
-            small_bonds_recall(r, o->warm), small_springs_recall(r);
+            small_bonds_recall(r, o->warm);
+            if (!small_springs_recall(r)) {
+                failure_set(failure, EX_SOFTWARE, "no memory for the bonds");
+                break;
+            }
             r->gains = small_gain_is_bounded(r);
             const struct small_bonds ties = small_bonds_account(r);
             r->stored = ties.stored - ties.joined +
@@ -426,10 +428,11 @@ static void small_balance(struct balance *b, const struct small_energy *before,
         b->drives -= m->work;
         impulse = v3_add(impulse, small_meeting_impulse(m, l->s.body));
     }
-    const struct small_spring_sums springs = small_springs_sums(r);
-    b->bond_energy = ties.stored + springs.stored + small_springs_points(r, l->s.body).stored;
+    const struct small_spring_sums springs = small_springs_sums(r),
+                                   points = small_springs_points(r, l->s.body);
+    b->bond_energy = ties.stored + springs.stored + points.stored;
     b->bond_change = b->bond_energy - r->stored;
-    b->broken = springs.broken - ties.joined;
+    b->broken = springs.broken + points.broken - ties.joined;
     b->dissipation = b->gravity + b->drives + b->loads - b->change - b->bond_change - b->broken;
     small_array(b->momentum, after->momentum), small_array(b->impulse, impulse);
 }
@@ -494,6 +497,7 @@ int small_advance(struct packing *p, struct contacts *s, struct small_list *l,
     p->dt = r.h, p->t0 = p->t, p->step0 = p->step;
     if (!p->whole) p->whole = &sizes;
     r.meets = small_has_shapes(p) || p->mesh.elements, r.thin = small_sizes(p).least;
+    r.bonds = r.meets && packing_adheres(p);
     small_cell_init(&r);
     if (!r.wall || !r.x || !r.v || !r.turned)
         failure_set(failure, EX_SOFTWARE, "no memory for small steps");

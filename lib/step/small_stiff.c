@@ -72,11 +72,17 @@ static double damping(const double zeta[2], double h, double k, double w)
     return 2 * (zeta[0] + part * (zeta[1] - zeta[0])) * step / w;
 }
 
-static void set_bond(double x[SPRING_COUNT], const struct packing *p, int32_t a, int32_t b)
+double small_stiff_area(const struct packing *p, int32_t a, int32_t b)
+{
+    const struct contact c = { .a = a, .b = b };
+    return pair_law_adheres(&p->law[packing_pair(p, a, b)]) ? contact_laws_area(p, &c) : 0;
+}
+
+void small_stiff_bond(double x[SPRING_COUNT], const struct packing *p, int32_t a, int32_t b,
+                      double S)
 {
     const struct pair_law *l = &p->law[packing_pair(p, a, b)];
     const struct contact c = { .a = a, .b = b };
-    const double S = pair_law_adheres(l) ? contact_laws_area(p, &c) : 0;
     x[SPRING_SN] = p->dt * S * l->cn, x[SPRING_ST] = p->dt * S * l->ct;
     x[SPRING_SW] = S * l->w, x[SPRING_SETA] = S * l->eta;
     x[SPRING_FRESH] = S > 0 && l->forever ? l->beta : 0,
@@ -92,7 +98,7 @@ void small_stiff_set(double x[SPRING_COUNT], const struct small_stiffness *table
     if (k->soft > 0) kn = 1 / (k->soft * W), kt = SPRING_ACROSS * kn;
     x[SPRING_KN] = x[SPRING_KT] = x[SPRING_GN] = x[SPRING_GT] = 0;
     x[SPRING_YIELD] = a < 0 && p->wall[-1 - a].load.way ? h : 0;
-    set_bond(x, p, a, b);
+    small_stiff_bond(x, p, a, b, small_stiff_area(p, a, b));
     if (!(kn > 0) || !isfinite(kn)) return;
     x[SPRING_KN] = h * kn, x[SPRING_KT] = h * kt;
     x[SPRING_GN] = damping(k->zeta[0], h, kn, wn);

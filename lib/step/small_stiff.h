@@ -27,6 +27,11 @@ bool small_stiff_exceeds(const struct packing *p);
 
 /* [materials^2], where a whole step has `interval` (s). NULL when memory is short; to be freed */
 struct small_stiffness *small_stiff_table(const struct packing *p, double interval);
+/* m^2: of a bond of these; 0: they have none */
+double small_stiff_area(const struct packing *p, int32_t a, int32_t b);
+/* Of x, what a bond of area S (m^2) has */
+void small_stiff_bond(double x[SPRING_COUNT], const struct packing *p, int32_t a, int32_t b,
+                      double S);
 /* x = that of bodies a (< 0: wall -1-a) and b, in steps of the packing's dt; wn, wt: 1/kg, of the contact along n and across. What
    lasts is not set. Springs at a wall that a load moves yield. */
 void small_stiff_set(double x[SPRING_COUNT], const struct small_stiffness *table,
