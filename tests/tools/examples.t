@@ -173,8 +173,8 @@ claim()
     *'[.step, .contacts, .sweeps, .natural, .max_penetration]'*) table 5 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;
     *'[.step, .sweeps, .natural]'*) table 3 "$(nsd-info out.h5 | jq -s '.[0].frames')" ;;
     *'.kinetic_energy'*'> energy.tsv') table 2 '' energy.tsv ;;
-    'nsd-info --last -p out.h5 | '*'[.x[], .radius]'*) table 4 500 ;;
-    *'nsd-info -p | '*'[.step, .v[0], .w[1]]'*) # 5/7 of the first speed, and its spin
+    'nsd-info --last -b out.h5 | '*'[.position[], .radius]'*) table 4 500 ;;
+    *'nsd-info -b | '*'[.step, .velocity[0], .angular_velocity[1]]'*) # 5/7 of the first speed, and its spin
         output '.[-1][0] >= 650 and (.[-1][1] - 1.0714 | fabs < 1e-3) and (.[-1][2] - 214.29 | fabs < 0.1)' ;;
     *'.history[]'*) output 'map(.command) == ["nsd-gen", "nsd-step"]' ;;
     *'-c out.h5 | jq -r .status | '* | *'-c solved.h5 | jq -r .status | '*) statuses ;;
