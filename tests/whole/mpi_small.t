@@ -105,7 +105,7 @@ dies() # RANK: it is killed after some frames; the run ends by itself, with whol
     for k in $(ps -eo pid,args | awk -v f="$tmp/d.h5" 'index($0, f) && $2 ~ /^nsd-step/ { print $1 }'); do
         ! tr '\0' '\n' <"/proc/$k/environ" | grep -qx "OMPI_COMM_WORLD_RANK=$1" || victim=${victim:-$k} # its child comes after it
     done
-    [ -n "$victim" ] && kill -9 "$victim" || { cat "$tmp/said"; return 1; }
+    if [ -z "$victim" ] || ! kill -9 "$victim"; then cat "$tmp/said"; return 1; fi
     for ((k = 0; k < 600; k++)); do kill -0 "$job" 2>/dev/null || break; sleep 0.1; done
     kill "$job" 2>/dev/null && echo "it has not ended by itself" && return 1
     ! wait "$job" && ranks 2 -n 2 -i "$tmp/d.h5"

@@ -75,7 +75,7 @@ for direction in '[1,0,0] 1e10' '[0,1,0] 5e9' '[0,0,-1] 5e9'; do
     read -r v c <<<"$direction"
     for dt in 2.5e-7 6.25e-8; do
         scene "dt: $dt, gravity: [0, 0, 0], mu: 0.3, allow_overlap: true, adhesion: { c_n: 1e10, c_t: 5e9, w: 0.02, area: 1e-6 }, shapes: { cube: { box: [2e-3, 2e-3, 2e-3] } },
-            bodies: [{ x: [0, 0, 0], shape: \"cube\", density: 1e12 }, { x: [(0.002 - $dt / 2 * $v[0]), 0, 0], shape: \"cube\", density: 1e12, v: $v }]"
+            bodies: [{ x: [0, 0, 0], shape: \"cube\", density: 1e12 }, { x: [(0.002 - $dt / 2 * ${v}[0]), 0, 0], shape: \"cube\", density: 1e12, v: $v }]"
         rm -f "$tmp/log"
         nsd-step --small-steps 0.01 -n "$(jq -n "7e-5 / $dt | floor")" --contacts --log "$tmp/log" -o "$tmp/out.h5" "$tmp/in.h5" 2>"$tmp/err"
         jq -n -c --argjson peak "$(nsd-info -c "$tmp/out.h5" | jq -s "group_by(.step) | map(map(.r) | transpose | map(add) | map(. * .) | add | sqrt) | max / $dt")" \
