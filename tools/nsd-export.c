@@ -9,8 +9,10 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -175,6 +177,7 @@ static void write_file(const char *name, const struct format *format, enum part 
 
 static struct {
     struct pvd list[PART_COUNT];
+    bool ours; /* no other program writes into it */
 } directory;
 
 static bool is_directory(const char *name)
@@ -187,6 +190,11 @@ static bool is_directory(const char *name)
 static void directory_make(const char *name)
 {
     if (mkdir(name, 0777) && errno != EEXIST) die(EX_IOERR, "%s: %s", name, strerror(errno));
+    if (directory.ours) return;
+    const int fd = open(name, O_RDONLY | O_DIRECTORY | O_CLOEXEC); // and locked while the tool runs
+    if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) && errno == EWOULDBLOCK)
+        die(EX_IOERR, "%s: another program is writing into it", name);
+    directory.ours = true;
 }
 
 /* Is there anything of this part? A packing has a cell, walls, contacts or shapes, or it has not. */
@@ -203,16 +211,13 @@ static void directory_add(const struct format *format, enum part what, const str
     struct failure failure = { 0 };
     size_t room = strlen(output) + 64;
     char *path = memory_of(room), name[64];
-    struct pvd *list = &directory.list[what];
     directory_make(output);
-    if (format->collected && !list->out) {
-        snprintf(path, room, "%s/%s.pvd", output, part_name[what]);
-        if (pvd_begin(list, path, &failure)) die_why(&failure);
-    }
     snprintf(name, sizeof name, "%s-%05lld.%s", part_name[what], (long long)k, format->ending);
     snprintf(path, room, "%s/%s", output, name);
     write_file(path, format, what, f);
-    if (format->collected && pvd_add(list, name, f->packing.t, &failure)) die_why(&failure);
+    snprintf(path, room, "%s/%s.pvd", output, part_name[what]);
+    if (format->collected && pvd_add(&directory.list[what], path, name, f->packing.t, &failure))
+        die_why(&failure);
     free(path);
 }
 
@@ -314,8 +319,7 @@ static void run(struct reader *in, const struct format *format, enum target targ
     if (!shown)
         die(EX_DATAERR, "%s: no %s in any frame", reader_where(in),
             part == PART_CONTACTS ? "group /contacts" : part_name[part]);
-    for (int what = 0; what < PART_COUNT; what++)
-        if (pvd_end(&directory.list[what], &failure)) die_why(&failure);
+    for (int what = 0; what < PART_COUNT; what++) pvd_free(&directory.list[what]);
     if (target == TARGET_FILE) sheaf_close(&single);
     frame_free(&f);
 }

@@ -64,29 +64,36 @@ static const char head[] =
     "<Collection>\n";
 static const char tail[] = "</Collection>\n</VTKFile>\n";
 
-int pvd_begin(struct pvd *l, const char *path, struct failure *failure)
+/* The list takes the place of the one before in one stroke: who reads a file that is written over may get a part of both. */
+static int pvd_write(const struct pvd *l, const char *path, struct failure *failure)
 {
-    l->out = output_stream(&l->file, path, failure);
-    if (!l->out) return failure->status;
-    fprintf(l->out, "%s%s", head, tail);
-    return 0;
+    struct output file;
+    FILE *out = output_stream(&file, path, failure);
+    if (!out) return failure->status;
+    fprintf(out, "%s%s%s", head, l->entries, tail);
+    return output_stream_close(&file, out, failure);
 }
 
-int pvd_add(struct pvd *l, const char *name, double time, struct failure *failure)
+int pvd_add(struct pvd *l, const char *path, const char *name, double time, struct failure *failure)
 {
-    if (fseek(l->out, -(long)strlen(tail), SEEK_END))
-        return failure_set(failure, EX_IOERR, "%s.pvd: %s", name, strerror(errno));
-    fprintf(l->out, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"%s\"/>\n%s", time, name, tail);
-    if (fflush(l->out))
-        return failure_set(failure, EX_IOERR, "%s: its list: %s", name, strerror(errno));
-    return output_place(&l->file, failure); // there is something whole in it, with the first
+    char entry[160];
+    const size_t n = (size_t)snprintf(
+        entry, sizeof entry, "<DataSet timestep=\"%.17g\" part=\"0\" file=\"%s\"/>\n", time, name);
+    if (l->length + n + 1 > l->room) {
+        const size_t room = 2 * l->room + sizeof entry;
+        char *more = realloc(l->entries, room);
+        if (!more) return failure_set(failure, EX_SOFTWARE, "%s: no memory for the list", path);
+        l->entries = more, l->room = room;
+    }
+    memcpy(l->entries + l->length, entry, n + 1);
+    l->length += n;
+    return pvd_write(l, path, failure);
 }
 
-int pvd_end(struct pvd *l, struct failure *failure)
+void pvd_free(struct pvd *l)
 {
-    if (l->out) output_stream_close(&l->file, l->out, failure);
-    l->out = NULL;
-    return failure->status;
+    free(l->entries);
+    *l = (struct pvd){ 0 };
 }
 
 /* An array in the appended part: what it is called there and where it is */

@@ -14,13 +14,14 @@ extern const struct vtkhdf_parts vtk_parts;
  * after every file, so that ParaView can look on while a run continues.
  */
 
+/* All zero to begin with */
 struct pvd {
-    FILE *out; /* NULL: not begun */
-    struct output file;
+    char *entries; /* [room] a text, of the files so far */
+    size_t length, room;
 };
 
-/* Begins the list in a file of this name. EX_IOERR: it cannot be written. */
-int pvd_begin(struct pvd *list, const char *path, struct failure *failure);
-/* A file of the series, of this time (s); the name is relative to the list's. */
-int pvd_add(struct pvd *list, const char *name, double time, struct failure *failure);
-int pvd_end(struct pvd *list, struct failure *failure);
+/* Adds a file of this time (s) to the list at path; its name, of less than 100 bytes, is relative to the list's. Returns 0, EX_IOERR or
+   EX_SOFTWARE. */
+int pvd_add(struct pvd *list, const char *path, const char *name, double time,
+            struct failure *failure);
+void pvd_free(struct pvd *list);

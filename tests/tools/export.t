@@ -38,6 +38,13 @@ grows()
     wait
     return $s
 }
+two_writers() # the second is refused, and the first ends well
+{
+    mkdir "$tmp/both"
+    (flock 9 && ! nsd-export -o "$tmp/both/" "$tmp/out.h5" 2>"$tmp/err" && grep -q "both/: another program is writing into it" "$tmp/err") 9<"$tmp/both" &&
+        nsd-export -o "$tmp/both/" "$tmp/out.h5" && cmp "$tmp/both/grains.pvd" "$tmp/vtp/grains.pvd"
+}
+ok "a folder has one writer" two_writers
 if has h5py; then ok "a list is whole while it grows" grows; else skip "a list is whole while it grows" "no h5py"; fi
 
 # ---- grains that come and go ----
