@@ -14,7 +14,7 @@ test() # NAME FROM CHANGE: what the servo then does; z becomes shorter at 30 per
             [.[0], .[1], ($p[4] + $p[5]) / 2, ($p[0] + $p[1] + $p[2] + $p[3]) / 4, ([range(6) | $f[.] * $l[.]] | add) / ([range(6) | $a[.] * $l[.]] | add)] | @tsv' >"$1.tsv"
 }
 test mean start '.mu = 0.5 | .pairs = [{ pair: ["ball", "wall"], mu: 0 }] | .servo.pressure = 1e5' "$steps"
-test volume mean 'del(.servo.pressure) | .servo.growth = 0' $((steps / 3))
+test volume mean 'del(.servo.pressure) | .servo.growth = 0' $((steps / 6))
 gnuplot -e 'set terminal pngcairo size 1000,450; set output "triaxial-walls.png"; set multiplot layout 1,2; set xlabel "axial strain";
     set ylabel "pressure (kPa)"; set yrange [0:300]; plot "mean.tsv" using 1:(column(3)/1e3) with lines lw 2 title "lid and floor", "" using 1:(column(4)/1e3) with lines lw 2 title "sides",
     "" using 1:(column(5)/1e3) with lines lw 2 title "mean"; set ylabel "volumetric strain"; set autoscale y; plot for [n in "mean volume"] n.".tsv" using 1:2 with lines lw 2 title n'
