@@ -1,3 +1,4 @@
+/* base/array.c: two sorted runs become one. */
 #include "base/array.h"
 
 /* Where the run that begins at `from` ends */

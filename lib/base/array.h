@@ -23,5 +23,5 @@ static inline bool array_grow(void *array, int64_t *room, int64_t least, size_t 
     return true; // cppcheck-suppress memleak ; the caller's pointer has it
 }
 
-/* As qsort(), but rows of the same rank keep their order; fast where two runs, one after the other, are sorted */
+/* As qsort(), of rows that differ; fast where two runs, one after the other, are sorted */
 void array_sort(void *array, int64_t n, size_t size, int (*order)(const void *, const void *));

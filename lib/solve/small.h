@@ -114,7 +114,7 @@ struct small {
     double *missing, *load;     /* [bodies] N s: of small_judge; NULL */
     int32_t *hot;   /* [bodies] the last sweep that has changed it by more than is allowed */
     double *change; /* [bodies] m/s: by sweeps of this step since then */
-    /* For repeated sweeps, of bundles that have a hot body alone; NULL before the first one [step/small_mark.h] */
+    /* For repeated sweeps, of bundles that have a hot body alone; NULL before the first one [step/small_mark.c] */
     int32_t *mark;          /* [bundles] the last repeated sweep that is to look at it */
     int64_t *meets, *first; /* bundles of body i: meets[first[i]] .. meets[first[i + 1] - 1] */
     int64_t bundles, groups, serial; /* groups from `serial` on are of one pair each */

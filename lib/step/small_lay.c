@@ -1,5 +1,5 @@
-/* step/small_lay.c: the bundles of small steps [step/small_lay.h]. */
-#include "step/small_lay.h"
+/* step/small_lay.c: the bundles of small steps [step/small_make.h]. */
+#include "step/small_make.h"
 
 #include "base/team.h"
 #include "contact/contact_law.h"

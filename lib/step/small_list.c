@@ -1,8 +1,6 @@
 /* step/small_list.c: the arrays of a list, and what finds a pair or a touch in it [step/small_list.h]. */
 #include "step/small_list.h"
 
-#include "step/small_mark.h"
-
 #include <stdlib.h>
 #include <string.h>
 

@@ -72,6 +72,16 @@ struct small_touch *small_list_find_touch(const struct small_list *l, int32_t bo
 void small_list_wake(struct small *s, int64_t slot);
 struct contact_key small_pair_key(const struct pair *pair);
 
+/*
+ * Which bundles a repeated sweep looks at: those with a body that this sweep or the one before has changed by more than is
+ * allowed [step/small_mark.c]. By one thread, before the first repeated sweep of a list; where memory is short, repeated sweeps
+ * look at all bundles.
+ */
+void small_marks_make(struct small *s);
+void small_marks_free(struct small *s);
+/* Marks the bundles of bodies first .. end-1 that are hot where the sweep begins. */
+void small_marks_begin(struct small *s, int64_t first, int64_t end);
+
 /* The image of b in lane k is so far from b (m), and moves against it (m/s) */
 static inline void small_shift_set(struct small_shift *to, int k, vec3 d, vec3 v)
 {

@@ -7,7 +7,6 @@
 #include "step/small_error.h"
 #include "step/small_gain.h"
 #include "step/small_load.h"
-#include "step/small_mark.h"
 #include "step/small_part.h"
 #include "step/small_point.h"
 #include "step/small_pull.h"

@@ -5,7 +5,6 @@
 #include "base/team.h"
 #include "contact/contact_law.h"
 #include "solve/lay.h"
-#include "step/small_lay.h"
 #include "step/small_part.h"
 #include "step/small_past.h"
 #include "step/small_stiff.h"

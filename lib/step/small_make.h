@@ -1,5 +1,6 @@
 /*
- * step/small_make.h: the list of small steps is made: pairs and touches of walls that come near on straight ways.
+ * step/small_make.h: the list of small steps is made: pairs and touches of walls that come near on straight ways;
+ * and its pairs are laid in bundles, in groups without a common body, those that are near first.
  */
 #pragma once
 
@@ -19,3 +20,12 @@ struct small_start {
  */
 int small_list_make(struct small_list *l, const struct packing *p, const struct small_start *o,
                     struct failure *failure);
+
+/* Of the smallest radius: how much farther than contacts pairs are listed, and how near those are that come first */
+#define SMALL_MARGIN 0.3
+#define SMALL_BESIDE 0.1
+
+/* Lays l->pairs, whose bodies are at x (m) with these edges of the cell (m): l->slot, and what the laws of p give their bundles.
+   False when memory is short. */
+bool small_pairs_lay(struct small_list *l, const struct packing *p, const vec3 *x,
+                     const vec3 edge[3]);

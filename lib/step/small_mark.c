@@ -1,5 +1,5 @@
-/* step/small_mark.c: the bundles of hot bodies [step/small_mark.h]. */
-#include "step/small_mark.h"
+/* step/small_mark.c: the bundles of hot bodies [step/small_list.h]. */
+#include "step/small_list.h"
 
 #include <stdlib.h>
 

@@ -4,12 +4,8 @@
 # shellcheck source=tests/support/tap.sh
 . tests/support/tap.sh
 
-if ! command -v mpirun >/dev/null || ! command -v nsd-step-mpi >/dev/null; then
-    echo "1..0 # SKIP there is no MPI: packages openmpi-bin, libopenmpi-dev, libtrilinos-zoltan-dev"
-    exit 0
-fi
-export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
-export ASAN_OPTIONS=detect_leaks=0:$ASAN_OPTIONS # MPI's own
+# shellcheck source=tests/support/mpi.sh
+. tests/support/mpi.sh
 
 ranks() # K ARGUMENT ...: nsd-step by K processes
 {
