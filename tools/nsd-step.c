@@ -326,7 +326,7 @@ static void warn_processes(const struct frame *f, const struct step_opt *o)
     const enum order order = o->order;
     // bodies of a process that pay for its exchanges, measured with 2 and 4 [docs/scale]: colour has one for each colour
     const bool small = o->small > 0 && !f->distributed && !small_lacks(&f->packing);
-    const double least = small || order == ORDER_BLOCK ? 2000 : 20000;
+    const double least = small ? 10000 : order == ORDER_BLOCK ? 2000 : 20000;
     const char *whole = small ? small_undivided(&f->packing, o->bound) : NULL;
     const double n = f->distributed ? (double)f->distributed->n : (double)f->packing.n;
     const int size = processes_size(), most = (int)fmax(1, fmin(n / least, size));

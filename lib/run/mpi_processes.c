@@ -221,18 +221,19 @@ const char *processes_leave(void)
     if (small->steps)
         at +=
             snprintf(text + at, sizeof text - (size_t)at,
-                     "%lld small steps divided, with %.3g bytes in %.3g messages each, of the one "
-                     "that sends most, and %.3g s without waiting; ",
+                     "%lld small steps divided, %.3g bytes in %.3g messages per small step, of the "
+                     "one that sends most, %.3g s without waiting; ",
                      (long long)small->steps, most[4] / divided, most[5] / divided, most[6]);
-    snprintf(
-        text + at, sizeof text - (size_t)at,
-        "%.3g bytes in %.3g messages a sweep, of the one that sends most; contacts of "
-        "the fullest %.3g of the mean on average, %.3g at most, %lld cuts; %lld steps solved by "
-        "the first alone; memory %.3g MB, of the largest %.3g MB; "
-        "%.3g s without waiting, %.3g s of them in the solver",
-        most[0] / sweeps, most[1] / sweeps, y->steps ? y->uneven / (double)y->steps : 1, y->worst,
-        (long long)y->part.cuts, (long long)y->alone, memory[1] / 1024, memory[0] / 1024, most[3],
-        most[2]);
+    if (y->steps)
+        at += snprintf(
+            text + at, sizeof text - (size_t)at,
+            "%.3g bytes in %.3g messages per sweep, of the one that sends most; contacts of the "
+            "fullest %.3g of the mean on average, %.3g at most, %lld cuts; %lld steps solved by "
+            "the first alone; %.3g s without waiting, %.3g s of them in the solver; ",
+            most[0] / sweeps, most[1] / sweeps, y->uneven / (double)y->steps, y->worst,
+            (long long)y->part.cuts, (long long)y->alone, most[3], most[2]);
+    snprintf(text + at, sizeof text - (size_t)at, "memory %.3g MB, of the largest %.3g MB",
+             memory[1] / 1024, memory[0] / 1024);
     if (self.begun) rank_step_free(&self.step);
     rank_small_free(&self.small);
     rows_free(&self.rows);

@@ -85,7 +85,7 @@ for order in colour block; do
     ok "grains that break, with one solve per step and --order $order" undivided "$tmp/breaks.h5" 2 -n 15 --every 5 --small-steps 0 --order $order
 done
 ranks 2 -n 1 -o "$tmp/few.h5" "$tmp/heap.h5" 2>"$tmp/err"
-like "few bodies: one process is advised" "$(cat "$tmp/err")" "2 processes for [0-9]+ bodies are slower than one, .*: below 2000 bodies per process"
+like "few bodies: one process is advised" "$(cat "$tmp/err")" "2 processes for [0-9]+ bodies are slower than one, .*: below 10000 bodies per process"
 
 # ---- what goes wrong ----
 
